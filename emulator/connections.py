@@ -185,7 +185,7 @@ class Connections:
                     continue
                 trigger, missing = self._no_trigger(self._value(register, "TRIGSEL"))
                 if missing:
-                    waits = f"{register}.TRIGSEL waits for {trigger}, which never comes"
+                    waits = f"{register}.TRIGSEL waits for {trigger}, which never occurs"
                     self._tell(place, waits, missing, f"{register}.TRIGSEL")
 
     def _burst(self, block: str, first: int) -> None:
@@ -235,7 +235,7 @@ class Connections:
             return Missing(f"{name}.ETSEL.{event}EN = 0", f"{name}.ETSEL", f"{event}EN")
         scaled = self._value(f"{name}.ETPS", "INTPSSEL" if event == "INT" else "SOCPSSEL")
         if not scaled and self._stuck(f"{name}.ETPS", f"{event}PRD", bool):
-            return Missing(f"{name}.ETPS.{event}PRD = 0: at no event at all", f"{name}.ETPS", f"{event}PRD")
+            return Missing(f"{name}.ETPS.{event}PRD = 0: no event triggers it", f"{name}.ETPS", f"{event}PRD")
         # 0 of a SOC is an event of the digital compare, for which the counter need not count.
         by_counter = self._value(f"{name}.ETSEL", f"{event}SEL") or event == "INT"
         return self._no_count(n) or self._no_compare(n, event) if by_counter else None
@@ -296,7 +296,7 @@ class Connections:
                     continue
                 missing = self._no_source(group, n) or self._closed(group, n)
                 if missing:
-                    waits = f"interrupt {group}.{n} is enabled and never comes"
+                    waits = f"interrupt {group}.{n} is enabled but never occurs"
                     self._tell(place, waits, missing, f"{register}.{field}", whole=True)
 
     def _plugged(self, group: int, n: int) -> Place | None:
@@ -435,7 +435,7 @@ class Connections:
             elif self._value(second, "CONT_ONESHT") and self._chip.ecap[n].stopped and self._waits_for_ever():
                 last = self._value(second, "STOP_WRAP") + 1
                 missing = Missing(f"{second}.REARM is not set again", second, "CONT_ONESHT")
-                message = f"the one shot of eCAP{n} has stopped behind event {last}, and the program waits for ever"
+                message = f"the one shot of eCAP{n} stopped after event {last}, and the program waits for ever"
                 self._tell(reads[0], message, missing, second)
 
     def _channels(self) -> None:
@@ -446,8 +446,9 @@ class Connections:
             if place is None or self._value(control, "RUNSTS") or not self._could(control, bool, "RUN"):
                 continue
             if self._stuck(mode, "CONTINUOUS", bool) and self._waits_for_ever():
-                missing = Missing(f"{mode}.CONTINUOUS = 0, and nobody sets {control}.RUN again", mode, "CONTINUOUS")
-                message = f"channel {n} of the DMA has stopped behind a transfer, and the program waits for ever"
+                why = f"{mode}.CONTINUOUS = 0, and no statement sets {control}.RUN again"
+                missing = Missing(why, mode, "CONTINUOUS")
+                message = f"channel {n} of the DMA stopped after a transfer, and the program waits for ever"
                 self._tell(place, message, missing, mode)
 
     def _groups(self) -> None:
@@ -480,7 +481,7 @@ class Connections:
                 self._chip.findings.report_at(
                     place, "not-connected",
                     f"{user} waits for GPIO{pin}, which the chip itself drives: {lost} of {qualifier.edges} edges were "
-                    f"lost, as its qualification wants {qualifier.samples} equal samples, {window_us:.3g} us",
+                    f"lost, because its qualification needs {qualifier.samples} equal samples, {window_us:.3g} us",
                     object=f"GPIO{pin}", how="dynamic",
                 )  # fmt: skip
 
@@ -556,7 +557,7 @@ class Connections:
                     missing = self._no_trip_input(number) if number in XBAR_TRIP_OUTPUTS else None
                     if missing:
                         self._tell(
-                            place, f"{name}.DCTRIPSEL.{signal}COMPSEL waits for TRIPIN{number}, which never comes",
+                            place, f"{name}.DCTRIPSEL.{signal}COMPSEL waits for TRIPIN{number}, which never occurs",
                             missing, f"{name}.DCTRIPSEL.{signal}COMPSEL",
                         )  # fmt: skip
             for event in ("DCAEVT1", "DCAEVT2", "DCBEVT1", "DCBEVT2"):
@@ -596,7 +597,7 @@ class Connections:
         window, threshold = self._value(control, "SAMPWIN"), self._value(control, "THRESH")
         filtered = self._value(f"{name}.COMPCTL", f"CTRIP{which}SEL") == FILTERED
         if filtered and threshold > window and not self._could(control, lambda other: other <= window, "THRESH"):
-            why = f"{control}.THRESH = {threshold} wants {threshold + 1} samples of a window of {window + 1}"
+            why = f"{control}.THRESH = {threshold} needs {threshold + 1} samples, but the window has {window + 1}"
             return Missing(why, control, "THRESH")
         return None
 
@@ -613,7 +614,8 @@ class Connections:
         if asked is not None:
             if self._stuck(condition, event, bool):
                 missing = Missing(f"{condition}.{event} = 0 names no condition for it", condition, event)
-                self._tell(asked, f"{event} of {name} is waited for and never comes", missing, f"{condition}.{event}")
+                message = f"the program waits for {event} of {name}, which never occurs"
+                self._tell(asked, message, missing, f"{condition}.{event}")
             return
         made = self._wanting(condition, event) if self._value(condition, event) else None
         polled = not {(name, "TZFLG", event), (name, "TZFLG", "")}.isdisjoint(self._source.read_fields)
@@ -622,8 +624,8 @@ class Connections:
         )
         if made is None or polled or acted or any(self._could(register, bool, field) for register, field in users):
             return
-        missing = Missing(f"{name}.TZSEL.{event} = 0, and nobody asks for it", f"{name}.TZSEL", event)
-        self._tell(made, f"{event} of {name} is made and trips nothing", missing, f"{name}.TZSEL.{event}")
+        missing = Missing(f"{name}.TZSEL.{event} = 0, and no statement uses it", f"{name}.TZSEL", event)
+        self._tell(made, f"{event} of {name} is generated but trips nothing", missing, f"{name}.TZSEL.{event}")
 
     def _trip_actions(self) -> None:
         """Trips that open an output, because no statement says what it does then."""
@@ -652,7 +654,7 @@ class Connections:
             wire = epwm.unpaired
             if wire is not None:
                 missing = Missing(f"{wire.name} has no pin: {wire.missing}", control, "OUT_MODE")
-                message = f"{control}.OUT_MODE = 3 makes a pair of outputs, and one of them is not to be seen"
+                message = f"{control}.OUT_MODE = 3 makes a pair of outputs, but one of them has no pin"
                 self._tell(self._wanting(control, "OUT_MODE"), message, missing, wire.name)
 
     def _i2c(self) -> None:
@@ -661,7 +663,7 @@ class Connections:
             place = self._source.last(*_split(register))
             if place is not None and self._could(register, bool, "STT") and self._stuck(register, "IRS", bool):
                 missing = Missing(f"{register}.IRS = 0: the module stays in reset", register, "IRS")
-                self._tell(place, f"{register}.STT begins messages that never come", missing, register)
+                self._tell(place, f"{register}.STT starts a message, but nothing is sent", missing, register)
 
     def _can(self) -> None:
         """A CAN controller that is used: on the bus, its objects valid, its messages asked for and taken once."""
@@ -686,7 +688,7 @@ class Connections:
                     arbitration, bool, "MsgVal"
                 ):  # fmt: skip
                     missing = Missing(f"no statement sets {arbitration}.MsgVal", arbitration)
-                    self._tell(place, "what is set up here is no valid object", missing, arbitration)
+                    self._tell(place, "the message object that is set up here is not valid", missing, arbitration)
             self._messages(block, letter, commands)
 
     def _messages(self, block: str, letter: str, commands: list[str]) -> None:
@@ -699,7 +701,7 @@ class Connections:
         if filled and transmits and not asks:
             missing = Missing("no statement sets TxRqst", filled[-1])
             place = self._source.last(*_split(filled[-1]))
-            self._tell(place, "data are given to an object, and never sent", missing, filled[-1])
+            self._tell(place, "data are written to a message object but never sent", missing, filled[-1])
         elif (block, "CAN_NDAT_21") in self._source.reads:
             ram = self._chip.can[letter].ram
             again = max(range(1, OBJECTS + 1), key=lambda number: ram[number].read_again)
@@ -710,7 +712,7 @@ class Connections:
                 self._chip.findings.report_at(
                     place, "flag-not-cleared",
                     f"NewDat of object {again} of {block} is never cleared: the same message was taken "
-                    f"{ram[again].read_again} times more, and a new one cannot be told from it",
+                    f"{ram[again].read_again} times more, and a new message cannot be recognised",
                     object=f"{block}.CAN_NDAT_21", how="dynamic",
                 )  # fmt: skip
 
@@ -725,7 +727,7 @@ class Connections:
             used = self._source.last(block, "DACVALS")
             if used is not None and self._stuck(f"{block}.DACOUTEN", "DACOUTEN", bool):
                 missing = Missing(f"{block}.DACOUTEN = 0: the pin is not driven", f"{block}.DACVALS")
-                self._tell(used, f"{block} gets codes that nobody sees", missing, f"{block}.DACOUTEN")
+                self._tell(used, f"{block} gets codes but drives no pin", missing, f"{block}.DACOUTEN")
 
     def _serial(self) -> None:
         """A SCI with FIFOs keeps what it is given until SWRESET is set."""
@@ -757,8 +759,8 @@ class Connections:
             if self._stuck(f"{name}.CMPCTL", mode, lambda value: value != FREEZE):
                 missing = Missing(f"{name}.CMPCTL.{mode} = 3", f"{name}.CMPCTL", mode)
                 self._tell(
-                    self._wanting(f"{name}.CMPCTL", mode), f"what is written to {compare} waits in its shadow for ever",
-                    missing, f"{name}.CMPCTL.{mode}",
+                    self._wanting(f"{name}.CMPCTL", mode),
+                    f"the value written to {compare} is never loaded from its shadow", missing, f"{name}.CMPCTL.{mode}",
                 )  # fmt: skip
 
     def _compares(self) -> None:
@@ -773,7 +775,7 @@ class Connections:
             if missing:
                 self._tell(
                     self._wanting(f"{name}.{compare}", compare),
-                    "the counter never gets to a compare value, and the output never changes at it", missing,
+                    "the counter never reaches a compare value, so the output never changes there", missing,
                     f"{name}.{compare}",
                 )  # fmt: skip
             elif used and (beyond := self._chip.epwm[n].above.get(compare)):

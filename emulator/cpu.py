@@ -142,10 +142,10 @@ class Cpu:
         findings, position = self.findings, self.position
         starved = findings.context()
         message = (
-            f"{vector} comes again as soon as its routine is left: {source} asks for it at once; {self._row} "
+            f"{vector} occurs again as soon as its routine returns: {source} requests it at once; {self._row} "
             f"interrupts in a row, {ms(self.clock.now - self._began):.3f} ms without a statement of {starved}"
         )  # fmt: skip
-        details = tuple(f"{starved} stands at {place}" for place in findings.path(position.at, position.calls)[:1])
+        details = tuple(f"{starved} is at {place}" for place in findings.path(position.at, position.calls)[:1])
         if begins is None:
             findings.report("interrupt-storm", message, object=vector, value=self._row, details=details)
         else:
@@ -169,7 +169,7 @@ class Cpu:
         self.clock.charge(INTERRUPT_ENTRY_CYCLES)
         handler = self._handlers.get(line)
         if handler is None:
-            self.findings.report("interrupt-without-handler", f"CPU interrupt {line} was taken but nothing handles it")
+            self.findings.report("interrupt-without-handler", f"CPU interrupt {line} was taken but has no handler")
         else:
             handler()
         self.clock.charge(INTERRUPT_EXIT_CYCLES)

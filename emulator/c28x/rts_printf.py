@@ -61,7 +61,7 @@ class Printing(Strings):
 
     def _shown(self, name: str, text: str) -> int:
         self._charge(_CHARACTER * len(text))
-        message = f"{name} prints to the console of a debugger: nobody reads it here"
+        message = f"{name} prints to the console of a debugger, which is not modelled"
         self._runtime.findings.report("unmodelled", message, object=name)
         return len(text)
 
@@ -112,7 +112,7 @@ class Printing(Strings):
         elif kind == "p":
             sign, text, zeros = "", f"{va.pointer()[1]:x}", False
         else:
-            message = f"{name} does not know {found[0]}: it prints it as it stands and takes no argument"
+            message = f"{name} does not know {found[0]}: it prints the letters and takes no argument"
             self._runtime.findings.report("printf-format", message, object=form)
             return found[0]
         if "-" in flags:

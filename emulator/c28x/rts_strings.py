@@ -38,7 +38,7 @@ class Strings(Mathematics):
         room = characters_left(p)
         if len(characters) >= room and most > room:
             path = _path(p)
-            message = f"{reader} finds no end in {path}, a member that has {room} words there, and reads on behind it"
+            message = f"{reader} finds no NUL in {path}, a member with {room} words from there, and reads beyond it"
             self._runtime.findings.report("pointer-outside", message, object=path, value=room)
         self._runtime.touch_block(p, len(characters) + 1, False)
         return "".join(characters)
@@ -149,7 +149,7 @@ class Strings(Mathematics):
         words = at + len(characters)
         if words > characters_left(to):
             path, room = _path(to), characters_left(to)
-            message = f"{name} writes {words} words at {path}, a member that has {room} there"
+            message = f"{name} writes {words} words at {path}, a member with {room} words from there"
             self._runtime.findings.report("memcpy-outside", message, object=path, value=words)
         self._runtime.touch_block(to, at + len(characters), True)
         for i, character in enumerate(characters, at):

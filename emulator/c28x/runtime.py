@@ -509,7 +509,7 @@ class Runtime:
             where = obj.declaration
             message = f"{site.name} points to {where.path}, whose function has returned, and is {verb} through"
             lives = self.memory.find(addr)
-            now = f"{lives.declaration.path} lies there now" if lives else "nobody's local lies there at the moment"
+            now = f"{lives.declaration.path} lies there now" if lives else "no local lies there at the moment"
             self.hit(site, "dangling-pointer", message, None, (f"address {addr:#x} of the stack: {now}",))
         elif not 0 <= p.offset + words < obj.words:
             if not self.counted(site, "pointer-outside"):
@@ -820,7 +820,7 @@ class Runtime:
         details: tuple[str, ...] = ()
         if site.widened:
             late = f"{site.name} is computed in {ctype.bits} bits and widened to {site.widened} afterwards: {wrapped}"
-            details = (f"the result is converted to {site.widened} only after it was cut",)
+            details = (f"the result is converted to {site.widened} only after it lost its upper bits",)
             if not self.counted(site):
                 self.findings.report(
                     "widened-late", f"{late} instead of {value}", object=site.name, value=value,
@@ -869,8 +869,8 @@ class Runtime:
             # By the stamp that is waited for: whether it was still to come when it was last looked at.
             before = spot.ahead.get(b)
             if before is not None and before < 0 < apart < half // 2:
-                message = f"{spot.name}: they were equal {apart} counts ago, when nobody looked"
-                self.hit(spot, "stamp-compare", f"{message}; they will be {2 * half} counts later", a)
+                message = f"{spot.name}: they were equal {apart} counts ago, between two tests"
+                self.hit(spot, "stamp-compare", f"{message}; the next time is {2 * half} counts later", a)
             if len(spot.ahead) > _STAMPS:
                 spot.ahead.clear()
             spot.ahead[b] = apart

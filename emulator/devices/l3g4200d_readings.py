@@ -124,7 +124,7 @@ class GyroReadings:
         name = f"L3G4200D.{a.name}"
         if 4 * gap < self.period:
             message = (
-                f"{repeats} of {WINDOW} reads of {name} gave a sample that had been read before: this one "
+                f"{repeats} of {WINDOW} reads of {name} gave a sample that was already read: this one "
                 f"{gap / CYCLES_PER_US:.0f} us after the last read, while a sample lasts "
                 f"{self.period / CYCLES_PER_MS:.2f} ms"
             )
@@ -133,7 +133,7 @@ class GyroReadings:
             data_rate = SYSCLK_HZ / self.period
             message = (
                 f"{name} is read {a.rate_hz:.1f} times a second and sampled {data_rate:.1f} times: {repeats} of "
-                f"{WINDOW} reads gave a sample that had been read before"
+                f"{WINDOW} reads gave a sample that was already read"
             )
             value = round(a.rate_hz / data_rate, 2)
             self._report("polling-above-rate", message, object=name, value=value, since=mark)

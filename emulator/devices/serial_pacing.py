@@ -96,7 +96,7 @@ def rates_differ(frame: SerialFrame, bit_cycles: float) -> str:
     if abs(set_cycles / bit_cycles - 1) < 0.5 / (FRAME_BITS - 0.5):
         return ""
     sent, heard = (round(SYSCLK_HZ / cycles) for cycles in (set_cycles, bit_cycles))
-    return f"a character came with {sent} baud, this end of the line hears {heard}"
+    return f"a character was sent with {sent} baud, but this end receives with {heard}"
 
 
 def received(frame: SerialFrame, bit_cycles: float) -> tuple[int, bool]:

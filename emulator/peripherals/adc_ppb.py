@@ -161,8 +161,8 @@ class PostProcessing:
         lost, soc = block.offcal, block.config.value & 0xF
         self._cpu.findings.report(
             "not-configured",
-            f"{lost.path} = {signed(lost.value, 10)} does nothing: PPB{last.number} watches SOC{soc} too, and of "
-            f"several blocks the highest number's OFFCAL counts, which is {signed(last.offcal.value, 10)}",
+            f"{lost.path} = {signed(lost.value, 10)} has no effect: PPB{last.number} has SOC{soc} too, and the OFFCAL "
+            f"of the highest block is used, which is {signed(last.offcal.value, 10)}",
             object=lost.path, value=lost.value,
         )  # fmt: skip
 

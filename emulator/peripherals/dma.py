@@ -486,7 +486,7 @@ class Dma:
             else:
                 path = f"{self._regs.name}.{channel.name}.MODE.PERINTE"
                 self._cpu.findings.report(
-                    "not-configured", f"{path} = 0: the channel takes no trigger, not even that of PERINTFRC",
+                    "not-configured", f"{path} = 0: the channel takes no trigger, not even one by PERINTFRC",
                     object=path,
                 )  # fmt: skip
         self._look(channel)
@@ -508,6 +508,6 @@ class Dma:
         if source and source not in self._known:
             path, name = f"{self._regs.name}.{channel.name}.MODE", self._names.get(source, "which is none")
             self._cpu.findings.report(
-                "unmodelled", f"{path}: trigger {source} ({name}) is not modelled: it never comes here",
+                "unmodelled", f"{path}: trigger {source} ({name}) is not modelled: it never occurs here",
                 object=path, value=source,
             )  # fmt: skip

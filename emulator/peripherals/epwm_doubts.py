@@ -66,7 +66,7 @@ class EPwmDoubts:
         if stopped and not tbclksync:
             self._report(compare, "CpuSysRegs.PCLKCR0.TBCLKSYNC", "= 0: no ePWM counter counts")
         elif stopped:
-            self._report(compare, f"{name}.TBCTL.CTRMODE", "= 3: the counter stands still")
+            self._report(compare, f"{name}.TBCTL.CTRMODE", "= 3: the counter does not count")
         elif not self._regs.registers["TBPRD"].value:
             self._report(compare, f"{name}.TBPRD", "= 0: the period was never set, the counter stays at 0")
         elif unseen is not None:
@@ -77,7 +77,7 @@ class EPwmDoubts:
         flag = f"{self._regs.name}.TZFLG.OST"
         self._cpu.findings.report(
             "flag-not-cleared",
-            f"{flag} still stands, and gives the interrupt of the same trip again: the outputs stay tripped until "
+            f"{flag} is still set and repeats the interrupt of the same trip: the outputs stay tripped until "
             "TZCLR.OST is written",
             object=flag,
         )  # fmt: skip

@@ -75,7 +75,7 @@ class EQepDoubts:
         """QFLG was read."""
         if not flags & _UTO:
             if self._regs.QEPCTL.value & _UNIT_RUNS == _UNIT_RUNS and not self._regs.registers["QUPRD"].value:
-                self._report(f"{self._regs.name}.QUPRD", "QFLG", "= 0: the unit timer never ends, and UTO never comes")
+                self._report(f"{self._regs.name}.QUPRD", "QFLG", "= 0: the unit timer never ends, and UTO is never set")
             return
         if self._stale:
             path = f"{self._regs.name}.QFLG.UTO"

@@ -165,7 +165,7 @@ class I2cData:
         path, byte = self._drr.path, self._drr.value
         self._findings.report(
             "result-not-ready",
-            f"{path} was read though no byte has come since it was last read: it holds {byte:#04x} from before",
+            f"{path} was read again without a new byte: it holds the old {byte:#04x}",
             object=path, value=byte,
         )  # fmt: skip
 

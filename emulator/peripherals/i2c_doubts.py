@@ -95,8 +95,8 @@ class I2cDoubts:
         path = f"{self._mdr.path}.STT"
         self._findings.report(
             "i2c-stop-pending",
-            f"{path} was set while STP was still 1: the message before or its STOP is under way, and the manual wants "
-            "its end to be waited for",
+            f"{path} was set while STP was still 1: the previous message or its STOP is not done, and the manual "
+            "requires to wait for it",
             object=path,
         )  # fmt: skip
 
@@ -105,7 +105,7 @@ class I2cDoubts:
         path = f"{self._str.path}.NACK"
         self._findings.report(
             "flag-not-cleared",
-            f"{path} still stands from a message before: this one is given up before anybody could answer its address",
+            f"{path} is still set from an earlier message: this message is given up before its address is acknowledged",
             object=path,
         )  # fmt: skip
 
@@ -113,8 +113,8 @@ class I2cDoubts:
         """A message that was refused holds the bus, and the program has seen that for `cycles`."""
         self._findings.report(
             "i2c-left-busy",
-            f"{self._bus.name}: a message was refused, and neither STT nor STP was set since then: BB stands until the "
-            f"program sets one of them; it has looked at {self._str.path} for {ms(cycles):.0f} ms",
+            f"{self._bus.name}: a message got a NACK, and neither STT nor STP was set since then: BB stays 1 until the "
+            f"program sets one of them; it has polled {self._str.path} for {ms(cycles):.0f} ms",
             object=self._bus.name,
         )  # fmt: skip
 

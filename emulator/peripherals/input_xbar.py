@@ -87,8 +87,8 @@ class InputXbar:
         if word >= self._pins:
             self._cpu.findings.report(
                 "unmodelled",
-                f"{register.path} = {word} is no pin (they are 0 to {self._pins - 1}): what the input shows then "
-                "is not modelled, it is low here",
+                f"{register.path} = {word} is no pin (pins are 0 to {self._pins - 1}): the level of the input "
+                "is not modelled and is low here",
                 object=register.path, value=word,
             )  # fmt: skip
 

@@ -130,8 +130,8 @@ class Pie:
     def _tell_kept_back(self, flag: str, begins: Place, group: int, n: int) -> None:
         self._cpu.findings.report_at(
             begins, "flag-not-cleared",
-            f"{flag} is still set after the routine of interrupt {group}.{n}: no further interrupt comes until it is "
-            "cleared",
+            f"{flag} is still set after the routine of interrupt {group}.{n}: no further interrupt is generated until "
+            "it is cleared",
             how="dynamic", object=flag, task=f"Isr:{begins.function}",
         )  # fmt: skip
 
@@ -255,8 +255,8 @@ class Pie:
         else:
             self._cpu.findings.report(
                 "interrupt-without-handler",
-                f"{_name(vector)} (vector id {vector:#04x}) was taken but has no handler: nothing stands in its entry "
-                "of PieVectTable",
+                f"{_name(vector)} (vector id {vector:#04x}) was taken but has no handler: nothing was written to its "
+                "entry of PieVectTable",
                 object=f"vector {vector:#04x}",
             )  # fmt: skip
 

@@ -318,8 +318,8 @@ class SciReceiver:
             path = f"{self._ffrx.path}.RXFFOVF"
             self._cpu.findings.report(
                 "flag-not-cleared",
-                f"{path} still stands from an overflow for which the FIFO was emptied before: it is emptied again, and "
-                f"characters that came since then are lost ({unread} now)",
+                f"{path} is still set from an earlier overflow, for which the FIFO was already emptied: it is emptied "
+                f"again, and {unread} newer characters are lost",
                 object=path,
             )  # fmt: skip
         self._overflow_answered = True

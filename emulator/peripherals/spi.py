@@ -261,7 +261,7 @@ class Spi:
             self._premature += 1
             if self._premature == 1:
                 return
-        why = "no word has come since it was last read"
+        why = "no word was received since it was last read"
         if self._shift is not None:
             why = f"the word under way ends in {(event_time(self._shift) - self._clock.now) / CYCLES_PER_US:.1f} us"
         path = self._rxbuf.path
@@ -335,7 +335,7 @@ class Spi:
                 self._select(0)
             if not self._ctl.value & TALK:
                 name = f"{self._ctl.path}.TALK"
-                self._not_configured(f"{name} = 0: SIMO stays in high impedance, and nobody hears it", name)
+                self._not_configured(f"{name} = 0: SIMO stays in high impedance, and no device receives the word", name)
         elif not self._ccr.value & SPISWRESET:
             name = f"{self._ccr.path}.SPISWRESET"
             self._not_configured(f"{name} = 0: the module is held in reset, and the word is not sent", name)

@@ -60,7 +60,7 @@ class Watchdog:
         findings.report_at(
             path[0], "watchdog-in-vain",
             f"{task} services the watchdog while main hangs in {hung.function}, line {hung.line}, for the last "
-            f"{ms(self._clock.now - since):.0f} ms: nobody is reset",
+            f"{ms(self._clock.now - since):.0f} ms: the device is not reset",
             how="dynamic", object=self._regs.name, call_path=path, task=task,
         )  # fmt: skip
 

@@ -64,7 +64,7 @@ def refusing_reserved(register: Cell, write: Write) -> Write:
         if word & reserved & lanes and word & filled != filled:
             register.block.cpu.findings.report(
                 "reserved-field",
-                f"{register.path} was written with {word:#06x}: bits {word & reserved & lanes:#06x} of it are reserved "
+                f"{register.path} was written with {word:#06x}: bits {word & reserved & lanes:#06x} are reserved "
                 "and must be written 0",
                 object=register.path, value=word,
             )  # fmt: skip

@@ -51,7 +51,7 @@ class UnmodelledBlock:
         if not untried:
             return False
         register.value = untried.pop()
-        self._report(register, "is waited for in vain, and changes by itself", " in a wait")
+        self._report(register, "is polled: the emulator changes it to end the wait", " in a wait")
         return True
 
     def _read(self, register: Cell) -> int:

@@ -113,7 +113,7 @@ def told(tmp_path: Path, text: str, rule: str = "not-connected", seconds: float 
     ("TRIGSEL = 5", "TRIGSEL = 7", "TRIGSEL = 7", "EPwm2Regs.ETSEL.SOCAEN = 0"),
     ("TRIGSEL = 5", "TRIGSEL = 3", "TRIGSEL = 3", "CpuTimer2Regs.TCR.TIE = 0"),
     ("CMPA = 20001", "CMPA = 20002", "CMPA = 20002", "above TBPRD = 20000"),
-    ("LOADAMODE = 0", "LOADAMODE = 3", "LOADAMODE = 3", "waits in its shadow for ever"),
+    ("LOADAMODE = 0", "LOADAMODE = 3", "LOADAMODE = 3", "is never loaded from its shadow"),
     ("InputXbarRegs.INPUT4SELECT = 7;", "", "XINT1CR.bit.ENABLE", "INPUT4SELECT was never set"),
     ("XintRegs.XINT1CR.bit.ENABLE = 1;", "", "PIEIER1.bit.INTx4", "XINT1CR.ENABLE = 0"),
     ("AdcaRegs.ADCINTSEL1N2.bit.INT1E = 1;", "", "TRIGSEL = 5", "ADCINTSEL1N2.INT1E = 0"),
@@ -147,11 +147,11 @@ def test_a_link_that_is_missing_is_named_where_its_register_is_set_or_the_event_
     ("capture-counter-stands", "ECap1Regs.ECCTL2.TSCTRSTOP = 0"),
     ("capture-event-never-reached", "ECap1Regs.ECCTL2.STOP_WRAP = 1: event 2 is the last"),
     ("capture-never-rearmed", "ECap1Regs.ECCTL2.REARM is not set again"),
-    ("capture-qualification-swallows", "its qualification wants 6 equal samples"),
+    ("capture-qualification-swallows", "its qualification needs 6 equal samples"),
     ("pulses-timer-not-in-ier", "bit 12 of IER (M_INT13) is 0"),
     ("overcurrent-comparator-off", "comparator 2 is off"),
-    ("overcurrent-threshold-above-window", "samples of a window"),
-    ("overcurrent-event-does-not-trip", "nobody asks for it"),
+    ("overcurrent-threshold-above-window", "samples, but the window has"),
+    ("overcurrent-event-does-not-trip", "no statement uses it"),
     ("overcurrent-no-condition", "names no condition"),
     ("wheel-latched-by-reading", "EQep1Regs.QEPCTL.QCLM = 0"),
     ("link-receive-level-of-31", "the FIFO holds 16"),
@@ -281,7 +281,7 @@ void main(void)
 @pytest.mark.parametrize(("was", "now", "rule", "at", "why"), [
     ("GpioCtrlRegs.GPAMUX1.bit.GPIO7 = 1;", "", "not-connected", "OUT_MODE", "EPWM4B has no pin"),
     ("EPwm4Regs.TZCTL.bit.TZA = TZ_FORCE_LO;", "", "trip-open", "TZSEL", "TZA: 0 is high impedance"),
-    ("EPwm4Regs.TZCLR.bit.OST = 1;", "", "flag-not-cleared", "TZCLR.bit.INT = 1", "TZFLG.OST still stands"),
+    ("EPwm4Regs.TZCLR.bit.OST = 1;", "", "flag-not-cleared", "TZCLR.bit.INT = 1", "TZFLG.OST is still set"),
     ("EPwm4Regs.TZCLR.bit.INT = 1;", "", "flag-not-cleared", "interrupt void tripped", "TZFLG.INT is still set"),
 ])  # fmt: skip
 def test_a_trip_that_is_not_set_up_whole(tmp_path: Path, was: str, now: str, rule: str, at: str, why: str) -> None:

@@ -117,7 +117,7 @@ def test_a_storm_names_vector_source_count_and_who_is_starved(kind: str) -> None
     with pytest.raises(InterruptStorm):
         storm.main()
     (finding,) = storm.findings.of("interrupt-storm")
-    assert finding.message.startswith(names.replace(": ", " comes again as soon as its routine is left: ", 1))
+    assert finding.message.startswith(names.replace(": ", " occurs again as soon as its routine returns: ", 1))
     counted = re.search(r"; (\d+) interrupts in a row, (\d+\.\d+) ms without a statement of main$", finding.message)
     assert counted is not None, finding.message
     assert int(counted[1]) == finding.value >= STORM_INTERRUPTS
@@ -127,7 +127,7 @@ def test_a_storm_names_vector_source_count_and_who_is_starved(kind: str) -> None
     assert finding.task == "Isr:Isr"
     assert finding.place is not None
     assert storm.lines[finding.place.line - 1].endswith("#!")
-    assert any("main stands at" in detail for detail in finding.details)
+    assert any("main is at" in detail for detail in finding.details)
 
 
 def test_a_storm_ends_the_time_that_a_test_lets_pass() -> None:

@@ -214,7 +214,7 @@ def check_sequence(b: Builder, values: Sequence[Operand], effects: Sequence[Sequ
 def unsequenced(b: Builder, place: LValue) -> None:
     """The remark about an object that one expression changes and uses again, in no order."""
     message = (
-        f"{place.text} is changed and used again in one expression: C says no order; a compiler may take either"
+        f"{place.text} is changed and used again in one expression: C defines no order"
     )
     b.remark(place.where, "unsequenced", message, place.text)
 

@@ -56,7 +56,8 @@ def check_blocks(e: Call, say: Callable[[str, str, str], None]) -> None:
         left = _left(block)
         if left is not None and length.value > left:
             text = source_text(block)
-            say("memcpy-outside", f"{name} takes {length.value} words at {text}, a member that has {left} there", text)
+            message = f"{name} takes {length.value} words at {text}, a member with {left} words from there"
+            say("memcpy-outside", message, text)
 
 
 def _of_pointers(e: Expr) -> bool:

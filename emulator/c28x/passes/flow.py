@@ -581,7 +581,7 @@ class FlowReport:
                 self.statement(s)
             elif not told and not isinstance(s, Return | Break | Continue | LeaveSwitch | FallThrough | Declare):
                 told = True
-                self.unreachable(s.where, f"nothing leads to this statement of {self.function.path}")
+                self.unreachable(s.where, f"this statement of {self.function.path} can never run")
 
     def unreachable(self, where: Where, message: str) -> None:
         self.to.report(self.function, where, "unreachable", message)
@@ -604,7 +604,7 @@ class FlowReport:
             where = body[0].where if body else s.where
             for value in values or []:
                 if value in labels:
-                    self.unreachable(where, f"case {value} stands here a second time and is never taken")
+                    self.unreachable(where, f"case {value} is here a second time and is never taken")
                 labels.add(value)
             self.block(body)
 

@@ -292,7 +292,7 @@ def check_image(
     for module, function in functions:
         shared = function.name in module.added or in_header(function.where, module.unit(function.name).file)
         if begins and not shared and function.path not in reached and function.name != "main":
-            message = f"{function.path} is neither called nor taken by address"
+            message = f"{function.path} is never called, and its address is never taken"
             reports[module].report(function, function.where, "never-called", message)
     used = mentions.at_start.union(*mentions.by.values())
     for module in meant:

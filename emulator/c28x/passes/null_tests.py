@@ -117,7 +117,7 @@ class NullTests:
             case Load(ctype=PointerType(), lvalue=LValue(root=Variable() as root, indices=[])) if root in used:
                 if test.where.macro is None and e.where.macro is None:
                     name = root.declaration.name
-                    message = f"{name} is held against NULL after it has been gone through: the test comes too late"
+                    message = f"{name} is compared with NULL after it was dereferenced: the test is too late"
                     where = test.where if test.where.line else self.function.where
                     self.to.report(
                         self.function, where, "constant-condition", message, declaration=root.declaration

@@ -158,7 +158,8 @@ class States:
             wanted = source_text(last) if exits[-1][1][-1][1] else f"the contrary of {source_text(last)}"
             report.report(
                 f, inside[0].where, "state-stuck",
-                f"{f.path} never leaves {subject.declaration.name} = {label} by itself: {wanted} does not come, {why}",
+                f"{f.path} never leaves {subject.declaration.name} = {label} by itself: {wanted} never becomes true, "
+                f"{why}",
                 object=subject.declaration.path, declaration=subject.declaration,
             )  # fmt: skip
 
@@ -235,7 +236,7 @@ class States:
                 return ""
             waiting += came.values
         told = ", ".join(map(str, sorted(known)[:4])) + (" ..." if len(known) > 4 else "")
-        return f"as {x.declaration.name} only ever is {told} there"
+        return f"because {x.declaration.name} is only {told} there"
 
     def _set_on_entry(self, subject: Variable, label: int, x: Variable) -> bool:
         """Whether `x` is given a value wherever the state is entered."""
@@ -370,7 +371,7 @@ class States:
         begun = " or ".join(map(str, sorted(starts)))
         message = (
             f"{v.declaration.name} begins at {begun} and goes {'up' if step > 0 else 'down'} by {abs(step)}: it steps "
-            f"past {goal}, and {source_text(compare)} is not decided there"
+            f"past {goal}, so {source_text(compare)} never becomes true"
         )  # fmt: skip
         report.report(f, s.where, "stepped-over", message, object=v.declaration.path, declaration=v.declaration)
 
@@ -410,7 +411,7 @@ class States:
                 if given and all(self._past(value, counter) for value in given):
                     message = (
                         f"{source_text(difference)} takes the counter {counter.declaration.name} from the earlier "
-                        f"stamp {before.declaration.name}: below 0 it goes round, and is huge at any age but 0"
+                        f"stamp {before.declaration.name}: the difference wraps below 0 and is huge at any age but 0"
                     )  # fmt: skip
                     report.report(f, s.where, "stamp-backwards", message, object=before.declaration.path)
 

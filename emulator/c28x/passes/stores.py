@@ -70,7 +70,8 @@ def _falls(function: Function, body: list[Stmt], following: list[Stmt], report: 
         again = _overwritten(s.target, [*body[i + 1 :], *following])
         if again is not None and any(again is later for later in following):
             text = s.target.text if isinstance(s.target, LValue) else source_text(again.value)
-            message = f"{_name(s)} is set to {source_text(s.value)}, and set again by the next case: there is no break"
+            first = f"{_name(s)} is set to {source_text(s.value)}"
+            message = f"{first}, and the next case sets it again: a break is missing"
             report.report(function, s.where, "case-falls", message, object=text)
 
 

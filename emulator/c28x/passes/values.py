@@ -89,7 +89,7 @@ class ConstantChecks:
             case Binary(op="*" | "/", left=left, right=Const(value=8) as right) if _size(left) and not _size(right):
                 self.say("octet", f"{source_text(e.source)}: sizeof counts words of 16 bits here, not octets", "sizeof")
             case Binary(op="/", left=left, right=right) if _of_pointer(left, right):
-                message = "the size of a pointer by that of what it points to is no count of elements"
+                message = "the size of a pointer divided by the size of its target is not the number of elements"
                 self.say("sizeof-pointer", f"{source_text(e.source)}: {message}", source_text(e.source))
             case Binary(op="/", left=Const(value=int(a))) as quotient if a and e.value == 0:
                 text = source_text(quotient)
@@ -185,7 +185,7 @@ class ValueChecks(ConstantChecks):
         """A counter is held against 0 behind a loop whose test has counted on: what it is at the loop's end."""
         assert isinstance(counter.ctype, IntType)
         name, end = counter.declaration.name, counter.ctype.wrap(-1)
-        message = f"{name} is held against 0, but the test that ends the loop counts once more: {name} is {end} then"
+        message = f"{name} is compared with 0, but the test that ends the loop counts once more: then {name} is {end}"
         self.say("constant-condition", message, counter.declaration.path)
 
     def condition(self, test: Expr) -> None:

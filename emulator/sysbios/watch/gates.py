@@ -126,7 +126,7 @@ class Gates:
             nowhere = None not in entered and not self._names.objects(gate) & entered
             if nowhere or self._clock.now >= LONG_ENOUGH:
                 name = self._names.of(gate)
-                why = "no statement enters it" if nowhere else f"nobody has entered it in {ms(self._clock.now):.0f} ms"
+                why = "no statement enters it" if nowhere else f"it was not entered in {ms(self._clock.now):.0f} ms"
                 self._findings.report_at(
                     place, "gate-unused", f"{name} is created, but {why}", object=name, how="dynamic"
                 )
@@ -176,7 +176,7 @@ class Gates:
         thread.entered.remove(gate)
         if entry.key != key:
             name = self._names.of(gate)
-            effect = "stays taken for ever" if key else "is free although the outer enter still counts on it"
+            effect = "stays taken for ever" if key else "is free although the outer enter still needs it"
             self._findings.report(
                 "gate-key", f"{name} is left by {thread} with key {key}, but its enter gave {entry.key}: the gate "
                 f"{effect}", object=name, value=key, details=(f"entered in {self._spots.text(entry.spot)}",),
@@ -206,7 +206,8 @@ class Gates:
         thread = self._threads.current
         name = self._names.of(handle) if handle is not None else ""
         what = f"{function}({name})" if name else function
-        message = f"{what} is called by {thread}: an interrupt cannot wait, the kernel's assertion ends the program"
+        why = "an interrupt cannot block, and an assertion of the kernel ends the program"
+        message = f"{what} is called by {thread}: {why}"
         self._findings.report("blocking-in-interrupt", message, object=name or function)
         return True
 
@@ -239,8 +240,8 @@ class Gates:
             others = ", ".join(str(e.thread) for e in path)
             a, b = self._names.of(first), self._names.of(second)
             self._findings.report(
-                "gate-order", f"{edge.thread} enters {b} while it holds {a}, and {others} the other way round: each "
-                "can come to wait for the other for ever", object=b,
+                "gate-order", f"{edge.thread} enters {b} while it holds {a}, and {others} in the opposite order: a "
+                "deadlock is possible", object=b,
                 details=tuple(f"{e.thread} in {self._spots.text(e.spot)}" for e in path),
             )  # fmt: skip
 

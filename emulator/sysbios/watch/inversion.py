@@ -165,13 +165,13 @@ class Inversion:
         lends = isinstance(found[0], GateMutexPri)
         rule = "priority-inversion" if wait.blocked or not lends else "no-inheritance"
         if not lends:
-            why = f"a {type(found[0]).__name__} lends its holder no priority"
+            why = f"a {type(found[0]).__name__} has no priority inheritance"
         elif wait.blocked:
-            why = f"{holder} blocked with the gate held, in {wait.blocked}"
+            why = f"{holder} blocked in {wait.blocked} and held the gate"
         elif wait.chained:
-            why = f"{holder} itself waited for {wait.chained}, and passes nothing on"
+            why = f"{holder} itself waited for {wait.chained}, and inheritance is not transitive"
         else:
-            why = f"{holder} lost what it had inherited before it left the gate"
+            why = f"{holder} lost the inherited priority before it left the gate"
         self._findings.report(
             rule, f"{thread} waited {waited:.1f} us for {name}, held by {wait.holder}, while {middle} ran for "
             f"{us(cycles):.1f} us: {why}", object=name, value=waited,

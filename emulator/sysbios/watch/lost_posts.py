@@ -56,8 +56,8 @@ class LostPosts:
         if loops and not any(loops) and place is not None:
             name = self._names.of(semaphore)
             self._findings.report_at(
-                place, "post-lost", f"{name} is binary and keeps one release: this statement has posted it again "
-                "before anybody took the last one, and who pends on it does one thing for each", object=name,
+                place, "post-lost", f"{name} is a binary semaphore: this statement posted it again before the last "
+                "post was taken, and the task that pends on it does one thing for each post", object=name,
                 how="dynamic",
             )  # fmt: skip
 

@@ -326,17 +326,17 @@ class Races:
             access = LatestAccess(low, False, low.protection, 0, 0, 0)
         verb = "writes" if access.write else "reads"
         writer = high if access.thread is low else low
-        nothing = "the interrupt is not held off" if self._threads.routines else "no common gate keeps them apart"
+        nothing = "the interrupt is not masked" if self._threads.routines else "they share no gate"
         said = f"{shared.object.declaration.path}: {access.thread} {verb} what {writer} writes, and {nothing}: "
         if lost:
-            return said + f"what {high} writes within a read and write of {low} is lost"
+            return said + f"a write of {high} between a read and a write of {low} is lost"
         if rule == "race":
-            return said + f"{high} can come between parts of it that belong together"
+            return said + f"{high} can interrupt {low} between related parts"
         if access.write and rule != "unmasked-long":
-            return said + "which of the values stays is a matter of who comes last"
+            return said + "the last write wins"
         if rule in ("race-long", "unmasked-long"):
-            return said + "it is whole only as long as the compiler moves its 32 bits by one instruction"
-        return said + "its 16 bits are whole, but can change between two reads"
+            return said + "it is atomic only while the compiler moves its 32 bits with one instruction"
+        return said + "each access is atomic, but the value can change between two reads"
 
     def _report(self, shared: Shared, rule: str, message: str, other: LatestAccess, at: Spot) -> None:
         """Report at the statement that runs, or at another one."""

@@ -150,7 +150,7 @@ class Releases:
         where = "no task has pended on it yet"
         if consumer is not None and isinstance(consumer.what, Task):
             spot = self._spots.of(consumer.what, self._threads.kernel.tasks.current)
-            where = f"{consumer} has not taken them, it stands in {self._spots.text(spot)}"
+            where = f"{consumer} does not take them: it is in {self._spots.text(spot)}"
         message = f"{name} holds {semaphore.count} releases, growing since {ms(since):.3f} ms: {where}"
         if source.piled is None:
             source.piled = self._findings.report("semaphore-pile-up", message, object=name, value=semaphore.count)

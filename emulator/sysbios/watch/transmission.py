@@ -85,7 +85,7 @@ class Transmission:
             return
         finding = self._findings.report(
             "buffer-rewritten", f"{path} is written by {thread} at word {offset} while {sending.thread} sends it to "
-            f"{sending.register} and has got to word {sending.offset}: neither the old content goes out nor the new",
+            f"{sending.register} and is at word {sending.offset}: a mixture of old and new content is sent",
             object=path, declaration=str(obj.declaration), value=offset,
             details=(
                 f"{sending.thread} reads it in {self._spots.text(sending.spot)}; the transmitter is busy until "

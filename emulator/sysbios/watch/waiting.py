@@ -146,8 +146,8 @@ class Patience:
         what = f"DelayUs({self._delays[thread]:g})" if kind == "delay" and thread in self._delays else "a polling loop"
         if busy.finding is None:
             busy.finding = self._findings.report_at(
-                place, "busy-wait", f"{thread} spends its time in {what} while {' and '.join(map(str, lower[:3]))} "
-                f"could run: a task that waits for time or an event leaves the CPU to the others", object=thread.name,
+                place, "busy-wait", f"{thread} busy-waits in {what} while {' and '.join(map(str, lower[:3]))} "
+                f"could run: a task should block while it waits", object=thread.name,
                 value=us(lasted), how="dynamic", task=thread.name,
             )  # fmt: skip
         elif isinstance(busy.finding.value, float):
@@ -162,8 +162,8 @@ class Patience:
         self._delays.pop(thread, None)
         if thread is not self._threads.main and not thread.is_task and microseconds >= BUSY_INTERRUPT_US:
             self._findings.report(
-                "busy-wait", f"{thread} waits {microseconds:g} us in DelayUs: no task, and nothing else at its level "
-                "or below, runs meanwhile", object=thread.name, value=float(microseconds),
+                "busy-wait", f"{thread} waits {microseconds:g} us in DelayUs: nothing of its level or below can run "
+                "in this time, and no task", object=thread.name, value=float(microseconds),
             )  # fmt: skip
 
     # Starvation
@@ -181,11 +181,11 @@ class Patience:
         place = self._spots.place(spot)
         if place is None:
             return
-        doing = {"delay": "waits in DelayUs", "poll": "polls", "": "computes"}[kind]
+        doing = {"delay": "was in DelayUs", "poll": "polled", "": "computed"}[kind]
         share = next((cycles for t, cycles in used if t is culprit), 0)
         message = (
-            f"{thread} was ready from {ms(waiting.since):.3f} ms and got no CPU for {ms(waited):.3f} ms: {culprit} had "
-            f"it for {ms(share):.3f} ms and {doing} here in {ticks} of the ticks"
+            f"{thread} was ready from {ms(waiting.since):.3f} ms and got no CPU for {ms(waited):.3f} ms: {culprit} "
+            f"used it for {ms(share):.3f} ms and {doing} here at {ticks} of the ticks"
         )
         details = tuple(f"{t} ran for {ms(cycles):.3f} ms of it" for t, cycles in used[:4])
         if waiting.finding is None:

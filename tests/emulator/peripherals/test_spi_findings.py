@@ -108,7 +108,7 @@ def again() -> uint16:
 """)
     twice.who()
     twice.again()
-    assert "no word has come" in twice.only("result-not-ready").message
+    assert "no word was received" in twice.only("result-not-ready").message
 
 
 def test_the_flag_of_a_word_that_was_not_read_ends_the_next_wait() -> None:

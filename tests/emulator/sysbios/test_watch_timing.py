@@ -145,7 +145,7 @@ def test_a_pile_up_gives_its_size_and_where_the_task_stands() -> None:
     assert 18 <= finding.value <= 21
     assert finding.object == "semA"
     assert specimen.statement(finding) == "Semaphore_post(semA)"
-    assert "High (priority 3) has not taken them" in finding.message
+    assert "High (priority 3) does not take them" in finding.message
 
 
 def test_starvation_names_the_busy_wait_and_its_length() -> None:
@@ -157,7 +157,7 @@ def test_starvation_names_the_busy_wait_and_its_length() -> None:
     assert finding.place is not None
     assert finding.place.function == "High"
     assert 149_000 < finding.value < 152_000
-    assert "waits in DelayUs" in finding.message
+    assert "was in DelayUs" in finding.message
 
 
 def test_a_burst_that_is_worked_off_is_no_pile_up() -> None:

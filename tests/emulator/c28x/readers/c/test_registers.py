@@ -144,7 +144,7 @@ def test_a_wait_for_a_block_that_is_not_modelled_ends(test: str, register: str) 
     robot = Robot(f"{HEAD}unsigned int f(void)\n{{\n    while ({test});\n    return 9;\n}}\n")
     assert robot.call("f") == 9
     assert touched(robot) == [
-        f"{register} reads what was written to it", f"{register} is waited for in vain, and changes by itself"
+        f"{register} reads what was written to it", f"{register} is polled: the emulator changes it to end the wait"
     ]  # fmt: skip
     assert set(robot.rules()) == {"unmodelled"}
 
