@@ -25,6 +25,16 @@ IMPATIENCE_S: Final = 1.0
 DEADLINE_S: Final = 1.0
 
 
+def meant() -> tuple[int, ...]:
+    """What ends a command here.
+
+    The end of the terminal does not, where nohup had it ignored.  Ctrl-C always does: a shell's `&` in a script ignores
+    it too, and whoever sends it to us then means it.
+    """
+    hangup = getattr(signal, "SIGHUP", None)
+    return tuple(each for each in SIGNALS if each != hangup or signal.getsignal(each) is not signal.SIG_IGN)
+
+
 def leaves() -> None:
     """From now on a signal ends the process as it stands, with one line."""
     _handle(_leave)
@@ -56,10 +66,8 @@ def ignored() -> None:
 
 
 def _handle(handler: signal._HANDLER) -> None:
-    for number in SIGNALS:
-        # Of a command that nohup or a shell's `&` started, some are ignored, and stay so.
-        if signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, handler)
+    for number in meant():
+        signal.signal(number, handler)
 
 
 def _leave(_number: int, _frame: FrameType | None) -> NoReturn:

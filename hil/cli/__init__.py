@@ -3,8 +3,8 @@
 A file is a command, or some that belong together, imported when one of them is chosen (`commands.py`).
 README.md is their map.
 
-Whatever a user can get wrong ends in one line on stderr, ``hil: error: ...``, and exit status 2.  A traceback is a
-defect of this project.
+Whatever a user can get wrong ends in one line on stderr, ``hil: error: ...``, and exit status 2.  Any other exception
+is a defect of this project: one line says where it is, exit status 70.
 """
 
 from __future__ import annotations
@@ -17,8 +17,9 @@ from typing import Annotated
 import typer
 
 from emulator import compiled
+from hil.cli import show
 from hil.cli.commands import Group
-from hil.cli.show import EXIT_BAD_INPUT, EXIT_FAILED, UserError, complain
+from hil.cli.show import EXIT_BAD_INPUT, EXIT_DEFECT, EXIT_FAILED, UserError, complain
 from hil.ending import EXIT_INTERRUPTED
 from hil.machine import FirmwareStopped
 
@@ -80,6 +81,14 @@ def invoke(arguments: list[str] | None = None) -> int:
         # The reader of our output is gone; nothing is left to say, and Python must not try at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
+    except Exception as error:
+        if os.environ.get("HIL_TRACEBACK"):
+            raise
+        if isinstance(error, OSError) and show.of_standard_output(error):
+            complain(f"standard output: {error.strerror}")
+            return EXIT_BAD_INPUT
+        complain(show.defect(error, sys.argv[1:] if arguments is None else arguments))
+        return EXIT_DEFECT
     if status == EXIT_INTERRUPTED:
         complain("interrupted")
     return int(status) if isinstance(status, int) else 0

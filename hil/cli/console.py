@@ -115,9 +115,11 @@ def _in_browser(port: str | None, host: str, number: int) -> None:
         raise ValueError("--view here is for a robot at --port; for an emulated one: hil run --view")
     from hil.view.server import serve_console
 
-    stop = show.StopRequest()
-    with show.ended_by_signals(stop):
-        line = serve_console(port, host=host, port=number, say=show.say, on_stop=stop.ends)
+    with ExitStack() as stack:
+        line = serve_console(
+            port, host=host, port=number, say=show.say,
+            on_stop=lambda stop: stack.enter_context(show.ended_by_signals(stop)),
+        )  # fmt: skip
     show.say(line.log.counts)
     if line.failure:
         raise PortError(line.failure)

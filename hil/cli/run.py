@@ -392,11 +392,12 @@ def view_until_stopped(
     """The page until Ctrl-C; `say` is told where it is."""
     from hil.view.server import run_view
 
-    stop = show.StopRequest()
-    with show.ended_by_signals(stop):
+    with ExitStack() as stack:
+        # Before it serves there is nothing to show, and a signal interrupts.
         engine = run_view(
-            setup, pace, orders, open_line, host=host, port=number, say=say, on_stop=stop.ends, read=read
-        )
+            setup, pace, orders, open_line, host=host, port=number, say=say,
+            on_stop=lambda stop: stack.enter_context(show.ended_by_signals(stop)), read=read,
+        )  # fmt: skip
     show.print_findings(engine.findings)
     robot = engine.kind.bench is not None
     counts = engine.line.log.counts if robot else engine.line.log.byte_counts

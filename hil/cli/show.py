@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
@@ -18,7 +19,7 @@ import typer
 from rich.console import Console
 
 from hil.client.orders import KEYWORDS
-from hil.ending import IMPATIENCE_S, SIGNALS
+from hil.ending import IMPATIENCE_S, meant
 from hil.extras import hint
 
 if TYPE_CHECKING:
@@ -29,6 +30,10 @@ if TYPE_CHECKING:
 
 EXIT_FAILED: Final = 1
 EXIT_BAD_INPUT: Final = 2
+#: A defect of this project (`EX_SOFTWARE` of sysexits.h).
+EXIT_DEFECT: Final = 70
+_ROOT: Final = Path(__file__).parents[2]
+_PACKAGES: Final = ("hil", "emulator", "firmware_model")
 #: A word longer than any path that somebody works in.
 _ENDLESS: Final = re.compile(r"\S{400,}")
 #: Options of commands that run the robot.
@@ -87,9 +92,37 @@ def user_errors() -> Iterator[None]:
         reason = str(error) or type(error).__name__
         if isinstance(error, OSError) and error.strerror and error.filename:
             reason = f"{error.filename}: {error.strerror}"
-        elif isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EFBIG, errno.EIO, errno.EBADF):
-            reason = f"standard output: {error.strerror}"  # files are named by who writes them
+        elif isinstance(error, OSError) and of_standard_output(error):
+            reason = f"standard output: {error.strerror}"
         raise UserError(" ".join(reason.split())) from error
+
+
+def of_standard_output(error: OSError) -> bool:
+    """Whether it is standard output that cannot be written: files are named by who writes them."""
+    return not error.filename and error.errno in (errno.ENOSPC, errno.EFBIG, errno.EIO, errno.EBADF)
+
+
+def defect(error: Exception, arguments: Iterable[str]) -> str:
+    """What is said of an exception that nobody here expected: what, in which command, where in our code, what to do."""
+    import traceback
+
+    from hil.machine import FAULT_OF_OURS
+
+    frames = traceback.extract_tb(error.__traceback__)
+    places = [(frame, _in_ours(Path(frame.filename))) for frame in frames]
+    at = next((f", at {place.as_posix()}:{frame.lineno}" for frame, place in reversed(places) if place), "")
+    command = next((each for each in arguments if not each.startswith("-")), "")
+    what = " ".join(f"{type(error).__name__}: {error}".split())
+    return (
+        f"{FAULT_OF_OURS} in hil{f' {command}' if command else ''}{at}: {what}; "
+        "HIL_TRACEBACK=1 shows the traceback: report it with that"
+    )
+
+
+def _in_ours(file: Path) -> Path | None:
+    """A file of this project as a path from its root; None: somebody else's."""
+    file = file if file.is_absolute() else _ROOT / file  # of a compiled module
+    return file.relative_to(_ROOT) if any(file.is_relative_to(_ROOT / name) for name in _PACKAGES) else None
 
 
 def complain(message: str) -> None:
@@ -194,7 +227,7 @@ def ended_by_signals(stop: Callable[[], None]) -> Iterator[None]:
         elif signum == signal.SIGINT and now - first[0] > IMPATIENCE_S:
             raise KeyboardInterrupt
 
-    previous = {number: signal.signal(number, handler) for number in SIGNALS}
+    previous = {number: signal.signal(number, handler) for number in meant()}
     try:
         yield
     finally:

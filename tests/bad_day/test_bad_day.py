@@ -56,12 +56,19 @@ def test_the_walk_meets_all_that_the_commands_take() -> None:
     assert {commands.chosen(seed) for seed in range(len(commands.CASES))} == set(commands.CASES)
 
 
+def _defect() -> int:
+    """A command of which an exception escapes that nobody expected.  In a child, so the application is lost with it."""
+    hil.cli.app = lambda **_: {}["nothing"]  # type: ignore[assignment]
+    return hil.cli.invoke(["board", "--json"])
+
+
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="wants a system that forks")
 @pytest.mark.parametrize(
     ("does", "found"),
     [
         (lambda: 2, "0 lines"),
         (lambda: int("x"), "status 99"),
+        (lambda: _defect(), "status 70"),
         (lambda: os.kill(os.getpid(), signal.SIGKILL), "signal 9"),
         (lambda: len(bytearray(400 << 20)) * 0, "MB"),
         (lambda: hil.cli.complain("x y " * 2000) or 2, "endless"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -51,6 +52,34 @@ def test_an_unknown_command_is_one_line(capsys: pytest.CaptureFixture[str]) -> N
     assert err.startswith("hil: error: ")
     assert "fly" in err
     assert err.count("\n") == 1
+
+
+def test_a_defect_of_ours_is_one_line_that_says_where_it_is(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def of_this_project(**_: object) -> None:
+        hil.conformance.check("nothing", {}, None)  # type: ignore[arg-type]
+
+    monkeypatch.delenv("HIL_TRACEBACK", raising=False)
+    monkeypatch.setattr("hil.cli.app", of_this_project)
+    assert invoke(["--flag", "conformance", "x"]) == show.EXIT_DEFECT
+    told = capsys.readouterr().err
+    begin = r"hil: error: an error of this tool in hil conformance, at hil/\S+\.py:\d+: [A-Z]\w+Error: "
+    assert re.fullmatch(rf"{begin}.*; HIL_TRACEBACK=1 shows the traceback: report it with that\n", told)
+    monkeypatch.setenv("HIL_TRACEBACK", "1")
+    with pytest.raises((KeyError, AttributeError)):
+        invoke(["conformance"])
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a file that is always full (/dev/full of Linux)")
+@pytest.mark.parametrize("arguments", [["--version"], ["board"], ["explain"]])
+def test_standard_output_that_is_full_is_one_line(arguments: list[str]) -> None:
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "hil", *arguments], cwd=REPOSITORY, stdout=full, stderr=subprocess.PIPE, text=True,
+            timeout=60, check=False,
+        )  # fmt: skip
+    assert (done.returncode, done.stderr) == (2, "hil: error: standard output: No space left on device\n")
 
 
 def test_completion_lists_the_commands() -> None:

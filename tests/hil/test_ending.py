@@ -1,0 +1,61 @@
+"""What ends a command: Ctrl-C in a script's background too; under nohup not the end of the terminal."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from hil import ending
+from hil.cli import show
+
+pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="wants the signals of POSIX")
+#: Goes on until a signal ends it, or it is asked for a line.
+WAITS = "import sys; from hil import ending; ending.{means}(); print(flush=True); sys.stdin.readline(); print('on')"
+
+
+def ended(means: str, number: int, ignored: int) -> tuple[int, str]:
+    """Status and output of a process that was started with a signal ignored, and got another."""
+    was = signal.signal(ignored, signal.SIG_IGN)
+    try:
+        process = subprocess.Popen(
+            [sys.executable, "-c", WAITS.format(means=means)], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+    finally:
+        signal.signal(ignored, was)
+    assert process.stdout is not None
+    process.stdout.readline()
+    process.send_signal(number)
+    said, _ = process.communicate("\n", timeout=60)
+    return process.returncode, said
+
+
+@pytest.mark.parametrize("means", ["leaves", "interrupts"])
+def test_ctrl_c_ends_what_a_script_started_in_the_background(means: str) -> None:
+    status, said = ended(means, signal.SIGINT, ignored=signal.SIGINT)
+    assert status != 0
+    assert said == ""
+
+
+@pytest.mark.parametrize("means", ["leaves", "interrupts"])
+def test_under_nohup_the_end_of_the_terminal_ends_nothing(means: str) -> None:
+    assert ended(means, signal.SIGHUP, ignored=signal.SIGHUP) == (0, "on\n")
+
+
+def test_nor_does_it_end_a_command_that_has_more_to_show() -> None:
+    stopped: list[int] = []
+    was = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with show.ended_by_signals(lambda: stopped.append(1)):
+            os.kill(os.getpid(), signal.SIGHUP)
+            assert stopped == []
+            os.kill(os.getpid(), signal.SIGTERM)
+            assert stopped == [1]
+        assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+        assert signal.SIGHUP not in ending.meant()
+    finally:
+        signal.signal(signal.SIGHUP, was)
