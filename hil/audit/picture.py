@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from hil.audit.run import DemonstrationOutcome
-from hil.files import replacing
+from hil.client.plot import save
 
 #: Up to so many points are shown as points.
 MARKED: Final = 60
@@ -34,5 +34,4 @@ def save_picture(outcome: DemonstrationOutcome, file: Path) -> None:
         if picture.plane:
             axes.set_aspect("equal", adjustable="box")
     figure.suptitle(f"{outcome.id}: {pictures[0][1].title}")
-    with replacing(file) as new:
-        figure.savefig(new)
+    save(figure, file, dpi=100)

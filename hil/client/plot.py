@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -75,10 +76,12 @@ def plot_drive(
     ), path)  # fmt: skip
 
 
-def save(figure: Figure, path: Path) -> None:
-    """Write a figure whole or not at all: PNG, SVG or PDF by the suffix."""
+def save(figure: Figure, path: str | Path, *, dpi: float = 120) -> None:
+    """Write a figure whole or not at all: PNG, SVG or PDF by the suffix.  Raises OSError, which names `path`."""
+    drawn = io.BytesIO()  # where a disk is full, Matplotlib's PDF fails in ways of its own
+    figure.savefig(drawn, format=Path(path).suffix[1:].lower(), dpi=dpi)
     with replacing(path) as new:
-        figure.savefig(new, dpi=120)
+        new.write_bytes(drawn.getbuffer())
 
 
 def drive_figure(

@@ -17,7 +17,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from hil.files import replacing
+from hil.client.plot import save
 from hil.robot.options.in_world import sonar_mounts
 from hil.robot.options.names import FIVE_SONARS
 from hil.world.geometry import Segment
@@ -131,5 +131,4 @@ def plot(path: str | Path, found: Sequence[BlindSpots]) -> None:
     figure.colorbar(mesh, ax=list(axes), label="heard by one turn of the ring", shrink=0.8)
     title = "perpendicular of the wall (degrees left of ahead), its distance (m); blue: 40 and 50 degrees"
     figure.suptitle(title, fontsize=9)
-    with replacing(path) as new:
-        figure.savefig(new, dpi=100)
+    save(figure, path, dpi=100)

@@ -26,7 +26,8 @@ import numpy.typing as npt
 from emulator.clock import SYSCLK_HZ
 from emulator.image import Firmware
 from firmware_model.image import link
-from hil.files import read_text, replacing
+from hil.client.plot import save
+from hil.files import read_text
 from hil.robot.board import RobotBoard
 from hil.world.geometry import Segment
 from hil.world.sonar_rays import DEFAULT_MOUNTS, SonarRays
@@ -334,5 +335,4 @@ def plot(path: str | Path, found: Sequence[Calibration], title: str) -> None:
     axes[0][0].set_ylabel("distance (cm)")
     axes[1][0].set_ylabel("read minus distance (cm)")
     figure.suptitle(title, fontsize="medium")
-    with replacing(path) as new:
-        figure.savefig(new, dpi=120)
+    save(figure, path)

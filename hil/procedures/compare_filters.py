@@ -28,7 +28,7 @@ import numpy as np
 
 from emulator.image import Firmware
 from firmware_model.corrections import ALL, resolve
-from hil.files import replacing
+from hil.client.plot import save
 from hil.procedures.calibrate import FRONT, AtWall, LinearFit, Numbers, calibrate, emulate, parse
 
 #: The distances of annex A.3.2.
@@ -179,5 +179,4 @@ def plot(path: str | Path, found: Sequence[Filter], thesis: Sequence[Filter]) ->
         axis.set_xlabel("distance (cm)")
         axis.grid(alpha=0.3)
     axes[0].set_ylabel("read minus distance (cm)")
-    with replacing(path) as new:
-        figure.savefig(new, dpi=100)
+    save(figure, path, dpi=100)

@@ -24,7 +24,7 @@ from emulator.clock import SYSCLK_HZ
 from firmware_model.corrections import ALL, resolve
 from firmware_model.image import link
 from hil.bench import Bench
-from hil.files import replacing
+from hil.client.plot import save
 from hil.machine import Setup
 from hil.robot.board import RobotBoard
 from hil.world.geometry import Segment
@@ -190,5 +190,4 @@ def plot(path: str | Path, responses: Sequence[StepResponse]) -> None:
     axes[0][0].set_ylabel("angle (rad)")
     axes[0][0].legend(fontsize="x-small")
     axes[1][0].set_ylabel("action W (rad/s)")
-    with replacing(path) as new:
-        figure.savefig(new, dpi=100)
+    save(figure, path, dpi=100)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from hil.files import replacing
+from hil.client.plot import save
 from hil.recording.compare import QUANTITIES, PairedRuns, RecordedRun
 
 
@@ -42,8 +42,7 @@ def plot_comparison(path: Path, comparison: PairedRuns) -> None:
         axis.tick_params(labelsize="x-small")
         axis.grid(alpha=0.3)
     axes[-1].set_xlabel("time (s)" if timed else "frame")
-    with replacing(path) as new:
-        figure.savefig(new, dpi=120)
+    save(figure, path)
 
 
 def _abscissa(comparison: PairedRuns, run: RecordedRun, index: int, timed: bool) -> list[float]:

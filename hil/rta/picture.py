@@ -7,7 +7,7 @@ from pathlib import Path
 from textwrap import fill
 from typing import Final
 
-from hil.files import replacing
+from hil.client.plot import save
 from hil.rta.observe import NS_PER_CYCLE, Activation
 
 _ABOVE: Final = "#9a9a9a"
@@ -66,5 +66,4 @@ def draw_moment(
     if held:
         patches.append(Patch(color=_IN_GATE, label=fill(f"in a gate: {', '.join(held)}", 60)))
     figure.legend(handles=patches, loc="outside lower center", ncols=len(patches), fontsize="small")
-    with replacing(path) as new:
-        figure.savefig(new, dpi=110)
+    save(figure, path, dpi=110)

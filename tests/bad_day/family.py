@@ -30,7 +30,7 @@ def _mutant(seed: int) -> str:
 FIGURES = (
     Figure("command lines", "values that nobody means, for each option and argument", commands.case, 120, 20, _no_fork),
     Figure("signals", "Ctrl-C, SIGTERM, SIGHUP at any moment of long commands", signals.case, 9, 3, _no_fork),
-    Figure("files", "outputs and logs on a disk that is full", files.case, 26, 13, _no_fork),
+    Figure("files", "outputs and logs: disk full, no folder, killed", files.case, len(files.OUTPUTS), 13, _no_fork),
     Figure("slow readers", "pseudo-terminal, TCP, RFC 2217, slower than the line", serial.readers, 9, 9, _no_fork),
     Figure("crowds", "ports opened, closed and shouted at by many", serial.crowds, 30, 30, _no_fork),
     Figure("serial bytes", "bytes to the robot that are no orders, or nearly", serial.hostile_bytes, 30, 30),

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 import pytest
 
 import hil.cli
-from tests.bad_day import commands, view
+from tests.bad_day import commands, files, view
 from tests.bad_day.family import FIGURES, tried
 from tests.bad_day.figure import Figure, forked
 
@@ -54,6 +54,12 @@ def test_the_walk_meets_all_that_the_commands_take() -> None:
     assert named <= walked
     assert len({case.command for case in commands.CASES}) >= 25
     assert {commands.chosen(seed) for seed in range(len(commands.CASES))} == set(commands.CASES)
+
+
+def test_each_option_that_writes_is_tried_on_a_bad_disk() -> None:
+    writing = set(files.writing())
+    assert writing == files.OUTPUTS.keys() | files.LEFT_OUT.keys()
+    assert len(files.OUTPUTS) >= 25
 
 
 def _defect() -> int:
