@@ -31,6 +31,7 @@ from emulator.chip import (
     EQEP_COUNT,
     I2C_PIE,
     SCI_PIE,
+    SPI_PIE,
     XINT_INPUT,
     XINT_PIE,
     Chip,
@@ -343,6 +344,9 @@ class Connections:
         for letter, (receive, _) in SCI_PIE.items():
             if (group, n) == receive:
                 return self._no_level(letter)
+        for letter, lines in SPI_PIE.items():
+            if (group, n) in lines:
+                return self._no_word(letter, receive=(group, n) == lines[0])
         if (group, n) == (1, 7):
             return self._no_timer(0)
         if group == 4 and n <= ECAP_COUNT:
@@ -368,6 +372,21 @@ class Connections:
         if self._stuck(register, "RXFFIL", lambda level: level <= FIFO_DEPTH):
             level = self._value(register, "RXFFIL")
             return Missing(f"{register}.RXFFIL = {level}: the FIFO holds {FIFO_DEPTH}", register, "RXFFIL")
+        return None
+
+    def _no_word(self, letter: str, *, receive: bool) -> Missing | None:
+        """Why a SPI never gives the interrupt of one direction; None if it can."""
+        block, way = f"Spi{letter.lower()}Regs", "RX" if receive else "TX"
+        register, enable = f"{block}.SPIFF{way}", f"{way}FFIENA"
+        if self._stuck(f"{block}.SPIFFTX", "SPIFFENA", bool):
+            if not receive:
+                return Missing(f"{block}.SPIFFTX.SPIFFENA = 0: without FIFO all interrupts are those of the RX line",
+                               f"{block}.SPIFFTX", "SPIFFENA")  # fmt: skip
+            stuck = self._stuck(f"{block}.SPICTL", "SPIINTENA", bool)
+            return Missing(f"{block}.SPICTL.SPIINTENA = 0", f"{block}.SPICTL", "SPIINTENA") if stuck else None
+        if self._value(f"{block}.SPIFFTX", "SPIFFENA") and self._stuck(register, enable, bool):
+            overrun = receive and not self._stuck(f"{block}.SPICTL", "OVERRUNINTENA", bool)
+            return None if overrun else Missing(f"{register}.{enable} = 0", register, enable)
         return None
 
     def _no_transfer(self, n: int) -> Missing | None:

@@ -123,8 +123,9 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
             Flow(function).run()
     objects = [(variable, variable.initial) for module in modules for variable in module.variables]
     entries = _entries(modules, options)
-    findings = check(modules, dict(objects), entries) if options.static else []
-    suspicions = Stamps(modules, entries).suspicions()
+    stamps = Stamps(modules, entries)
+    suspicions = stamps.suspicions()
+    findings = check(modules, dict(objects), stamps, entries) if options.static else []
     names_compared = compared(f for module in modules for f in module.functions)
     names_limited = limited(f for module in modules for f in module.functions)
     costs = Costs(float_division(options.float_division))

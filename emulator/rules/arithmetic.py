@@ -111,12 +111,16 @@ has passed.
 
 Stamps are followed from CPU timers, eCAPs, the kernel's clock and what interrupt routines count, through variables,
 members and functions. The finding is made when the counter has wrapped between the two and the comparison goes wrong.
+A stamp of 32 bits of which an object of 16 bits keeps the lower half, and which is then held against 32 bits, is seen
+in the text: the run need not last 65536 counts.
+
 Comparing for order is right where a branch takes the difference: `if (now < last) d = 65536 - last + now;`.
 
 **Mend:** compare differences: `(unsigned int) (now - last) >= INTERVAL`, or `(int) (now - end) >= 0` for a time that is
 at most half of the range ahead.
 """,
         "ISO C 6.2.5 p9; TRM, CPU timers",
+        how="dynamic/static",
     ),
     _rule(
         "sign-compare",

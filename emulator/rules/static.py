@@ -83,6 +83,21 @@ Cases that fall through and add to each other are not reported.
         "ISO C 6.8.4.2; CERT MSC17-C",
     ),
     _rule(
+        "own-copy",
+        Severity.ERROR,
+        "A difference is taken of an object and its own copy.",
+        """
+`last = now; speed = now - last;` stores before it subtracts: the speed is always 0, and no value of the sensor changes
+that. A quotient of the two is always 1.
+
+Found in the text, where nothing between the copy and the difference can have changed one of them. Volatile objects are
+silent.
+
+**Mend:** subtract first, then store.
+""",
+        "ISO C 6.8 p4: full expressions in their order",
+    ),
+    _rule(
         "constant-condition",
         Severity.WARNING,
         "A condition is always true or always false.",

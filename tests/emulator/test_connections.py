@@ -94,6 +94,8 @@ void main(void)
 }
 """
 
+GATE = "CpuSysRegs.PCLKCR8.bit.SPI_A = 1;"
+
 
 def told(tmp_path: Path, text: str, rule: str = "not-connected", seconds: float = 0.004) -> list[Finding]:
     """What the check of a program says by one rule."""
@@ -382,3 +384,22 @@ def test_a_compare_value_that_is_computed_beyond_the_period(tmp_path: Path, stat
     text = RIGHT.replace(tick, f"{tick}\n{statement}\n")
     found = told(tmp_path, text, "compare-above-period", seconds=0.006)
     assert [f.place.line for f in found if f.place] == ([] if silent else [text.splitlines().index(statement) + 1])
+
+
+@pytest.mark.parametrize(("line", "setting", "why"), [
+    (1, "SpiaRegs.SPIFFTX.all = 0xE040; SpiaRegs.SPIFFRX.all = 0x6061;", ""),
+    (1, "SpiaRegs.SPIFFTX.all = 0xE040; SpiaRegs.SPIFFRX.all = 0x6041;", "SPIFFRX.RXFFIENA = 0"),
+    (1, "SpiaRegs.SPIFFTX.all = 0xE040; SpiaRegs.SPIFFRX.all = 0x6041; SpiaRegs.SPICTL.bit.OVERRUNINTENA = 1;", ""),
+    (1, "SpiaRegs.SPIFFTX.all = 0xE040; if (Order) SpiaRegs.SPIFFRX.bit.RXFFIENA = 1;", ""),
+    (1, "SpiaRegs.SPICTL.bit.SPIINTENA = 1;", ""),
+    (1, "SpiaRegs.SPICTL.bit.TALK = 1;", "SPICTL.SPIINTENA = 0"),
+    (2, "SpiaRegs.SPIFFTX.all = 0xE060;", ""),
+    (2, "SpiaRegs.SPIFFTX.all = 0xE040;", "SPIFFTX.TXFFIENA = 0"),
+    (2, "SpiaRegs.SPICTL.bit.SPIINTENA = 1;", "SPIFFTX.SPIFFENA = 0"),
+])  # fmt: skip
+def test_an_interrupt_of_the_spi_is_enabled_there_too(tmp_path: Path, line: int, setting: str, why: str) -> None:
+    vector = "SPIA_RX_INT" if line == 1 else "SPIA_TX_INT"
+    text = RIGHT.replace("    EALLOW;\n", f"    EALLOW;\n    PieVectTable.{vector} = &edge;\n    {GATE}\n", 1)
+    setting += f"\n    PieCtrlRegs.PIEIER6.bit.INTx{line} = 1;"
+    text = text.replace("    IER |=", f"    {setting}\n    IER |= M_INT6 |")
+    assert [why in finding.message for finding in told(tmp_path, text)] == [True] * bool(why)

@@ -9,10 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from emulator.c28x.passes.copies import check_copies
 from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
 from emulator.c28x.passes.null_tests import NullTests
 from emulator.c28x.passes.report import StaticFinding, StaticReport
+from emulator.c28x.passes.stamps import Stamps
 from emulator.c28x.passes.states import States
 from emulator.c28x.passes.stores import check_stores
 from emulator.c28x.passes.values import ValueChecks, file_scope
@@ -20,14 +22,17 @@ from emulator.c28x.passes.waiting import WriterAnalysis, check_waiting
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Variable
+from emulator.c28x.tree_queries import source_text
 
 
 def check(
-    modules: Iterable[Module], objects: Mapping[Variable, list[Any] | None], entries: frozenset[str] = frozenset()
+    modules: Iterable[Module], objects: Mapping[Variable, list[Any] | None], stamps: Stamps,
+    entries: frozenset[str] = frozenset(),
 ) -> list[StaticFinding]:
     """What the trees of `modules` show.
 
-    `objects` are the file-scope objects with the values they start from (None: no initialiser); `entries` are functions
+    `objects` are the file-scope objects with the values they start from (None: no initialiser); `stamps` are those of
+    these modules, whose `suspicions` have been asked for; `entries` are functions
     (`module.name`) that the board itself enters.
     """
     modules = list(modules)
@@ -48,6 +53,7 @@ def check(
             ValueChecks(function, report, unit.symbols).run()
             Liveness(function, report).run()
             check_stores(function, report)
+            check_copies(function, report)
             NullTests(function, report).run()
             check_waiting(function, threads, report)
             if not in_header(function.where, unit.file):
@@ -56,5 +62,11 @@ def check(
         for variable in module.variables:
             file_scope(variable, initialisers[variable], report)
     States(modules, entries).check(reports)
+    owners = {function: report for module, report in reports.items() for function in module.functions}
+    for function, s, stamp, against in stamps.cuts():
+        name = source_text(stamp)
+        wrong = f"{source_text(against)} is wrong once it is beyond 65535"
+        message = f"{name} has 32 bits, and 16 of them are kept: {wrong}"
+        owners[function].report(function, s.where, "stamp-compare", message, object=name)
     check_image(modules, mentions, reports, entered, entries=bool(entries))
     return found

@@ -176,6 +176,33 @@ class Stamps:
                 return DEADLINE if a or (b and op == "+") else NONE
         return NONE
 
+    def cuts(self) -> Iterator[tuple[Function, Stmt, Expr, Expr]]:
+        """Stamps of 32 bits of which an object keeps 16, and which are then held against 32 bits: the function and
+        statement that cut, the stamp, and the difference or comparison.  Behind `suspicions`.
+        """
+        cut: dict[Key, tuple[Function, Stmt, Expr]] = {}
+        for function in self.functions if self.kinds else ():
+            for s in statements(function.body):
+                value: Any = None
+                key: Key | None = None
+                match s:
+                    case Assign(target=LValue() as target, value=value):
+                        key = key_of(target)
+                    case Declare(variable=variable, value=Expr() as value):
+                        key = (variable, 0)
+                stamp = _cut(value)
+                if key is not None and stamp is not None and self.kind(stamp) == STAMP:
+                    cut.setdefault(key, (function, s, stamp))
+        for p in (p for function in self.functions if cut for p in within(function.body)):
+            if not isinstance(p, Binary | Compare) or (isinstance(p, Binary) and p.op != "-"):
+                continue
+            for side, other in ((p.left, p.right), (p.right, p.left)):
+                small, large = bare(side), bare(other)
+                if isinstance(small, Load) and isinstance(large, Load) and _wide(side) and _wide(large):
+                    found = cut.get(key_of(small.lvalue) or ())
+                    if found is not None:
+                        yield (*found, p)
+
     # Suspicions
 
     def of_statement(self, s: Stmt) -> dict[int, str]:
@@ -214,6 +241,19 @@ class Stamps:
             case Convert(ctype=IntType(signed=True), operand=Binary(op="-", left=now, right=past), explicit=True):
                 return self.kind(now) == STAMP == self.kind(past)
         return False
+
+
+def _wide(e: Expr) -> bool:
+    return isinstance(e.ctype, IntType) and e.ctype.bits == 32
+
+
+def _cut(e: Any) -> Expr | None:
+    """The number of 32 bits of which an expression keeps 16."""
+    while isinstance(e, Convert):
+        if isinstance(e.ctype, IntType) and e.ctype.bits == 16 and _wide(e.operand):
+            return e.operand
+        e = e.operand
+    return None
 
 
 def key_of(lvalue: LValue) -> Key | None:

@@ -46,7 +46,8 @@ STATIC = (
     *(
         f"emulator/c28x/passes/{name}.py"
         for name in (
-            "blocks", "checks", "flow", "formats", "names", "null_tests", "states", "stores", "values", "waiting"
+            "blocks", "checks", "copies", "flow", "formats", "names", "null_tests", "states", "stores", "values",
+            "waiting",
         )
     ),
     "emulator/c28x/build/", "emulator/c28x/readers/",

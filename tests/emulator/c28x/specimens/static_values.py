@@ -8,6 +8,108 @@ from tests.emulator.c28x.specimens import static_pair
 
 PAIRS: Final = (
     static_pair(
+        "stamp-compare",
+        "a stamp of 32 bits is kept in 16, and compared with 32",
+        """
+class JOB(struct):
+    next: uint32
+    late: uint16
+Ticks: volatile[uint32] = 0
+Job: JOB
+def Tick() -> void:
+    Ticks += 1
+Vector: funcptr = Tick
+def After() -> void:
+    Vector()
+def Due() -> int16:
+    now: uint16 = Ticks  # <-
+    if int32(now - Job.next) >= 0:
+        Job.late += 1
+    return Job.late
+""",
+        """
+class JOB(struct):
+    next: uint32
+    late: uint16
+Ticks: volatile[uint32] = 0
+Job: JOB
+def Tick() -> void:
+    Ticks += 1
+Vector: funcptr = Tick
+def After() -> void:
+    Vector()
+def Due() -> int16:
+    now: uint32 = Ticks
+    if int32(now - Job.next) >= 0:
+        Job.late += 1
+    return Job.late
+""",
+    ),
+    static_pair(
+        "stamp-compare",
+        "a stamp of 32 bits is kept in 16",
+        """
+class JOB(struct):
+    next: uint32
+    late: uint16
+Ticks: volatile[uint32] = 0
+Job: JOB
+def Tick() -> void:
+    Ticks += 1
+Vector: funcptr = Tick
+def After() -> void:
+    Vector()
+def Due() -> int16:
+    now: uint16 = Ticks  # <-
+    if int32(now - Job.next) >= 0:
+        Job.late += 1
+    return Job.late
+""",
+        """
+class JOB(struct):
+    next: uint32
+    late: uint16
+Ticks: volatile[uint32] = 0
+Job: JOB
+def Tick() -> void:
+    Ticks += 1
+Vector: funcptr = Tick
+def After() -> void:
+    Vector()
+def Due() -> int16:
+    now: uint16 = Ticks
+    if int16(now - uint16(Job.next)) >= 0:
+        Job.late += 1
+    return Job.late
+""",
+    ),
+    static_pair(
+        "own-copy",
+        "the last position is stored before the difference is taken",
+        """
+Last: int32 = 0
+Turns: int32 = 0
+def Speed(now: int32) -> int32:
+    moved: int32
+    Last = now
+    Turns += 1
+    moved = now - Last  # <-
+    return moved
+""",
+        """
+Last: int32 = 0
+Turns: int32 = 0
+def Speed(now: int32) -> int32:
+    moved: int32
+    moved = now - Last
+    Last = now
+    now -= 1
+    Turns = now - Last
+    return moved
+""",
+        ("Speed", (7,)),
+    ),
+    static_pair(
         "constant-condition",
         "a range as in mathematics",
         """

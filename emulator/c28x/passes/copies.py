@@ -1,0 +1,89 @@
+"""Static check of differences: an object less its own copy is always 0, a quotient of the two always 1.
+
+`last = now; speed = now - last;` stores before it subtracts.  Copies are followed from statement to statement of a
+block, and into the branches of an `if`.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.passes.values import volatile
+from emulator.c28x.tree import (
+    Assign,
+    Binary,
+    Declare,
+    Evaluate,
+    Expr,
+    Function,
+    If,
+    Load,
+    LValue,
+    Stmt,
+    Variable,
+)  # fmt: skip
+from emulator.c28x.tree_queries import OBSERVABLE, bare, blocks, parts, roots, source_text
+
+#: Operator -> what it gives of an object and its copy.
+_RESULT: Final = {"-": 0, "/": 1, "^": 0}
+#: The two ends of a copy.
+_Copies = list[tuple[LValue, LValue]]
+
+
+def check_copies(function: Function, report: StaticReport) -> None:
+    """Report the differences of a function whose operands are copies of each other."""
+    _block(function, function.body, [], report)
+
+
+def _block(function: Function, body: list[Stmt], copies: _Copies, report: StaticReport) -> None:
+    for s in body:
+        for e in (part for root in roots(s) for part in parts(root)) if copies else ():
+            if isinstance(e, Binary) and e.op in _RESULT and _are_copies(e, copies):
+                message = f"{source_text(e)} is always {_RESULT[e.op]}: one has just been copied to the other"
+                report.report(function, s.where, "own-copy", message, object=source_text(e))
+        inner = blocks(s)
+        for block in inner:
+            _block(function, block, list(copies) if isinstance(s, If) else [], report)
+        copies = [] if inner or not isinstance(s, Assign | Declare | Evaluate) else _behind(s, copies)
+
+
+def _are_copies(e: Binary, copies: _Copies) -> bool:
+    left, right = bare(e.left), bare(e.right)
+    if not isinstance(left, Load) or not isinstance(right, Load):
+        return False
+    both = left.lvalue, right.lvalue
+    return any(both in ((a, b), (b, a)) for a, b in copies)
+
+
+def _behind(s: Assign | Declare | Evaluate, copies: _Copies) -> _Copies:
+    """The copies that there are behind a statement."""
+    called = any(isinstance(part, OBSERVABLE) for root in roots(s) for part in parts(root))
+    written: Variable | Expr | None = None
+    target: LValue | None = None
+    match s:
+        case Assign(target=LValue() as target):
+            written = target.root
+        case Declare(variable=written):
+            target = LValue(written.ctype, written)
+    left = [
+        pair for pair in copies
+        if not any(end.root is written or (called and _reached(end)) or isinstance(written, Expr) for end in pair)
+    ]  # fmt: skip
+    value = s.value
+    match value:
+        case Load(lvalue=source) if target is not None and _plain(target) and _plain(source):
+            if source.root is not written and not called:
+                left.append((target, source))
+    return left
+
+
+def _plain(lvalue: LValue) -> bool:
+    """Whether an object is one scalar with a name, which only statements change."""
+    root = lvalue.root
+    return isinstance(root, Variable) and not lvalue.indices and not volatile(lvalue) and lvalue.ctype.leaves == 1
+
+
+def _reached(lvalue: LValue) -> bool:
+    """Whether a function that is called may change an object."""
+    return isinstance(lvalue.root, Variable) and (lvalue.root.kind == "global" or lvalue.root.in_memory)
