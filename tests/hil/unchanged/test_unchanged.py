@@ -21,10 +21,6 @@ CAUSED: Final = "a part's finding stands at the statement that set the transfer 
 #:           after="firmware_model/us.py:140 Read_Distance", because="the statement's second line holds the access"),
 #:     New(rule="unsequenced", because="two effects on one object without an order are a finding now"),
 ALLOWED: Final[tuple[Allowed, ...]] = (
-    Reworded(
-        rule="null-dereference", before=r"^pointer\b", after="Find(...)",
-        because="a pointer that a function returns is told by the call",
-    ),
     *(
         Moved(
             rule=rule, object=f"sonar {which} AN", before="firmware_model/us.py:106 Read_Channel",
