@@ -122,7 +122,8 @@ class Linked:
             where = Where(variable.declaration.file, variable.declaration.line)
             message = f"{variable.declaration.name} does not fit: the objects of the image have {self._words} words"
             raise SourceError.at(where, f"{message}, RAM and flash of the chip {MEMORY_WORDS}")
-        obj = self.runtime.memory.place(variable.declaration)
+        memory, at = self.runtime.memory, variable.address
+        obj = memory.place(variable.declaration) if at is None else memory.name_address(variable.declaration, at)
         self.objects[variable.declaration.path] = obj
         name = object_name(variable)
         self.namespace[f"_g_{name}"] = obj.data
@@ -206,6 +207,7 @@ class Linked:
             "_c_address": runtime.address, "_c_code": runtime.code, "_c_function_at": runtime.function_at,
             "_c_cast": runtime.cast, "_c_pointer_at": runtime.pointer_at,
             "_c_register": runtime.register, "_c_register_address": self._register_address,
+            "_c_given": runtime.given, "_c_taken": runtime.taken,
             "_c_enter": runtime.enter, "_c_retire": runtime.retire, "_c_callable": runtime.callable,
             "_c_oob_deep_load": runtime.oob_deep_load, "_c_oob_deep_store": runtime.oob_deep_store,
             "_c_stale": runtime.stale, "_c_wrapped": runtime.wrapped, "_c_octet": runtime.octet,

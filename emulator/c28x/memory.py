@@ -311,6 +311,10 @@ class Memory:
         self._objects.insert(at, obj)
         return obj
 
+    def name_address(self, declaration: Declaration, address: int) -> Object:
+        """An object that only names an address, as a symbol of the linker: whoever looks there does not find it."""
+        return Object(declaration, address)
+
     def place_block(self, block: Object) -> None:
         """A block of a heap is given out: it lies over whatever the heap is made of."""
         self._longest_block = max(self._longest_block, block.words)

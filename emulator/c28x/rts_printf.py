@@ -20,7 +20,7 @@ from typing import Any, Final
 
 from emulator.c28x.memory import Pointer
 from emulator.c28x.rts_strings import Strings
-from emulator.c28x.varargs import Varargs, signed16, signed32
+from emulator.c28x.varargs import ArgumentBlock, Varargs, signed16, signed32
 
 _SPECIFICATION: Final = re.compile(
     r"%(?P<flags>[-+ #0]*)(?P<width>\*|\d*)(?:\.(?P<precision>\*|\d*))?(?P<length>[hlL]?)(?P<kind>.)",
@@ -37,17 +37,52 @@ class Printing(Strings):
 
     def sprintf(self, buf: Pointer | None, form: Pointer | None, *arguments: tuple[Any, Any]) -> int:
         """Print into `buf`, however long; returns the characters before the NUL."""
-        return self._into("sprintf", buf, None, form, arguments)
+        return self._into("sprintf", buf, None, form, Varargs(self._runtime, arguments))
 
     def snprintf(self, buf: Pointer | None, n: int, form: Pointer | None, *arguments: tuple[Any, Any]) -> int:
         """Print at most `n` words with the NUL; returns the length that it would have had."""
-        return self._into("snprintf", buf, n, form, arguments)
+        return self._into("snprintf", buf, n, form, Varargs(self._runtime, arguments))
 
     def printf(self, form: Pointer | None, *arguments: tuple[Any, Any]) -> int:
         """Print to the debugger's console; returns the number of characters."""
         self._charge(_CALL)
         text = self._formatted("printf", self._text(form, "printf"), Varargs(self._runtime, arguments))
         return self._shown("printf", text)
+
+    def vprintf(self, form: Pointer | None, given: Pointer | None) -> int:
+        """`printf` of a `va_list`."""
+        self._charge(_CALL)
+        return self._shown("vprintf", self._formatted("vprintf", self._text(form, "vprintf"), self._list(given)))
+
+    def vsprintf(self, buf: Pointer | None, form: Pointer | None, given: Pointer | None) -> int:
+        """`sprintf` of a `va_list`."""
+        return self._into("vsprintf", buf, None, form, self._list(given))
+
+    def vsnprintf(self, buf: Pointer | None, n: int, form: Pointer | None, given: Pointer | None) -> int:
+        """`snprintf` of a `va_list`."""
+        return self._into("vsnprintf", buf, n, form, self._list(given))
+
+    def va_arg_at(self, given: Pointer | None, words: int) -> Pointer | None:
+        """Where the next argument of the list at `given` lies, and the list behind it (the macro `va_arg`)."""
+        at: Pointer | None = given.read() if given is not None else None
+        if at is None or given is None:
+            return None
+        at = at.at(at.addr & 1 if words > 1 else 0)
+        if isinstance(at.obj, ArgumentBlock) and at.offset + words > at.obj.words:
+            self._runtime.findings.report("varargs-missing", "va_arg reads more arguments than were passed")
+        given.store(at.at(words))
+        return at
+
+    def _list(self, given: Pointer | None) -> Varargs:
+        """What is left of a `va_list`."""
+        block = given.obj if given is not None else None
+        if given is None or not isinstance(block, ArgumentBlock):
+            message = "the list was not begun by va_start, or its function has returned"
+            self._runtime.findings.report("varargs-missing", message)
+            return Varargs(self._runtime, ())
+        found = Varargs(self._runtime, block.arguments)
+        found.begin(given.offset)
+        return found
 
     def puts(self, text: Pointer | None) -> int:
         """Print a line there; returns 0."""
@@ -65,12 +100,9 @@ class Printing(Strings):
         self._runtime.findings.report("unmodelled", message, object=name)
         return len(text)
 
-    def _into(
-        self, name: str, buf: Pointer | None, room: int | None, form: Pointer | None,
-        arguments: tuple[tuple[Any, Any], ...],
-    ) -> int:  # fmt: skip
+    def _into(self, name: str, buf: Pointer | None, room: int | None, form: Pointer | None, va: Varargs) -> int:
         self._charge(_CALL)
-        text = self._formatted(name, self._text(form, name), Varargs(self._runtime, arguments))
+        text = self._formatted(name, self._text(form, name), va)
         self._charge(_CHARACTER * len(text))
         kept = text if room is None else text[: max(room - 1, 0)]
         if room != 0:

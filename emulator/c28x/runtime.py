@@ -36,6 +36,7 @@ from emulator.c28x.heap_block import HeapBlock
 from emulator.c28x.memory import ROM, Memory, Object, Pointer, from_words, zero_of
 from emulator.c28x.sites import Site
 from emulator.c28x.tree import NOWHERE, Declaration, Where
+from emulator.c28x.varargs import ArgumentBlock
 from emulator.clock import CYCLES_PER_US, Clock
 
 #: A loop that only computes takes milliseconds; this is for those that never end.
@@ -751,6 +752,18 @@ class Runtime:
         assert obj is not None
         self.memory.live_locals.remove(obj)
         obj.end()
+
+    def given(self, *arguments: tuple[CType, Any]) -> Pointer:
+        """What a call pushes for a variadic function behind its named parameters: (type, value) of each."""
+        block = ArgumentBlock(self.memory, self.cpu.sp + 1 & ~1, arguments)
+        self.memory.place_block(block)
+        return Pointer(self.memory, block, 0, CHAR)
+
+    def taken(self, result: Any, given: Pointer) -> Any:
+        """That call has returned: what was pushed is gone."""
+        assert given.obj is not None
+        given.obj.end()
+        return result
 
     def unwind(self, sp: int) -> None:
         """An exception has ended the functions above `sp` on the running stack, without their epilogues."""

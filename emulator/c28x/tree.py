@@ -124,6 +124,8 @@ class Variable:
     nested: bool = False
     #: Its name in generated code, where another local of the function has the same C name.
     alias: str = ""
+    #: Of a file-scope object that only names an address: the address.
+    address: int | None = field(default=None, kw_only=True, repr=False)
     #: Pass `frame`: its word in the function's frame.
     frame_offset: int = 0
     #: Pass `flow`: some read of this plain local may come before every write.
@@ -151,6 +153,8 @@ class Function:
     line: int
     c_file: str
     extern: bool = False
+    #: Of a variadic function of the firmware: the pointer to what it is given behind its parameters.
+    given: Variable | None = field(default=None, kw_only=True, repr=False, compare=False)
     #: Declared `interrupt`.
     interrupt: bool = False
     #: Known in its own file only.

@@ -8,9 +8,13 @@ word; words behind the last one read 0.
 from __future__ import annotations
 
 import struct
+from collections.abc import Sequence
 from typing import Any, Protocol
 
+from emulator.c28x.ctypes import CType
 from emulator.c28x.findings import Findings
+from emulator.c28x.heap_block import HeapBlock
+from emulator.c28x.memory import Memory
 
 
 class Reporter(Protocol):
@@ -57,6 +61,10 @@ class Varargs:
         self._at += 1
         return self._words[self._at - 1]
 
+    def begin(self, words: int) -> None:
+        """Read on from there: a list that `va_arg` has moved on."""
+        self._at = words
+
     def word(self) -> int:
         """`va_arg(va, int)`: the next word, unsigned."""
         return self._word()
@@ -82,6 +90,24 @@ class Varargs:
                 "varargs-type", f"the format reads a pointer where {address:#x} was passed", value=address
             )
         return (value or None), address
+
+
+class ArgumentBlock(HeapBlock):
+    """The same words as an object, for a variadic function of the firmware: its `va_list` points there."""
+
+    __slots__ = ("arguments",)
+
+    def __init__(self, memory: Memory, base: int, arguments: Sequence[tuple[CType, Any]]) -> None:
+        self.arguments = tuple(arguments)
+        places, end = [], 0
+        for ctype, value in self.arguments:
+            end += end & 1 if ctype.words > 1 else 0
+            places.append((end, ctype, value))
+            end += ctype.words
+        super().__init__(memory, "...", None, base, max(end, 1))
+        for at, ctype, value in places:
+            self.claim(at, ctype)
+            self.data[at] = value
 
 
 def signed16(word: int) -> int:

@@ -221,6 +221,8 @@ class Judge:
     def _excluded(self, function: Function) -> str:
         if function.path in self.roles.entries:
             return f"it is {self.roles.entries[function.path]}"
+        if function.given is not None:
+            return "it takes any number of arguments"
         if is_static(function, function.where.file):
             return "it is static: only its own file calls it"
         if function.path in self.roles.kernel:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from emulator.c28x.build.conversions import convert, promoted, single
 from emulator.c28x.build.scope import Builder
-from emulator.c28x.ctypes import ULONG, BlockType, CType, FunctionType, PointerType
+from emulator.c28x.ctypes import ULONG, BlockType, CType, FunctionType, PointerType, StructType
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Call, CallPointer, Const, Expr, Function, FunctionRef, Where
 
@@ -18,6 +18,10 @@ def call(b: Builder, function: Function, arguments: Sequence[Expr], where: Where
         raise SourceError.at(where, f"{function.name} takes {len(wanted)} arguments, {len(arguments)} given")
     converted = [convert(b, a, t) for a, t in zip(arguments, wanted, strict=False)]
     extra = [promoted(b, single(a)) for a in arguments[len(wanted) :]]
+    for argument in extra:
+        if isinstance(argument.ctype, StructType):
+            message = f"a {argument.ctype} behind the parameters of {function.name}: pass its address"
+            raise SourceError.at(where, message)
     b.function.calls.add(function.path)
     return Call(function.ctype.result, function, converted, extra, where=where)
 

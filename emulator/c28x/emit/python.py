@@ -165,7 +165,8 @@ class PythonWriter:
     def write(self) -> EmittedFunction:
         """The whole function."""
         f = self.function
-        self.put(f"def {escaped(f.name)}({', '.join(map(local_name, f.parameters))}):")
+        listed = f.parameters if f.given is None else [*f.parameters, f.given]
+        self.put(f"def {escaped(f.name)}({', '.join(map(local_name, listed))}):")
         self.depth = 1
         self.items.append(LineEntry(1, self.where.line))
         self.begin(f, f.where)
@@ -984,8 +985,13 @@ class PythonWriter:
     def call(self, e: Call) -> str:
         function = e.function
         name = self.names.function(function)
+        extra = [f"({self.type(argument.ctype)}, {self.value(argument)})" for argument in e.extra]
         if not function.extern:
-            return f"{name}({', '.join(map(self.value, e.arguments))})"
+            arguments = list(map(self.value, e.arguments))
+            if function.given is None:
+                return f"{name}({', '.join(arguments)})"
+            arguments.append(f"(_a := _c_given({', '.join(extra)}))")
+            return f"_c_taken({name}({', '.join(arguments)}), _a)"
         arguments = []
         for argument in e.arguments:
             if isinstance(argument, Null):
@@ -996,8 +1002,7 @@ class PythonWriter:
                 arguments.append(f"_c_outward({self.value(argument)})")
             else:
                 arguments.append(self.value(argument))
-        arguments += [f"({self.type(argument.ctype)}, {self.value(argument)})" for argument in e.extra]
-        text = f"{name}({', '.join(arguments)})"
+        text = f"{name}({', '.join([*arguments, *extra])})"
         pointer = isinstance(e.ctype, PointerType | HandleType)
         return f"(_c_NULL if (_h := {text}) is None else _h)" if pointer else text
 

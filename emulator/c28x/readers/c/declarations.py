@@ -14,6 +14,7 @@ from pycparser import c_ast
 from emulator.c28x import build
 from emulator.c28x.build import Braces, Builder, Item
 from emulator.c28x.ctypes import (
+    CHAR,
     VOID,
     ArrayType,
     BlockType,
@@ -26,6 +27,7 @@ from emulator.c28x.ctypes import (
 )  # fmt: skip
 from emulator.c28x.readers.c import headers
 from emulator.c28x.readers.c.expressions import INTRINSICS, CExpressionReader
+from emulator.c28x.readers.c.library_headers import VA_GIVEN
 from emulator.c28x.readers.c.no_object import Prototype, Unsized
 from emulator.c28x.readers.c.statements import CStatementReader, initialise_local
 from emulator.c28x.readers.c.types import Abi, specifier
@@ -278,6 +280,8 @@ class CDeclarationReader:
         assert isinstance(prototype, Prototype)
         arguments = declaration.type.args
         for parameter in arguments.params if arguments is not None else ():
+            if isinstance(parameter, c_ast.EllipsisParam):
+                continue
             if not getattr(parameter, "name", None) and prototype.parameters:
                 raise SourceError.at(parameter.coord, f"a parameter of {name} has no name")
         if arguments is None:
@@ -291,8 +295,11 @@ class CDeclarationReader:
         function.extern = False
         function.line, function.where = where.line, Where(where.file, where.line, where.column)
         function.interrupt = "interrupt" in declaration.funcspec
-        function.ctype = FunctionType(name, prototype.result, prototype.parameters)
+        function.ctype = FunctionType(name, prototype.result, prototype.parameters, prototype.variadic)
         function.parameters = self.parameters(name, prototype, where)
+        if prototype.variadic:
+            given = Declaration(VA_GIVEN, CHAR.pointer, self.module.short, where.file, where.line, name, where.column)
+            function.given = Variable(given, given.ctype, "parameter", initialised=True)
         for variable, parameter in zip(function.parameters, _list(arguments), strict=False):
             if not isinstance(parameter.type, c_ast.ArrayDecl):  # its elements are not the parameter
                 variable.volatile = self.types.qualified(parameter, "volatile")
@@ -363,6 +370,8 @@ class FunctionReader:
 
     def read(self) -> None:
         """Fill in `function.body` and `function.locals`."""
+        if self.function.given is not None:
+            self.b.scope[VA_GIVEN] = self.function.given
         with self.b.aside() as self.function.body:
             self.statements.statements(self.node.body.block_items)
 

@@ -57,10 +57,14 @@ _ROM: Final = (
 #: Names that driverlib has too -> what they are called in a project that uses both, "" for not at all (HDR
 #: F2837xS_Adc_defines.h, F2837xS_Can_defines.h).
 _DUAL: Final = {"ADC_RESOLUTION_": "ADC_BITRESOLUTION_", "CAN_": ""}
-#: What the linker's command file defines (HDR F2837xS_GlobalPrototypes.h).
-_LINKED: Final = (
-    "RamfuncsLoadStart", "RamfuncsLoadEnd", "RamfuncsLoadSize", "RamfuncsRunStart", "RamfuncsRunEnd", "RamfuncsRunSize",
-)  # fmt: skip
+#: What the linker's command file defines (HDR F2837xS_GlobalPrototypes.h) -> its address.  CHOICE: what start-up code
+#: copies from flash to RAM has no words, as code lies nowhere here.
+LINKED: Final = {
+    "RamfuncsLoadStart": 0x86000, "RamfuncsLoadEnd": 0x86000, "RamfuncsLoadSize": 0,
+    "RamfuncsRunStart": 0x8000, "RamfuncsRunEnd": 0x8000, "RamfuncsRunSize": 0,
+}  # fmt: skip
+#: They, in C.
+LINKER_SYMBOLS: Final = f"unsigned int {', '.join(LINKED)};\n"
 #: Declared as C declares them, with TI's structure of a timer, not as `emulator.device_h` does: see `CPU_TIMERS`.
 _TIMER_FUNCTIONS: Final = ("InitCpuTimers", "ConfigCpuTimer")
 _TIMERS: Final = ("CpuTimer0", "CpuTimer1", "CpuTimer2")
@@ -166,7 +170,7 @@ def global_prototypes() -> str:
     lines = [*_include("F2837xS_device.h"), *prototypes(here), "#define KickDog ServiceDog"]
     for result, parameters, names in _ELSEWHERE:
         lines += [f"extern {result} {name}({parameters});" for name in names.split()]
-    lines += [f"extern Uint16 {name};" for name in _LINKED]
+    lines += [f"extern Uint16 {name};" for name in LINKED]
     return guarded("F2837xS_GlobalPrototypes.h", lines)
 
 

@@ -547,9 +547,6 @@ class CExpressionReader:
         """What TI's compiler knows without a declaration; None for any other name."""
         b = self.b
         match name, len(arguments):
-            case "__builtin_va_arg", _:
-                message = "va_arg is not modelled, as own variadic functions are not: pass a pointer to the values"
-                raise SourceError.at(where, message)
             case "__eallow" | "__edis", 0:
                 self.core({"__eallow": "EALLOW", "__edis": "EDIS"}[name], where)
                 return Const(VOID, 0, where=where)

@@ -217,11 +217,6 @@ class Grammar(CParser):  # type: ignore[misc]
         return super()._parse_external_declaration()
 
     def _parse_function_definition(self, spec: Any, decl: Any) -> Any:
-        listed = decl.args.params if isinstance(decl, c_ast.FuncDecl) and decl.args else []
-        if listed and isinstance(listed[-1], c_ast.EllipsisParam):
-            # Its body has what no expression of C is: va_arg(list, int).
-            message = "own variadic functions are not modelled: write one for each list of arguments that it is given"
-            raise error_at(listed[-1].coord, message)
         old_style = isinstance(decl, c_ast.FuncDecl) and decl.args and isinstance(decl.args.params[0], c_ast.ID)
         found = self._peek()
         if not isinstance(decl, c_ast.FuncDecl) or (not old_style and (found is None or found.type != "LBRACE")):

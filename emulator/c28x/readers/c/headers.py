@@ -23,13 +23,14 @@ from types import MappingProxyType
 from typing import Final
 
 from emulator.c28x.readers.c import device_headers, iqmath_header, kernel_headers, library_headers
-from emulator.c28x.readers.c.device_headers import ASSEMBLER, CPU_TIMER_NAMES, CPU_TIMERS
+from emulator.c28x.readers.c.device_headers import ASSEMBLER, CPU_TIMER_NAMES, CPU_TIMERS, LINKED, LINKER_SYMBOLS
 from emulator.c28x.readers.c.kernel_headers import handles, structures
 from emulator.c28x.readers.c.register_types import block_text, block_types, instances, register_type, tag, unmodelled
 from emulator.c28x.symbols import Unmodelled
 
 __all__ = [
-    "ASSEMBLER", "CPU_TIMERS", "CPU_TIMER_NAMES", "block_text", "block_types", "definitions", "handles", "hint",
+    "ASSEMBLER", "CPU_TIMERS", "CPU_TIMER_NAMES", "LINKED", "block_text", "block_types", "definitions", "handles",
+    "hint",
     "instances", "names", "of_c_itself", "of_the_device", "register_type", "structures", "tag", "text",
     "unmodelled_block",
 ]  # fmt: skip
@@ -127,7 +128,9 @@ def definitions(name: str) -> tuple[str, str] | None:
 
     To be compiled with a program that uses `name` and has no definition of it.  None where the emulator itself has it.
     """
-    return (f"{_DEVICE}CpuTimers", CPU_TIMERS) if name in CPU_TIMER_NAMES else None
+    if name in CPU_TIMER_NAMES:
+        return f"{_DEVICE}CpuTimers", CPU_TIMERS
+    return ("linker", LINKER_SYMBOLS) if name in LINKED else None
 
 
 def unmodelled_block(name: str) -> Unmodelled | None:
@@ -137,6 +140,10 @@ def unmodelled_block(name: str) -> Unmodelled | None:
 
 def hint(name: str) -> str | None:
     """What to tell a program that uses `name`, where that is known better than by "undeclared"; None if it is not."""
+    if name in ("class", "namespace", "template"):
+        return f"{name} is a word of C++: only C is read"
+    if name == library_headers.VA_GIVEN:
+        return "va_start is for a function whose parameters end in '...'"
     absent = library_headers.ABSENT.get(name)
     if absent is not None:
         return absent

@@ -20,11 +20,14 @@ from emulator.c28x.readers.c.library_text import TEXT
 from emulator.c28x.readers.c.module_header import guarded, own_symbols, prototypes
 from emulator.c28x.symbols import Module
 
+#: In a variadic function, the list of what it is given behind its named parameters.
+VA_GIVEN: Final = "va_given"
 #: Header -> the functions of `rts.py` that it declares.
 FUNCTIONS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
     "math.h": ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log", "pow", "sqrt", "floor", "ceil",
                "fmod", "fabs"),
-    "stdio.h": ("printf", "puts", "putchar", "sprintf", "snprintf"),
+    "stdarg.h": ("va_arg_at",),
+    "stdio.h": ("printf", "puts", "putchar", "sprintf", "snprintf", "vprintf", "vsprintf", "vsnprintf"),
     "stdlib.h": ("atof", "atoi", "atol", "abs", "labs", "malloc", "calloc", "realloc", "free"),
     "string.h": ("memcpy", "memset", "memcmp", "memmove", "strlen", "strcmp", "strcpy", "strcat", "strncpy", "strncmp",
                  "strncat", "strchr", "strrchr", "strstr"),
@@ -37,9 +40,8 @@ _UNMODELLED: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
     ),
     "stdio.h": (
         "int getchar(void)", "int scanf(const char *form, ...)", "int sscanf(const char *text, const char *form, ...)",
-        "int vprintf(const char *form, va_list list)", "int vsprintf(char *to, const char *form, va_list list)",
-        "int vsnprintf(char *to, size_t n, const char *form, va_list list)",
     ),
+    "stdarg.h": (),
     "stdlib.h": (
         "void exit(int status)", "double strtod(const char *text, char **end)",
     ),
@@ -147,9 +149,11 @@ def _stddef(name: str) -> Iterator[str]:
 
 def _stdarg(name: str) -> Iterator[str]:
     yield "typedef char *va_list;"
-    yield "#define va_start(list, last) __va_start(list, last)"
-    yield "#define va_arg(list, type) __builtin_va_arg(list, type)"
+    yield from _functions(name)
+    yield f"#define va_start(list, last) ((list) = {VA_GIVEN})"
+    yield "#define va_arg(list, type) (*(type *)va_arg_at(&(list), sizeof(type)))"
     yield "#define va_end(list) ((void)0)"
+    yield "#define va_copy(to, from) ((to) = (from))"
 
 
 def _stdbool(name: str) -> Iterator[str]:

@@ -184,7 +184,10 @@ class CFiles:
         defined = {name for file in self.files.values() for name in file.reader.linkage.defined}
         wanted = {name for file in self.files.values() for name in file.wanted()} - defined
         added = dict(filter(None, map(headers.definitions, sorted(wanted))))
-        return [self.read(name, f"<{name}.c>", text) for name, text in added.items()]
+        modules = [self.read(name, f"<{name}.c>", text) for name, text in added.items()]
+        for variable in (variable for module in modules for variable in module.variables):
+            variable.address = headers.LINKED.get(variable.declaration.name)
+        return modules
 
     def _resolve(
         self, file: CFile, name: str, where: Where, defined: dict[str, CFile], python: Sequence[Module], *, used: bool

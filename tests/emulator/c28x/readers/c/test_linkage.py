@@ -25,6 +25,22 @@ def test_an_object_that_is_only_declared_is_refused_where_it_is_declared() -> No
     assert (caught.value.line, caught.value.column) == (1, 12)
 
 
+@pytest.mark.parametrize("declared", ['#include "F28x_Project.h"', "extern unsigned int RamfuncsLoadStart, "
+                                      "RamfuncsLoadEnd, RamfuncsLoadSize, RamfuncsRunStart;"])  # fmt: skip
+def test_what_start_up_code_copies_from_flash_to_RAM_has_no_words(declared: str) -> None:
+    text = f"""{declared}
+#include <string.h>
+long f(void)
+{{
+    memcpy(&RamfuncsRunStart, &RamfuncsLoadStart, (size_t)&RamfuncsLoadSize);
+    return (&RamfuncsLoadEnd - &RamfuncsLoadStart) + (long)&RamfuncsRunStart;
+}}
+"""
+    shop = CWorkshop(text)
+    assert shop.call("f") == 0x8000
+    assert list(shop.findings) == []
+
+
 def test_a_function_of_ones_own_may_be_called_like_one_of_the_kernel() -> None:
     text = "int Queue_Depth(int of);\nint f(void) { return Queue_Depth(2); }\n"
     assert CWorkshop(text, externs={"Queue_Depth": lambda of: of + 5}).call("f") == 7
