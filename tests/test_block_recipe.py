@@ -60,8 +60,7 @@ def printed(tree: Path, *arguments: str) -> list[str]:
 def tree(tmp_path: Path) -> Path:
     """A copy of the sources and tests."""
     for name in ("emulator", "firmware_model", "hil", "tests"):
-        ignored = shutil.ignore_patterns("__pycache__", "_compiled")
-        shutil.copytree(REPOSITORY / name, tmp_path / name, ignore=ignored)
+        shutil.copytree(REPOSITORY / name, tmp_path / name, ignore=shutil.ignore_patterns("_compiled"))
     shutil.copy(REPOSITORY / "pyproject.toml", tmp_path)
     return tmp_path
 

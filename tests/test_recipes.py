@@ -22,8 +22,7 @@ DETECTOR = (REPOSITORY / "emulator" / "rules" / "README.md", "A new detector: th
 def tree(tmp_path: Path) -> Path:
     """A copy of what the recipes may touch."""
     for name in ("emulator", "firmware_model", "hil", "tests"):
-        ignored = shutil.ignore_patterns("__pycache__", "_compiled")
-        shutil.copytree(REPOSITORY / name, tmp_path / name, ignore=ignored)
+        shutil.copytree(REPOSITORY / name, tmp_path / name, ignore=shutil.ignore_patterns("_compiled"))
     shutil.copy(REPOSITORY / "pyproject.toml", tmp_path)
     return tmp_path
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from hypothesis import given
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 from emulator.c28x.sites import Place
 from hil.reports.excerpt import location, places_in, readable, shown, source_line, statement
 
-NAMES = st.from_regex(r"[A-Za-z_]\w{0,20}", fullmatch=True).filter(str.isascii)
+NAMES = st.from_regex(re.compile(r"[A-Za-z_]\w{0,20}", re.ASCII), fullmatch=True)
 C_FILES = st.builds(
     lambda folder, stem, ending: f"/{folder}/{stem}.{ending}", NAMES, NAMES, st.sampled_from(["c", "h", "C"])
 )

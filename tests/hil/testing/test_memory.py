@@ -20,7 +20,7 @@ blocks = []
 
 def pytest_runtest_logfinish(nodeid):
     reports.append(nodeid)
-    if len(reports) % 70 == 0:
+    if len(reports) % 42 == 0:
         gc.collect()
         blocks.append(sys.getallocatedblocks())
 
@@ -75,13 +75,13 @@ def test_a_test_leaves_nothing_but_its_report(pytester: pytest.Pytester, monkeyp
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
     (pytester.path / "drv.py").write_text(DRIVER, encoding="utf-8")
     (pytester.path / "conftest.py").write_text(CONFTEST, encoding="utf-8")
-    (pytester.path / "test_all.py").write_text(TESTS.format(turns=30), encoding="utf-8")
-    pytester.runpytest_subprocess(*ALONE, "--tb=short").assert_outcomes(passed=120, failed=90)
-    after_70, _, after_210 = map(int, (pytester.path / "blocks.txt").read_text(encoding="utf-8").split())
+    (pytester.path / "test_all.py").write_text(TESTS.format(turns=18), encoding="utf-8")
+    pytester.runpytest_subprocess(*ALONE, "--tb=short").assert_outcomes(passed=72, failed=54)
+    after_42, _, after_126 = map(int, (pytester.path / "blocks.txt").read_text(encoding="utf-8").split())
     gc.collect()
     before = sys.getallocatedblocks()
     board = Board()
     of_a_board = sys.getallocatedblocks() - before
     board.kernel.shutdown()
-    # Whatever the first 70 tests import and keep: 140 more hold less than two boards together.
-    assert after_210 - after_70 < 2 * of_a_board
+    # Whatever the first 42 tests import and keep: 84 more hold less than a board together.
+    assert after_126 - after_42 < of_a_board
