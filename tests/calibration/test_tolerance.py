@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
+from functools import cache
 
 import pytest
 
+from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
 from firmware_model.calibration import CALIBRATED_TASKS, CALIBRATION
 from hil.cli.tasks import PUBLISHED
@@ -26,8 +29,14 @@ from tests.calibration.robot import CODE, Constants
 
 
 @pytest.fixture(scope="module")
-def robot() -> Robot:
-    return Robot()
+def robots() -> Callable[[str], Robot]:
+    """The robot of a build: each keeps what it has measured."""
+    return cache(Robot)
+
+
+@pytest.fixture
+def robot(robots: Callable[[str], Robot]) -> Robot:
+    return robots(DEFAULT_FLOAT_DIVISION)
 
 
 def test_the_code_of_the_fit_has_every_module_that_is_calibrated() -> None:
@@ -81,14 +90,14 @@ def test_the_printed_tolerance_is_what_leaving_out_comes_to(robot: Robot) -> Non
 
 @pytest.mark.slow
 @pytest.mark.parametrize("build", BUILDS)
-def test_the_page_shows_what_each_model_comes_to(build: str, robot: Robot) -> None:
+def test_the_page_shows_what_each_model_comes_to(build: str, robots: Callable[[str], Robot]) -> None:
     # Half a second of CPU a fit, 12 fits a model: the simplest one that the text speaks of, and the shipped one.
     shown = [
         (model, row)
         for model, row in zip(MODELS, cells_of_page(build), strict=True)
         if os.environ.get("HIL_CALIBRATION") == "all" or model.name in ("one factor", SHIPPED.name)
     ]
-    found = cells(robot if build == robot.float_division else Robot(build), [model for model, _ in shown])
+    found = cells(robots(build), [model for model, _ in shown])
     assert found == [row for _, row in shown], "python -m tests.calibration --write"
 
 
@@ -105,9 +114,11 @@ def test_no_fewer_factors_fit_and_more_predict_worse_by_the_table_of_the_page() 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["one factor", "drivers"])
-def test_what_predicts_best_does_not_keep_to_the_figures_of_the_thesis(name: str) -> None:
+def test_what_predicts_best_does_not_keep_to_the_figures_of_the_thesis(
+    name: str, robots: Callable[[str], Robot]
+) -> None:  # fmt: skip
     (model,) = (model for model in MODELS if model.name == name)
-    predicted = fit(model, Robot("standard")).predicted
+    predicted = fit(model, robots("standard")).predicted
     gyro, navigation = PUBLISHED["TaskGYRO"].times_us, PUBLISHED["TaskNAVIGATION"].times_us
     assert predicted["TaskGYRO"] < 0.9 * min(gyro)
     assert predicted["TaskNAVIGATION"] > max(navigation)

@@ -13,7 +13,7 @@ from typing import Final
 
 from hil.audit.compare.specimen import Specimen
 
-#: A compiled specimen that does not end by then is waiting for something that a PC does not have; alone, or in valgrind.
+#: A compiled specimen that does not end by then, in valgrind or not, waits for something that a PC does not have.
 TIME_LIMIT_S: Final = 5.0
 #: What a tool gets to read a source, however busy the machine is.
 READING_LIMIT_S: Final = 60.0
@@ -45,7 +45,8 @@ class Tool:
         pattern = re.compile(rf"{re.escape(self.alarm)}[^\s:]*{re.escape(source.name)}:{specimen.line('.c')}\b")
         for command in self.commands:
             words = [word.format(source=source, program=program) for word in command]
-            limit_s = TIME_LIMIT_S if words[-1] == str(program) and "-o" not in words else READING_LIMIT_S
+            runs_it = words[-1] == str(program) and "-o" not in words
+            limit_s = TIME_LIMIT_S if runs_it else READING_LIMIT_S
             if pattern.search(_output(words, folder, self.environment, limit_s)):
                 return True
         return False
@@ -54,11 +55,13 @@ class Tool:
 def versions(tools: Iterable[Tool]) -> dict[str, str]:
     """The version of each program that these tools need, as it says itself."""
     programs = dict.fromkeys(program for tool in tools for program in tool.needs)
-    found = {program: re.search(r"\d+(\.\d+)+", _output([program, "--version"], Path(), {}, READING_LIMIT_S)) for program in programs}
+    found = {program: re.search(r"\d+(\.\d+)+", _output([program, "--version"], Path(), {})) for program in programs}
     return {program: match[0] if match else "?" for program, match in found.items()}
 
 
-def _output(words: Sequence[str], folder: Path, environment: dict[str, str], limit_s: float) -> str:
+def _output(
+    words: Sequence[str], folder: Path, environment: dict[str, str], limit_s: float = READING_LIMIT_S
+) -> str:  # fmt: skip
     """What a command prints, on both streams, in English."""
     try:
         done = subprocess.run(
