@@ -562,8 +562,13 @@ class Connections:
                 continue
             bit = 1 << vector - 1
             if not self._chip.cpu.ier & bit and not self._source.could("CPU", "IER", bit, bool):
-                missing = Missing(f"bit {vector - 1} of IER (M_INT{vector}) is 0", f"CpuTimer{n}Regs.TCR")
-                self._tell(place, f"{routine} waits for CPU timer {n}, which runs", missing, f"CpuTimer{n}Regs")
+                # Where IER is given what it has, not where the timer is right.
+                ier = self._source.last("CPU", "IER")
+                self._chip.findings.report_at(
+                    ier or place, "not-connected",
+                    f"{routine} waits for CPU timer {n}, which runs: bit {vector - 1} of IER (M_INT{vector}) is 0",
+                    object=f"CpuTimer{n}Regs", how="dynamic", details=(f"wanted by {place}",) if ier else (),
+                )  # fmt: skip
 
     def _trips(self) -> None:
         """The way from a comparator through the X-BAR and the digital compare of an ePWM to its trip zone."""

@@ -167,12 +167,18 @@ class States:
         """Whether a statement that runs again and again, and stands in no state of the object, ends this one."""
         in_states: set[int] = set()
         again: set[int] = set()
+        #: State -> those that its own statements lead to.
+        leads: dict[int, set[int | None]] = {}
         repeated = [path for path, f in self.functions.items() if f.interrupt or path in self.entries]
         for f in self.functions.values():
             for s in statements(f.body):
                 match s:
                     case Switch(subject=chosen, cases=cases) if _variable(chosen) is subject:
-                        in_states |= {id(inner) for _, body in cases for inner in statements(body)}
+                        for labels, body in cases:
+                            inside = {id(inner) for inner in statements(body)}
+                            in_states |= inside
+                            to = {w.value for w in self.writes.get(subject, []) if id(w.statement) in inside}
+                            leads |= dict.fromkeys(labels or (), to)
                     case While(body=body) | For(body=body):
                         again |= {id(inner) for inner in statements(body)}
                         repeated += [
@@ -190,6 +196,7 @@ class States:
                 repeated += self.functions[path].calls
         return any(
             w.value != label and id(w.statement) not in in_states
+            and not (w.value is not None and leads.get(w.value) == {label})  # which is no way out
             and (w.function.path in reached or id(w.statement) in again)
             for w in self.writes.get(subject, [])
         )  # fmt: skip

@@ -92,6 +92,16 @@ def test_a_state_that_can_end_is_silent(tick: str, turn: str, tmp_path: Path) ->
     assert told(tmp_path, tick, turn) == []
 
 
+@pytest.mark.parametrize(("first", "stuck"), [("", True), ("if (Pulls) Door = SHUT; else ", False)])
+def test_a_state_that_is_left_only_to_come_back_is_told(first: str, stuck: bool, tmp_path: Path) -> None:
+    tick = (
+        f"switch (Door) {{ case OPENING: {first}{{ Rest = 20; Door = WIDE; }} break;\n"
+        "case WIDE:\nif (Rest < 20) Rest = 20;\nif (Rest == 0) Door = SHUT; else Rest--;\nbreak; default: break; }"
+    )
+    found = told(tmp_path, tick, "if (Pushed_Now()) Door = OPENING;")
+    assert found == [("state-stuck", "if (Rest < 20) Rest = 20;")] * stuck
+
+
 RAMP = "if (Level != 250) Level += {0};\n else {{ Level = 250; Door = WIDE; }}"
 TRIES = "Uint16 n = {0};\n while (Pushed_Now() == 0) {{\n n++;\n if (n == 3) break;\n }}"
 
