@@ -147,8 +147,7 @@ class I2c:
     def _write_I2CPSC(self, word: int, lanes: int) -> None:
         before = self._psc.value
         self._psc.store(word, lanes)
-        if self._mdr.value & IRS:
-            self._doubts.prescaler(before)
+        self._doubts.prescaler(before, running=bool(self._mdr.value & IRS))
 
     def _write_I2CMDR(self, word: int, lanes: int) -> None:
         mdr = self._mdr

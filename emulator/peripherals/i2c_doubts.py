@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from emulator.c28x.findings import Findings
+from emulator.c28x.findings import Cause, Findings
 from emulator.clock import SYSCLK_HZ, ms
 from emulator.registers.i2c import I2CFFTX, I2CIER, I2CMDR, I2cRegs
 from emulator.signals import I2cBus
@@ -32,7 +32,9 @@ _FIFO_MODE: Final = I2CFFTX.I2CFFEN.mask
 class I2cDoubts:
     """Findings of one module."""
 
-    __slots__ = ("_bus", "_clkh", "_clkl", "_fftx", "_findings", "_ier", "_mdr", "_name", "_psc", "_sar", "_str")
+    __slots__ = (
+        "_bus", "_clkh", "_clkl", "_fftx", "_findings", "_ier", "_mdr", "_name", "_prescaled", "_psc", "_sar", "_str",
+    )  # fmt: skip
 
     def __init__(self, regs: I2cRegs, findings: Findings, bus: I2cBus) -> None:
         self._findings, self._bus, self._name = findings, bus, regs.name
@@ -41,6 +43,8 @@ class I2cDoubts:
         self._str = registers["I2CSTR"]
         self._clkl, self._clkh = registers["I2CCLKL"], registers["I2CCLKH"]
         self._ier, self._fftx = registers["I2CIER"], registers["I2CFFTX"]
+        #: The statement that wrote I2CPSC last.
+        self._prescaled: Cause | None = None
 
     def start(self, module_cycles: int, bit_cycles: int) -> None:
         """A START, with `module_cycles` SYSCLK cycles a module clock, and `bit_cycles` a bit."""
@@ -49,11 +53,15 @@ class I2cDoubts:
                 self._not_configured(f"{divider.path} = 0: the manual wants it not to be zero", divider.path)
         hertz = SYSCLK_HZ / module_cycles
         if not SLOWEST_HZ <= hertz <= FASTEST_HZ:
-            self._findings.report(
-                "i2c-clock",
-                f"{self._name} runs at {hertz / 1e6:.2f} MHz, SYSCLK / {module_cycles}: the manual wants 7 to 12 MHz",
-                object=self._psc.path, value=module_cycles - 1,
-            )  # fmt: skip
+            before, self._findings.cause = self._findings.cause, self._prescaled or self._findings.cause
+            try:
+                self._findings.report(
+                    "i2c-clock",
+                    f"{self._name} runs at {hertz / 1e6:.2f} MHz, SYSCLK / {module_cycles}: the manual wants 7 to 12 "
+                    "MHz", object=self._psc.path, value=module_cycles - 1,
+                )  # fmt: skip
+            finally:
+                self._findings.cause = before
         bus_hz = SYSCLK_HZ / bit_cycles
         if bus_hz > FASTEST_BUS_HZ:
             self._findings.report(
@@ -79,10 +87,11 @@ class I2cDoubts:
         if self._bus.missing and not mode & _DLB:
             self._not_configured(f"{self._bus.missing}: the transfer does not reach the bus", self._bus.name)
 
-    def prescaler(self, before: int) -> None:
-        """I2CPSC was written while the module runs."""
+    def prescaler(self, before: int, *, running: bool) -> None:
+        """I2CPSC was written."""
         now = self._psc.value
-        if now != before:
+        self._prescaled = self._findings.mark()
+        if running and now != before:
             self._findings.report(
                 "i2c-prescaler",
                 f"{self._psc.path} was changed from {before} to {now} with IRS = 1: it has no effect until IRS is "

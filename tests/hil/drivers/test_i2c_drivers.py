@@ -13,6 +13,7 @@ from emulator.device_reports import Reports
 from emulator.devices.at24c256 import At24c256
 from emulator.devices.l3g4200d import L3G4200D
 from hil.cli import invoke
+from hil.drivers.check import DriverFiles, check_files
 from hil.image import Build, Image
 
 pytest.importorskip("pycparser")
@@ -307,3 +308,14 @@ def test_hil_check_of_a_program_with_nobody_on_the_bus(
     assert invoke(["check", "--json", "--for", "0.05", "drv.c"]) == 1
     # Without a prescaler the module runs at 200 MHz; 0xD0 is the address with its R/W bit.
     assert counted() == {"i2c-clock", "reserved-field"}
+
+
+@pytest.mark.parametrize(("prescaler", "told"), [("19", []), ("9", ["    I2caRegs.I2CPSC.all = 9;"])])
+def test_a_module_clock_is_told_where_its_prescaler_is_set(prescaler: str, told: list[str], tmp_path: Path) -> None:
+    text = OPEN.replace("I2CPSC.all = 19", f"I2CPSC.all = {prescaler}").replace("I2CCLKL = 10", "I2CCLKL = 40")
+    text += "void main(void)\n{\n    InitSysCtrl();\n    Open();\n    I2caRegs.I2CSAR.all = 0x50;\n"
+    text += "    I2caRegs.I2CCNT = 1;\n    I2caRegs.I2CMDR.all = 0x6E20;\n    for (;;) ;\n}\n"
+    (tmp_path / "clock.c").write_text(text, encoding="utf-8")
+    found = check_files(DriverFiles([tmp_path / "clock.c"], calls=1, seconds=0.002)).findings
+    at = {text.splitlines()[f.place.line - 1] for f in found if f.rule == "i2c-clock" and f.place}
+    assert at == set(told)
