@@ -36,7 +36,7 @@ def _version(wanted: bool) -> None:
 app = typer.Typer(
     name="hil",
     cls=Group,
-    help="A small robot with a TI F28377S that does not exist: its firmware in virtual time, behind a serial port.",
+    help="Emulate a robot with a TI F28377S: its firmware runs in virtual time, behind a serial port.",
     epilog="Start with [bold]hil demo[/bold]; with [bold]hil run --link COM3[/bold] for a console of your own; with "
     "[bold]hil new NAME[/bold] for a driver of your own.",
     no_args_is_help=True,
@@ -52,7 +52,7 @@ def options(
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
     ] = False,
 ) -> None:
-    """A small robot with a TI F28377S that does not exist: its firmware in virtual time, behind a serial port."""
+    """Emulate a robot with a TI F28377S: its firmware runs in virtual time, behind a serial port."""
     if compiled.MODE == "stale" and context.invoked_subcommand != "build":
         print("hil: sources changed since `hil build`: plain Python runs until the next one", file=sys.stderr)
 

@@ -42,35 +42,35 @@ def complete_id(incomplete: str) -> list[tuple[str, str]]:
 
 def audit(
     ids: Annotated[
-        list[str] | None, typer.Argument(metavar="[ID]...", help="Entries to show; all if none.",
+        list[str] | None, typer.Argument(metavar="[ID]...", help="The entries to demonstrate (default: all).",
                                          autocompletion=complete_id),
     ] = None,
     c_file: Annotated[
-        str | None, typer.Option("--file", metavar="NAME", help="Only entries of one C file: us.c, GYRO.c, ...")
+        str | None, typer.Option("--file", metavar="NAME", help="Select the entries of one C file: us.c, GYRO.c, ...")
     ] = None,
     compare: Annotated[
-        bool, typer.Option("--compare", help="Which host tools see which class of defect, beside this tool.")
+        bool, typer.Option("--compare", help="Compare with host tools: which tool finds which class of defect.")
     ] = False,
     markdown: Annotated[
-        bool, typer.Option("--markdown", help="With --compare: the table as README.md has it.")
+        bool, typer.Option("--markdown", help="With --compare, print the table as Markdown.")
     ] = False,
-    only_list: Annotated[bool, typer.Option("--list", help="The entries, and nothing is run.")] = False,
-    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture of one entry's evidence.")] = None,
+    only_list: Annotated[bool, typer.Option("--list", help="List the entries and run nothing.")] = False,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the evidence of one entry.")] = None,
     all_but_one: Annotated[
-        bool, typer.Option("--all-but-one", help="Each with all corrections but its own, too: twice as long.")
+        bool, typer.Option("--all-but-one", help="Also run each entry without its own correction (twice as long).")
     ] = False,
-    jobs: Annotated[int, typer.Option(min=1, max=1024, help="Entries run side by side.")] = os.cpu_count() or 1,
+    jobs: Annotated[int, typer.Option(min=1, max=1024, help="Run this many in parallel.")] = os.cpu_count() or 1,
     firmware: own_c.Firmware = None,
     project: own_c.Project = None,
     include: own_c.Include = None,
     define: own_c.Define = None,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:  # fmt: skip
-    """Demonstrate the known defects of the robot's firmware: faithful, with the correction, with all corrections.
+    """Demonstrate the known defects: original firmware, one correction, all corrections.
 
-    An entry is proven when the defect shows on the faithful firmware and on neither corrected one, by a detector's
-    finding or a measured property; numbers of the text against each other are only read.  With --all-but-one it must
-    show again when only its own correction is missing.  Exit status 1 if any entry is not shown, 130 after Ctrl-C.
+    A detector's finding or a measured property must show the defect in the original firmware, and must not show it with
+    the correction.  Entries about numbers of the text are only read.  With --all-but-one, the defect must show again
+    when only its own correction is missing.  Exit status 1 if an entry is not demonstrated, 130 after Ctrl-C.
     """
     with show.user_errors():
         if markdown and (json_output or not compare):

@@ -13,9 +13,9 @@ from hil.cli import show
 
 def blind_spots(
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the map (PNG, SVG).")] = None,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
-    """Map the angles and distances at which three, and five, sonars lose a wall.
+    """Map the angles and distances at which three or five sonars do not detect a wall.
 
     [bold]Examples[/bold]
       hil blind-spots --plot blind.png

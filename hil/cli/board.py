@@ -15,19 +15,20 @@ Option = Annotated[
     list[str] | None,
     typer.Option(
         metavar="NAME,...",
-        help="Parts that the robot of the thesis has not: five-sonars, accelerometer, lidar; repeatable.",
+        help="Add parts to the robot: five-sonars, accelerometer, lidar; repeatable.",
     ),
 ]
 
 
 def board(
     name: Annotated[
-        str, typer.Argument(metavar="[NAME|FILE]", help="robot (default), bare, or your own board (*.py).")
+        str,
+        typer.Argument(metavar="[NAME|FILE]", help="The board: robot (default), bare, or a file of your own (*.py)."),
     ] = "robot",
     option: Option = None,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
-    """Show what is soldered to the chip: parts, pins, and what a test or the world sets of them.
+    """Show the parts on a board, their pins, and the inputs that a test or the world sets.
 
     [bold]Examples[/bold]
       hil board

@@ -14,9 +14,9 @@ from hil.cli.show import user_errors
 
 
 def build(
-    clean: Annotated[bool, typer.Option("--clean", help="Remove the compiled build: plain Python again.")] = False,
+    clean: Annotated[bool, typer.Option("--clean", help="Remove the compiled build. Plain Python runs again.")] = False,
 ) -> None:
-    """Compile the emulator: the same bytes, two to three times as fast.  Wants a C compiler; takes a minute or two.
+    """Compile the emulator: the same results, two to three times as fast.  It needs a C compiler and a minute or two.
 
     A build belongs to the sources that it was made from.  When one of them changes, plain Python runs until the next
     [bold]hil build[/bold].

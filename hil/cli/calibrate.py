@@ -28,17 +28,22 @@ EXAMPLES: Final = """
 
 
 def calibrate(
-    file: Annotated[Path | None, typer.Argument(metavar="[FILE.csv]", help="Distances and raw values.")] = None,
-    thesis: Annotated[bool, typer.Option("--thesis", help="The 54 rows of annex A.3.1.")] = False,
-    emulate: Annotated[bool, typer.Option("--emulate", help="Measure the emulated robot before a wall.")] = False,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the emulated sonars.")] = 1,
-    ideal: Annotated[bool, typer.Option("--ideal", help="Emulated sonars without noise.")] = False,
+    file: Annotated[
+        Path | None, typer.Argument(metavar="[FILE.csv]", help="A table of distances and raw values.")
+    ] = None,
+    thesis: Annotated[bool, typer.Option("--thesis", help="Use the 54 rows of annex A.3.1 of the thesis.")] = False,
+    emulate: Annotated[
+        bool, typer.Option("--emulate", help="Measure with the emulated robot in front of a wall.")
+    ] = False,
+    seed: Annotated[int, typer.Option(min=0, help="The seed of the emulated sonars.")] = 1,
+    ideal: Annotated[bool, typer.Option("--ideal", help="Emulate sonars without noise.")] = False,
     fix: Annotated[
-        list[str] | None, typer.Option(metavar="ID", help="A correction of the catalogue for --emulate; repeatable.")
+        list[str] | None,
+        typer.Option(metavar="ID", help="With --emulate, link a correction of the catalogue; repeatable."),
     ] = None,
     write: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the table as CSV.")] = None,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw rows, lines, residuals (PNG, SVG).")] = None,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
     """Compute slope and offset of `Calibrate_US` from distances and raw values, with and without suspect rows."""
     with show.user_errors():

@@ -21,8 +21,8 @@ EXAMPLES: Final = """
   hil scenario failed/campaign-1-2.scenario.toml
 
 [bold]Exit status[/bold]
-  0  all held
-  1  some did not
+  0  every run passed
+  1  a run failed
   2  bad input
   130  interrupted
 
@@ -31,17 +31,18 @@ EXAMPLES: Final = """
 
 
 def campaign(
-    runs: Annotated[int, typer.Option(min=1, max=1_000_000, help="How many.")] = 1000,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
-    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, max=64, help="So many at a time.")] = 2,
-    faithful: Annotated[bool, typer.Option("--faithful", help="The firmware as in the C, not the corrected one.")]
+    runs: Annotated[int, typer.Option(min=1, max=1_000_000, help="Number of runs.")] = 1000,
+    seed: Annotated[int, typer.Option(min=0, help="The seed of all random numbers.")] = 1,
+    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, max=64, help="Run this many in parallel.")] = 2,
+    faithful: Annotated[bool, typer.Option("--faithful", help="Run the original firmware, without corrections.")]
     = False,
     keep: Annotated[
-        Path | None, typer.Option(metavar="FOLDER", help="Write the shortest scenario of each that failed into it.")
+        Path | None,
+        typer.Option(metavar="FOLDER", help="Write the shortest scenario of each failed run into this folder.")
     ] = None,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
-    """Break the corrected robot at random, a thousand times: it must not drive on what it could know to be wrong."""
+    """Inject random faults into the corrected robot: it must not drive on data that it can know to be wrong."""
     with show.user_errors():
         from hil.files import replacing
         from hil.safety.campaign import campaign as run

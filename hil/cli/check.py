@@ -40,7 +40,7 @@ EXAMPLES: Final = """
   1  a finding counts, the firmware stopped, or a fault never fired
   2  bad input
 
-  Driver files (*.c, *.py; a folder means those directly in it) are translated, which shows the static findings; each
+  Driver files (*.c, *.py, or the folder that holds them) are translated: this gives the static findings.  Each
   function that is not static is called with generated arguments; main or the tasks run for --for seconds (default 3).
 
   A finding counts if it is as severe as --fail-on says (or worse) and not in the baseline.
@@ -52,72 +52,83 @@ def check(
         list[Path] | None,
         typer.Argument(
             metavar="[SCENARIO.toml | FILE...]",
-            help="A scenario (options go before what it says), or driver files of your own.",
+            help="A scenario file (options override it), or your own driver files.",
         ),
     ] = None,
     firmware: own_c.Firmware = None,
     project: own_c.Project = None,
     include: own_c.Include = None,
     define: own_c.Define = None,
-    abi: Annotated[str | None, typer.Option(metavar="coff|eabi", help="How C files are compiled (coff).")] = None,
+    abi: Annotated[
+        str | None, typer.Option(metavar="coff|eabi", help="The ABI of the C compiler: coff (default) or eabi.")
+    ] = None,
     board: Annotated[
-        str | None, typer.Option(metavar="NAME|FILE", help="Around the chip: robot (default), bare, or your own board.")
+        str | None,
+        typer.Option(metavar="NAME|FILE", help="The board of the chip: robot (default), bare, or a file of your own.")
     ] = None,
     option: Option = None,
     calls: Annotated[
-        int | None, typer.Option(min=1, max=10_000, help="Generated argument lists a function of FILE (default 30).")
+        int | None,
+        typer.Option(min=1, max=10_000, help="Call each function of FILE with this many generated inputs (default 30).")
     ] = None,
-    world: Annotated[str | None, typer.Option(help="corridor, room, box, paddock, or a TOML map.")] = None,
-    seed: Annotated[int | None, typer.Option(min=0, help="Seed of everything that is random.")] = None,
+    world: Annotated[
+        str | None, typer.Option(help="The robot's environment: corridor, room, box, paddock, or a TOML map.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="The seed of all random numbers.")] = None,
     fill: Annotated[
-        str | None, typer.Option(help="What unwritten memory holds: zero, ones, nan, random:SEED, stack, trap.")
+        str | None, typer.Option(help="The content of uninitialised memory: zero, ones, nan, random:SEED, stack, trap.")
     ] = None,
     float_division: own_c.FloatDivision = None,
     for_s: Annotated[
-        float | None, typer.Option("--for", metavar="SECONDS", help="Virtual time after start-up (default 10).")
+        float | None,
+        typer.Option("--for", metavar="SECONDS", help="Run this much virtual time after start-up (default 10).")
     ] = None,
     order: show.OrdersOrMission = None,
     realistic: Annotated[
         bool | None,
-        typer.Option("--realistic/--ideal", help="Devices and wheels with noise, bounce, slip, loss, or not."),
+        typer.Option("--realistic/--ideal", help="Simulate noise, contact bounce, wheel slip and packet loss, or not."),
     ] = None,
     fix: Annotated[
-        list[str] | None, typer.Option(metavar="ID", help="Link in a correction of the catalogue, or all; repeatable.")
+        list[str] | None, typer.Option(metavar="ID", help="Link a correction of the catalogue, or all; repeatable.")
     ] = None,
     fault: Fault = None,
     feed: Feed = None,
     silence: Annotated[
         bool | None,
-        typer.Option("--silence", help="Run driver files once more, longer, with serial lines and I2C parts that fall "
-                     "silent: outputs that follow what is too old."),
+        typer.Option("--silence", help="Run driver files again, longer, with silent serial lines and I2C parts: find "
+                     "outputs that follow old values."),
     ] = None,
     fail_on: Annotated[
-        str | None, typer.Option(metavar="SEVERITY", help="Findings that count: error, warning (default), note, never.")
+        str | None,
+        typer.Option(metavar="SEVERITY", help="Fail from this severity on: error, warning (default), note, never.")
     ] = None,
-    baseline: Annotated[Path | None, typer.Option(metavar="FILE", help="Known findings, which do not count.")] = None,
+    baseline: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A file of known findings, which do not count.")
+    ] = None,
     update_baseline: Annotated[
-        bool, typer.Option("--update-baseline", help="Make what is found now the baseline.")
+        bool, typer.Option("--update-baseline", help="Write the present findings into the baseline.")
     ] = False,
     proof: Annotated[
-        bool, typer.Option("--proof/--no-proof", help="Show what each finding reaches, by two fills.")
+        bool,
+        typer.Option("--proof/--no-proof", help="Show the outputs that each finding changes, with two memory fills.")
     ] = False,
-    against: Annotated[str, typer.Option(metavar="FILL", help="The second fill of the proof.")] = "ones",
+    against: Annotated[str, typer.Option(metavar="FILL", help="The second memory fill of the proof.")] = "ones",
     proof_for_s: Annotated[
-        float, typer.Option("--proof-for", metavar="SECONDS", help="Virtual time of each run of the proof.")
+        float, typer.Option("--proof-for", metavar="SECONDS", help="The virtual time of each run of the proof.")
     ] = 1.0,
     sarif: Annotated[Path | None, typer.Option(metavar="FILE", help="Write SARIF 2.1.0.")] = None,
     html: Annotated[Path | None, typer.Option(metavar="FILE", help="Write one HTML page.")] = None,
     junit: Annotated[Path | None, typer.Option(metavar="FILE", help="Write JUnit XML.")] = None,
     lcov: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write how often each line of the firmware ran (lcov).")
+        Path | None, typer.Option(metavar="FILE", help="Write the line coverage of the firmware (lcov).")
     ] = None,
     details: Annotated[bool, typer.Option("--details", help="Show each finding in full.")] = False,
     lines: Annotated[
-        bool, typer.Option("--lines", help="Findings as a compiler prints its own, for editors, and no table.")
+        bool, typer.Option("--lines", help="Print findings in a compiler's format, for editors, instead of the table.")
     ] = False,
-    json_output: Annotated[bool, typer.Option("--json", help="The report as one JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print the report as one JSON object on stdout.")] = False,
 ) -> None:
-    """Run a scenario with every detector on; report findings in the terminal and as JSON, SARIF, HTML, JUnit."""
+    """Run the robot or your own drivers with all detectors; report findings as text, JSON, SARIF, HTML, JUnit."""
     with show.user_errors():
         from emulator.c28x.coverage import Coverage
         from hil.reports.lcov import write_lcov

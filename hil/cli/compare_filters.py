@@ -13,12 +13,12 @@ from hil.cli import show
 
 
 def compare_filters(
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the emulated robot.")] = 1,
-    readings: Annotated[int, typer.Option(min=1, max=10_000, help="Readings a distance.")] = 30,
+    seed: Annotated[int, typer.Option(min=0, help="The seed of the emulated robot.")] = 1,
+    readings: Annotated[int, typer.Option(min=1, max=10_000, help="The number of readings at each distance.")] = 30,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the errors (PNG, SVG).")] = None,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
-    """Read the same pings of the front sonar through us.c's sum, its median, the thesis' text, the corrected driver.
+    """Compare filters of the front sonar: us.c's sum, its median, the thesis' text, the corrected driver.
 
     [bold]Examples[/bold]
       hil compare-filters

@@ -19,12 +19,12 @@ FIRST_DIFFERENCES: Final = 10
 
 def conformance(
     files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Golden-vector files (JSON).")],
-    differences: Annotated[int, typer.Option(min=0, help="How many differences to show.")] = FIRST_DIFFERENCES,
+    differences: Annotated[int, typer.Option(min=0, help="Show this many differences.")] = FIRST_DIFFERENCES,
     firmware: own_c.Firmware = None,
     project: own_c.Project = None,
     include: own_c.Include = None,
     define: own_c.Define = None,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
     """Run golden-vector files against the model, or against C files (--firmware); exit 1 if a vector fails.
 

@@ -31,34 +31,39 @@ WINDOWS: Final = (
 
 def console(
     app: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="A console program to run unmodified: the thesis' main.py.")
+        Path | None, typer.Option(metavar="FILE", help="Run a console program, unmodified: the main.py of the thesis.")
     ] = None,
     port: Annotated[
-        str | None, typer.Option(metavar="PORT", help="A running robot: device or URL. Without: a fresh emulated one.")
+        str | None,
+        typer.Option(metavar="PORT", help="The device or URL of a running robot (default: a new emulated robot)."),
     ] = None,
     wire: Annotated[
-        Path | None, typer.Option(metavar="LOG", help="Log both directions of the line, with time (for hil replay).")
+        Path | None, typer.Option(metavar="LOG", help="Log both directions of the line, with times (for hil replay).")
     ] = None,
     folder: Annotated[
-        Path, typer.Option("--dir", metavar="FOLDER", help="Where the program runs; its files stay there.")
+        Path, typer.Option("--dir", metavar="FOLDER", help="Run the program in this folder. Its files stay there.")
     ] = FOLDER,
     python: Annotated[
-        str, typer.Option(metavar="PYTHON", help="The Python that runs the program.", show_default="this one")
+        str, typer.Option(metavar="PYTHON", help="The Python interpreter for the program.", show_default="this one")
     ] = sys.executable,
     world: Annotated[
-        str, typer.Option(help="World of a fresh robot: corridor, room, box, paddock, or a TOML map.")
+        str, typer.Option(help="The environment of an emulated robot: corridor, room, box, paddock, or a TOML map.")
     ] = "corridor",
-    seed: Annotated[int, typer.Option(min=0, help="Seed of a fresh robot.")] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="The seed of an emulated robot.")] = 1,
     view: Annotated[
-        bool, typer.Option("--view", help="In the browser instead, for the robot at --port (extra view).")
+        bool, typer.Option("--view", help="Show the console in the browser, for the robot at --port (extra view).")
     ] = False,
-    view_port: Annotated[int, typer.Option(min=0, max=65535, help="Where its page is; 0 takes a free port.")] = 8080,
-    view_host: Annotated[str, typer.Option(help="Elsewhere than on loopback the page needs a token.")] = "127.0.0.1",
-    json_output: Annotated[bool, typer.Option("--json", help="The summary as one JSON object on stdout.")] = False,
+    view_port: Annotated[int, typer.Option(min=0, max=65535, help="The port of the page; 0: any free port.")] = 8080,
+    view_host: Annotated[
+        str, typer.Option(help="The host address of the page. Any address but loopback needs a token.")
+    ] = "127.0.0.1",
+    json_output: Annotated[
+        bool, typer.Option("--json", help="Print the summary as one JSON object on stdout.")
+    ] = False,
 ) -> None:
-    """A console in this terminal, for any robot; with --app the Windows console of the thesis, unmodified.
+    """Control any robot from this terminal; with --app, run the thesis' Windows console, unmodified.
 
-    When it ends, the robot is stopped.
+    At the end the robot is stopped.
 
     [bold]Examples[/bold]
       hil console

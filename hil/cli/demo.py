@@ -21,15 +21,19 @@ PICTURE_S: Final = 60.0
 
 
 def demo(
-    world: Annotated[str, typer.Option(help="corridor, room, box, paddock, or a TOML map.")] = "corridor",
+    world: Annotated[
+        str, typer.Option(help="The robot's environment: corridor, room, box, paddock, or a TOML map.")
+    ] = "corridor",
     seed: show.Seed = 1,
-    terminal: Annotated[bool, typer.Option("--terminal", help="In this terminal, with the view there or not.")] = False,
+    terminal: Annotated[
+        bool, typer.Option("--terminal", help="Draw in this terminal, even if the extra view is installed.")
+    ] = False,
     open_page: show.OpenPage = None,
-    view_port: Annotated[int, typer.Option(min=0, max=65535, help="Where the page is; 0 takes a free port.")] = 0,
+    view_port: Annotated[int, typer.Option(min=0, max=65535, help="The port of the page; 0: any free port.")] = 0,
 ) -> None:
-    """Watch the robot drive a mission by itself: in the browser with the extra `view`, else in this terminal.
+    """Watch the robot drive a mission: in the browser with the extra `view`, else in this terminal.
 
-    Space stops it, Ctrl-C ends it.  Without a terminal it is drawn into demo.png.
+    Space stops the robot, Ctrl-C ends the demo.  Without a terminal the demo writes demo.png.
 
     [bold]Examples[/bold]
       hil demo

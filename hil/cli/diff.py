@@ -23,27 +23,27 @@ if TYPE_CHECKING:
 
 def diff(
     firmware: Annotated[
-        list[Path], typer.Argument(metavar="DIR...", help="The robot's own C files: folders, or files, by name.")
+        list[Path], typer.Argument(metavar="DIR...", help="Your C files with the robot's file names: folders or files.")
     ],
     project: own_c.Project = None,
     include: own_c.Include = None,
     define: own_c.Define = None,
-    cycles: Annotated[bool, typer.Option("--cycles", help="Cycles must be equal, too.")] = False,
+    cycles: Annotated[bool, typer.Option("--cycles", help="Also compare cycles.")] = False,
     for_s: Annotated[
-        float, typer.Option("--for", metavar="SECONDS", min=0.001, help="Virtual time of the runs after start-up.")
+        float, typer.Option("--for", metavar="SECONDS", min=0.001, help="Run this much virtual time after start-up.")
     ] = 5.0,
     order: show.OrdersOrMission = None,
     calls: Annotated[
-        int, typer.Option(min=1, max=10_000, help="Generated argument lists a function that differs.")
+        int, typer.Option(min=1, max=10_000, help="Call each function that differs with this many generated inputs.")
     ] = 30,
     world: show.World = "corridor",
     seed: show.Seed = 1,
     fill: Annotated[
-        str, typer.Option(help="What unwritten memory holds: zero, ones, nan, random:SEED, stack, trap.")
+        str, typer.Option(help="The content of uninitialised memory: zero, ones, nan, random:SEED, stack, trap.")
     ] = "zero",
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
-    """Compare the port with your own C of the same functions: trees, calls of what differs, runs of the robot.
+    """Compare your C with the ported firmware: syntax trees, calls of functions that differ, runs of the robot.
 
     Functions with equal trees do the same with every input.  The others are called with generated arguments on both
     sides.  Then the robot runs on both; what each thread does is compared by order and payload, cycles are reported.

@@ -24,9 +24,9 @@ def docs(
     page: Annotated[
         str | None, typer.Argument(metavar="[PAGE]", help="The name of a page.", autocompletion=complete_page)
     ] = None,
-    markdown: Annotated[bool, typer.Option("--markdown", help="The text of the page as it was written.")] = False,
+    markdown: Annotated[bool, typer.Option("--markdown", help="Print the source text of the page.")] = False,
     site: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Build all pages, rules and commands as a site (extra docs).")
+        Path | None, typer.Option(metavar="DIR", help="Build a site of all pages, rules and commands (extra docs).")
     ] = None,
 ) -> None:
     """Show a page of the documentation; without a name, list all pages.

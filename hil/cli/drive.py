@@ -29,22 +29,27 @@ def complete_words(incomplete: str) -> list[str]:
 
 
 def drive(
-    port: Annotated[str, typer.Argument(metavar="PORT", help="Device or URL: COM3, socket://..., rfc2217://...")],
+    port: Annotated[str, typer.Argument(metavar="PORT", help="The device or URL: COM3, socket://..., rfc2217://...")],
     words: Annotated[
         list[str],
         typer.Argument(
             metavar="ORDER...",
-            help="stop mission tele set V W calibrate init watch; several in a row are sent one after the other.",
+            help="Orders, sent in sequence: stop mission tele set V W calibrate init watch.",
             autocompletion=complete_words,
         ),
     ],
     for_s: Annotated[
-        float | None, typer.Option("--for", metavar="SECONDS", min=0, help="How long to show frames afterwards.")
+        float | None,
+        typer.Option("--for", metavar="SECONDS", min=0, help="Show frames for this time after the last order."),
     ] = None,
-    png: Annotated[Path | None, typer.Option(metavar="FILE", help="Trajectory and point cloud at the end.")] = None,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object with all frames at the end.")] = False,
+    png: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw the trajectory and the point cloud at the end.")
+    ] = None,
+    json_output: Annotated[
+        bool, typer.Option("--json", help="Print one JSON object with all frames at the end.")
+    ] = False,
 ) -> None:
-    """Send orders through any serial port; show and draw the frames that come back.
+    """Send orders through a serial port; show and draw the frames that the robot sends.
 
     [bold]Examples[/bold]
       hil drive COM3 mission watch

@@ -22,9 +22,12 @@ def complete_rule(incomplete: str) -> list[str]:
 
 def explain(
     rule: Annotated[
-        str | None, typer.Argument(metavar="[RULE]", help="A rule's identifier.", autocompletion=complete_rule)
+        str | None,
+        typer.Argument(
+            metavar="[RULE]", help="The identifier of a rule (default: list all).", autocompletion=complete_rule
+        ),
     ] = None,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
     """Explain a rule that findings name; without one, list all rules.
 

@@ -13,18 +13,18 @@ from hil.files import check_target
 
 
 def export(
-    trace: Annotated[Path | None, typer.Argument(metavar="TRACE", help="A trace of hil run --trace.")] = None,
+    trace: Annotated[Path | None, typer.Argument(metavar="TRACE", help="A trace file of hil run --trace.")] = None,
     target: Annotated[
-        Path | None, typer.Argument(metavar="OUT", help="What to write; its suffix is the format.")
+        Path | None, typer.Argument(metavar="OUT", help="The file to write. Its suffix selects the format.")
     ] = None,
     channel: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="Only this channel of the trace (repeatable)."),
+        typer.Option(metavar="NAME", help="Export only this channel of the trace; repeatable."),
     ] = None,
-    channels: Annotated[bool, typer.Option("--channels", help="List channels and formats.")] = False,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    channels: Annotated[bool, typer.Option("--channels", help="List the channels and formats.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
-    """Write a trace file for another tool: VCD, Perfetto, MCAP, CSV, NumPy, Parquet, text; or as a page.
+    """Convert a trace file: VCD, Perfetto, MCAP, CSV, NumPy, Parquet, text, HTML page.
 
     [bold]Examples[/bold]
       hil run --no-port --pace max --for 5 --order mission --trace run.trace

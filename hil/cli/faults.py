@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Fault = Annotated[
     list[str] | None,
     typer.Option(
-        metavar="KIND[:NAME=VALUE,...]", help="Something that breaks (hil faults): gyro-reset:at=2; repeatable."
+        metavar="KIND[:NAME=VALUE,...]", help="Inject a fault (hil faults), such as gyro-reset:at=2; repeatable."
     ),
 ]
 
@@ -53,14 +53,14 @@ def complain_of_silent(machine: Machine) -> bool:
 
 
 def faults(
-    name: Annotated[str | None, typer.Argument(metavar="[KIND]", help="Only this one, with what each parameter is.")]
+    name: Annotated[str | None, typer.Argument(metavar="[KIND]", help="Describe one kind and its parameters.")]
     = None,
     table: Annotated[
-        bool, typer.Option("--table", help="Measure what the corrected robot does under each single fault (a minute).")
+        bool, typer.Option("--table", help="Measure how the corrected robot reacts to each single fault (a minute).")
     ] = False,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
-    """List what can break on purpose: kinds of faults, parameters, units, defaults.
+    """List the faults that can be injected: kinds, parameters, units, defaults.
 
     [bold]Examples[/bold]
       hil faults
@@ -68,7 +68,7 @@ def faults(
       hil faults --table
       hil run --order mission --fault encoder-edge-lost:side=left,rate=0.1,at=2
 
-    A fault that never fired fails the run which declared it.
+    A run fails if a fault that it declares never fires.
     """
     with show.user_errors():
         from hil.faults import FAULTS

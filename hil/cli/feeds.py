@@ -11,6 +11,6 @@ Feed = Annotated[
     list[str] | None,
     typer.Option(
         metavar="[INPUT=]SOURCE",
-        help="What sensors see instead of the physics: a trace, a CSV, INPUT=NUMBER (hil docs feeds); repeatable.",
+        help="Replace sensor inputs: a trace, a CSV file, INPUT=NUMBER (hil docs feeds); repeatable.",
     ),
 ]

@@ -37,11 +37,15 @@ class Language(StrEnum):
 
 
 def new(
-    folder: Annotated[Path, typer.Argument(metavar="NAME", help="The driver's name, or a folder that ends in it.")],
-    language: Annotated[Language, typer.Option(help="C, or C in Python's clothes (hil docs language).")] = Language.C,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    folder: Annotated[
+        Path, typer.Argument(metavar="NAME", help="The name of the driver, or a path that ends with it.")
+    ],
+    language: Annotated[
+        Language, typer.Option(help="The language: c, or python (C-shaped Python, hil docs language).")
+    ] = Language.C,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
-    """Make a project for a driver of your own: driver, board, tests, editor, CI.  It passes at once.
+    """Create a project for your own driver: driver, board, tests, editor, CI.  Its tests pass.
 
     [bold]Examples[/bold]
       hil new ranger

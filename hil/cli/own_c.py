@@ -17,24 +17,25 @@ Firmware = Annotated[
     list[Path] | None,
     typer.Option(
         "--firmware", metavar="DIR",
-        help="The robot's own C files (a folder, or one file), by name; the program of --board; repeatable.",
+        help="C files of the robot (file or folder, by name), or the program of --board; repeatable.",
     ),
 ]
 Project = Annotated[
     Path | None,
-    typer.Option("--project", metavar="FILE", help="Code Composer's .cproject (default: that of --firmware's folder)."),
+    typer.Option("--project", metavar="FILE",
+        help="A Code Composer .cproject file (default: the one in the folder of --firmware)."),
 ]
 Include = Annotated[
-    list[Path] | None, typer.Option("-I", metavar="DIR", help="Folder of C headers; repeatable.")
+    list[Path] | None, typer.Option("-I", metavar="DIR", help="A folder of C headers; repeatable.")
 ]
 Define = Annotated[
-    list[str] | None, typer.Option("-D", metavar="NAME[=VALUE]", help="Macro for C files; repeatable.")
+    list[str] | None, typer.Option("-D", metavar="NAME[=VALUE]", help="Define a macro for C files; repeatable.")
 ]
 FloatDivision = Annotated[
     str | None,
     typer.Option(
         "--float-division", metavar="BUILD",
-        help=f"How long dividing floats takes, by the build: {', '.join(FLOAT_DIVISIONS)} "
+        help=f"The time of a float division: {', '.join(FLOAT_DIVISIONS)} "
         f"(default {DEFAULT_FLOAT_DIVISION}).",
     ),
 ]  # fmt: skip

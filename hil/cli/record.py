@@ -28,22 +28,27 @@ _LOG_HELP: Final = "A wire log (hil record, hil console --wire)."
 
 
 def record(
-    port: Annotated[str, typer.Argument(metavar="PORT", help="The robot: device or URL.")],
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="LOG", help="Where the log goes.")],
+    port: Annotated[str, typer.Argument(metavar="PORT", help="The device or URL of the robot.")],
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="LOG", help="The log file to write.")],
     to: Annotated[
-        str | None, typer.Option(metavar="DEVICE", help="The console's side: an existing device (com0com).")
+        str | None, typer.Option(metavar="DEVICE", help="The port for the console: an existing device (com0com).")
     ] = None,
     link: Annotated[
-        str | None, typer.Option(metavar="NAME", help="The console's side: a pseudo-terminal of this name.")
+        str | None, typer.Option(metavar="NAME", help="The port for the console: a pseudo-terminal with this name.")
     ] = None,
     listen: Annotated[
-        str | None, typer.Option(metavar="URL", help="The console's side: tcp://HOST:PORT or rfc2217://HOST:PORT.")
+        str | None,
+        typer.Option(metavar="URL", help="The port for the console: tcp://HOST:PORT or rfc2217://HOST:PORT."),
     ] = None,
-    for_s: Annotated[float | None, typer.Option("--for", metavar="SECONDS", min=0, help="How long.")] = None,
-    deliver: Annotated[Deliver, typer.Option(help="Hand frames over whole, or byte by byte.")] = Deliver.FRAMES,
-    json_output: Annotated[bool, typer.Option("--json", help="The summary as one JSON object on stdout.")] = False,
+    for_s: Annotated[
+        float | None, typer.Option("--for", metavar="SECONDS", min=0, help="Record for this time.")
+    ] = None,
+    deliver: Annotated[Deliver, typer.Option(help="Deliver whole frames, or single bytes.")] = Deliver.FRAMES,
+    json_output: Annotated[
+        bool, typer.Option("--json", help="Print the summary as one JSON object on stdout.")
+    ] = False,
 ) -> None:
-    """Stand between a robot and a console, carry every byte, and write a log of both directions with time.
+    """Forward all bytes between a robot and a console, and log both directions with times.
 
     [bold]Examples[/bold]
       hil record /dev/ttyUSB0 --link COM3 -o run.wire   (the console opens COM3)
@@ -89,24 +94,33 @@ def record(
 def replay(
     log: Annotated[Path, typer.Argument(metavar="LOG", help=_LOG_HELP)],
     to_console: Annotated[
-        bool, typer.Option("--to-console", help="Play the frames on a port instead, at their times.")
+        bool,
+        typer.Option("--to-console", help="Send the robot's frames to a console instead, at their recorded times."),
     ] = False,
-    link: Annotated[str | None, typer.Option(metavar="NAME", help="With --to-console: name of the port.")] = None,
-    listen: Annotated[str | None, typer.Option(metavar="URL", help="With --to-console: tcp:// or rfc2217://.")] = None,
-    port: Annotated[str | None, typer.Option(metavar="DEVICE", help="With --to-console: existing device.")] = None,
+    link: Annotated[
+        str | None, typer.Option(metavar="NAME", help="With --to-console, the name of the pseudo-terminal.")
+    ] = None,
+    listen: Annotated[
+        str | None, typer.Option(metavar="URL", help="With --to-console, a tcp:// or rfc2217:// address.")
+    ] = None,
+    port: Annotated[str | None, typer.Option(metavar="DEVICE", help="With --to-console, an existing device.")] = None,
     wait: Annotated[
-        bool, typer.Option("--wait", help="With --to-console: begin when the console has sent something.")
+        bool, typer.Option("--wait", help="With --to-console, start when the first byte comes from the console.")
     ] = False,
     world: Annotated[
-        str | None, typer.Option(help="The emulated robot's world, if not the log's.", show_default=False)
+        str | None,
+        typer.Option(help="The environment of the emulated robot (default: that of the log).", show_default=False),
     ] = None,
-    seed: Annotated[int | None, typer.Option(min=0, help="Its seed, if not the log's.", show_default=False)] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(min=0, help="The seed of the emulated robot (default: that of the log).", show_default=False),
+    ] = None,
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="LOG", help="Log of the replay, for hil compare.")
+        Path | None, typer.Option("--output", "-o", metavar="LOG", help="Write a log of the replay, for hil compare.")
     ] = None,
-    json_output: Annotated[bool, typer.Option("--json", help="The result as one JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print the result as one JSON object on stdout.")] = False,
 ) -> None:
-    """Play a log against the emulated robot, and say whether it sends the same bytes; exit 1 if it does not.
+    """Replay a log on the emulated robot and compare the bytes that it sends; exit 1 if they differ.
 
     A log of the emulated robot says which robot it was. Others are played against the standard one.
 
@@ -206,12 +220,17 @@ def _print_verdict(verdict: Verdict) -> None:
 
 def compare(
     first: Annotated[Path, typer.Argument(metavar="LOG", help=_LOG_HELP + " Or the console's trayectoria.txt.")],
-    second: Annotated[Path, typer.Argument(metavar="LOG", help="Another.")],
-    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Both runs in a picture.")] = None,
+    second: Annotated[Path, typer.Argument(metavar="LOG", help="The second log.")],
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw both runs.")] = None,
     tolerance_s: Annotated[
-        float, typer.Option("--tolerance", metavar="SECONDS", min=0.001, help="Frames further apart are no pair.")
+        float,
+        typer.Option(
+            "--tolerance", metavar="SECONDS", min=0.001, help="Pair two frames only if they are closer than this."
+        ),
     ] = TOLERANCE_S,
-    json_output: Annotated[bool, typer.Option("--json", help="The comparison as one JSON object on stdout.")] = False,
+    json_output: Annotated[
+        bool, typer.Option("--json", help="Print the comparison as one JSON object on stdout.")
+    ] = False,
 ) -> None:
     """Align two runs by their first order and show how their frames differ.
 

@@ -34,35 +34,43 @@ PHASINGS: Final = 20
 
 def rta(
     sheet: Annotated[
-        Path | None, typer.Argument(metavar="[SHEET]", help="A TOML sheet of tasks; none: the running firmware.")
+        Path | None, typer.Argument(metavar="[SHEET]", help="A TOML file of tasks (default: measure the firmware).")
     ] = None,
     thesis: Annotated[
-        bool, typer.Option("--thesis", help="Figures 37 to 41 and section 3.4.4 of the thesis, cell by cell.")
+        bool, typer.Option("--thesis", help="Check figures 37 to 41 and section 3.4.4 of the thesis.")
     ] = False,
     protocol: Annotated[
-        str, typer.Option(metavar="NAME", help="Of the gates: none, inheritance (GateMutexPri), ceiling.")
+        str, typer.Option(metavar="NAME", help="The gate protocol: none, inheritance (GateMutexPri), ceiling.")
     ] = "inheritance",
     phasings: Annotated[
-        int, typer.Option(min=0, max=1_000_000, help="Random phasings besides the critical instant.")
+        int, typer.Option(min=0, max=1_000_000, help="The number of random phasings, besides the critical instant.")
     ] = PHASINGS,
     synthetic: Annotated[
-        bool, typer.Option("--synthetic", help="Of the firmware: run the measured set as synthetic tasks, too.")
+        bool, typer.Option("--synthetic", help="Also run the measured task set as synthetic tasks.")
     ] = False,
     interrupts: Annotated[
-        bool, typer.Option("--interrupts/--no-interrupts", help="Count interrupts and Swis in.")
+        bool, typer.Option("--interrupts/--no-interrupts", help="Include interrupts and Swis, or not.")
     ] = True,
-    jitter: Annotated[bool, typer.Option("--jitter/--no-jitter", help="Count release jitter in.")] = True,
+    jitter: Annotated[bool, typer.Option("--jitter/--no-jitter", help="Include release jitter, or not.")] = True,
     kernel_scale: Annotated[
         float | None,
-        typer.Option("--kernel", metavar="FACTOR", min=0, help="Time of kernel services of synthetic tasks; 0: none."),
+        typer.Option(
+            "--kernel", metavar="FACTOR", min=0,
+            help="Scale the time of kernel services of synthetic tasks; 0: no time.",
+        ),
     ] = None,
-    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture of the worst moment seen.")] = None,
-    task: Annotated[str | None, typer.Option(metavar="NAME", help="Task of that picture.")] = None,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the worst activation that was seen.")] = None,
+    task: Annotated[str | None, typer.Option(metavar="NAME", help="The task that --plot draws.")] = None,
     order: Annotated[
-        list[str] | None, typer.Option(metavar="ORDER", help="Order to the robot, one a phasing in turn; repeatable.")
+        list[str] | None,
+        typer.Option(metavar="ORDER", help="An order to the robot. Phasings take the orders in turn; repeatable.")
     ] = None,
     board: Annotated[
-        str, typer.Option(metavar="NAME|FILE", help="robot, or your own board: it runs the program of --firmware.")
+        str,
+        typer.Option(
+            metavar="NAME|FILE",
+            help="The board: robot, or a file of your own, which runs the program of --firmware.",
+        ),
     ] = "robot",
     option: Option = None,
     world: show.World = "corridor",
@@ -72,9 +80,9 @@ def rta(
     project: own_c.Project = None,
     include: own_c.Include = None,
     define: own_c.Define = None,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
-    """Compute worst response times, and look for them on the emulated kernel.
+    """Compute worst-case response times, and measure response times on the emulated kernel.
 
     Exit status 1: a deadline is missed, or a response was seen that is longer than the one computed with the largest
     times of the same runs.

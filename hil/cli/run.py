@@ -76,10 +76,10 @@ EXAMPLES: Final = """
   hil run --board station.py --firmware DIR --view
 
 [bold]Exit status[/bold]
-  0  it ran until --for, or without that until Ctrl-C or SIGTERM
-  1  the firmware stopped, a fault never fired, or not as --scenario says
-  2  bad input, or the port has gone away
-  130  Ctrl-C or SIGTERM came before --for or start-up was over
+  0  the run ended after --for, or by Ctrl-C or SIGTERM if there is no --for
+  1  the firmware stopped, a fault never fired, or --scenario failed
+  2  bad input, or the port was lost
+  130  Ctrl-C or SIGTERM before --for or start-up was over
 """
 
 
@@ -96,91 +96,116 @@ def parse_pace(text: str) -> float | None:
 def run(
     scenario: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="A scenario, live: its robot, world, orders, faults; judged at the end."),
+        typer.Option(metavar="FILE", help="Run a scenario file live and check it at the end."),
     ] = None,
-    world: Annotated[str | None, typer.Option(help="corridor (default), room, box, paddock, or a TOML map.")] = None,
+    world: Annotated[
+        str | None, typer.Option(help="The robot's environment: corridor (default), room, box, paddock, or a TOML map.")
+    ] = None,
     board: Annotated[
-        str, typer.Option(metavar="NAME|FILE", help="robot, or your own board: it runs the program of --firmware.")
+        str,
+        typer.Option(
+            metavar="NAME|FILE",
+            help="The board: robot, or a file of your own, which runs the program of --firmware.",
+        ),
     ] = "robot",
     option: Option = None,
     put: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="[TIME:]PART.FACE=VALUE", help="What a part sees, from power-up or TIME on (hil board); repeatable."
+            metavar="[TIME:]PART.FACE=VALUE",
+            help="Set an input of a part, from power-up or TIME on (hil board); repeatable."
         ),
     ] = None,
     link: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Stable name for the pseudo-terminal (COM3).")
+        str | None, typer.Option(metavar="NAME", help="Name the pseudo-terminal (COM3).")
     ] = None,
     listen: Annotated[
-        str | None, typer.Option(metavar="URL", help="tcp://HOST:PORT or rfc2217://HOST:PORT instead.")
+        str | None, typer.Option(metavar="URL", help="Serve the port at tcp://HOST:PORT or rfc2217://HOST:PORT.")
     ] = None,
-    port: Annotated[str | None, typer.Option(metavar="DEVICE", help="An existing serial device instead.")] = None,
-    no_port: Annotated[bool, typer.Option("--no-port", help="No port: scripted orders only.")] = False,
-    pace: Annotated[str, typer.Option(metavar="PACE", help="Virtual per real time: 1, 0.25, ..., max.")] = "1",
+    port: Annotated[
+        str | None, typer.Option(metavar="DEVICE", help="Use an existing serial device as the port.")
+    ] = None,
+    no_port: Annotated[bool, typer.Option("--no-port", help="Open no port. Only --order sends orders.")] = False,
+    pace: Annotated[
+        str, typer.Option(metavar="PACE", help="The ratio of virtual to real time: 1, 0.25, ..., max.")
+    ] = "1",
     for_s: Annotated[
-        float | None, typer.Option("--for", metavar="SECONDS", min=0, help="Virtual time to run after start-up.")
+        float | None,
+        typer.Option(
+            "--for", metavar="SECONDS", min=0,
+            help="Run this much virtual time after start-up (default: no end).",
+        ),
     ] = None,
     seed: show.Seed = 1,
     fill: Annotated[
-        str, typer.Option(help="What unwritten memory holds: zero, ones, nan, random:SEED, stack, trap.")
+        str, typer.Option(help="The content of uninitialised memory: zero, ones, nan, random:SEED, stack, trap.")
     ] = "zero",
     divide: Annotated[
-        str, typer.Option(help="What dividing floats gives: ieee, or nr (as the chip iterates).")
+        str, typer.Option(help="The result of a float division: ieee, or nr (the chip's Newton-Raphson iteration).")
     ] = "ieee",
     float_division: own_c.FloatDivision = None,
     realistic: Annotated[
-        bool, typer.Option("--realistic/--ideal", help="Devices and wheels with noise, bounce, slip, loss, or not.")
+        bool,
+        typer.Option("--realistic/--ideal", help="Simulate noise, contact bounce, wheel slip and packet loss, or not.")
     ] = True,
     fix: Annotated[
         list[str] | None,
         typer.Option(metavar="ID", help="Link a correction of the catalogue, or all; repeatable."),
     ] = None,
     xbee: Annotated[
-        bool | None, typer.Option("--xbee/--no-xbee", help="Put an XBee pair between robot and port.")
+        bool | None, typer.Option("--xbee/--no-xbee", help="Connect the robot and the port by a pair of XBees, or not.")
     ] = None,
     deliver: Annotated[
         Deliver | None,
         typer.Option(
-            help="Hand frames over whole at the end of their last byte (default of the robot), or byte by byte."
+            help="Deliver whole frames (default of the robot) or single bytes."
         ),
     ] = None,
-    keep: Annotated[int, typer.Option(min=1, max=64, help="Unread frames kept; the oldest give way.")] = DEFAULT_KEEP,
+    keep: Annotated[
+        int, typer.Option(min=1, max=64, help="Keep this many unread frames. Older frames are dropped.")
+    ] = DEFAULT_KEEP,
     order: show.Orders = None,
     fault: Fault = None,
     feed: Feed = None,
     plot: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Picture of the drive at the end; of a .gif a moving one.")
+        Path | None, typer.Option(metavar="FILE", help="Draw the drive at the end. A .gif file is animated.")
     ] = None,
     wire: Annotated[
-        Path | None, typer.Option(metavar="LOG", help="Log both directions of the line, with time (for hil replay).")
+        Path | None, typer.Option(metavar="LOG", help="Log both directions of the line, with times (for hil replay).")
     ] = None,
     trace: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write what happens into a trace file (hil export).")
+        Path | None, typer.Option(metavar="FILE", help="Write a trace file of the run (hil export).")
     ] = None,
     page: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write one HTML file that plays the run again, in any browser.")
+        Path | None, typer.Option(metavar="FILE", help="Write one HTML file that replays the run in any browser.")
     ] = None,
     channel: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="A channel of --trace, --page, or all (hil export --channels); repeatable."),
+        typer.Option(
+            metavar="NAME",
+            help="Record this channel in --trace and --page, or all (hil export --channels); repeatable.",
+        ),
     ] = None,
     lcov: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write how often each line of the firmware ran (lcov).")
+        Path | None, typer.Option(metavar="FILE", help="Write the line coverage of the firmware (lcov).")
     ] = None,
     firmware: own_c.Firmware = None,
     project: own_c.Project = None,
     include: own_c.Include = None,
     define: own_c.Define = None,
-    json_output: Annotated[bool, typer.Option("--json", help="The summary as one JSON object on stdout.")] = False,
-    view: Annotated[bool, typer.Option("--view", help="Show it in the browser (extra view).")] = False,
-    view_port: Annotated[int, typer.Option(min=0, max=65535, help="Where its page is; 0 takes a free port.")] = 8080,
-    view_host: Annotated[str, typer.Option(help="Elsewhere than on loopback the page needs a token.")] = "127.0.0.1",
+    json_output: Annotated[
+        bool, typer.Option("--json", help="Print the summary as one JSON object on stdout.")
+    ] = False,
+    view: Annotated[bool, typer.Option("--view", help="Show the run in the browser (extra view).")] = False,
+    view_port: Annotated[int, typer.Option(min=0, max=65535, help="The port of the page; 0: any free port.")] = 8080,
+    view_host: Annotated[
+        str, typer.Option(help="The host address of the page. Any address but loopback needs a token.")
+    ] = "127.0.0.1",
     open_page: show.OpenPage = None,
 ) -> None:
-    """Boot the robot (2 s of start-up at full speed) and put it behind a serial port until Ctrl-C.
+    """Run the robot behind a serial port until Ctrl-C. Its start-up of 2 s runs at full speed.
 
-    With --board a program of your own runs on a board of your own, from power-up on.
+    With --board, your own program runs on your own board, from power-up on.
     """
     with show.user_errors(), ExitStack() as stack:
         live = None

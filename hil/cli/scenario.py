@@ -25,8 +25,8 @@ EXAMPLES: Final = """
   hil scenario --schema > scenario.schema.json
 
 [bold]Exit status[/bold]
-  0  all is as the files say
-  1  something is not
+  0  every expectation is met
+  1  an expectation is not met
   2  bad input
 
   A file with faithful_fails is run twice: with its corrections, where everything must come true, and without those of
@@ -39,14 +39,16 @@ def scenario(
     files: Annotated[
         list[Path] | None, typer.Argument(metavar="[FILE...]", help="Scenario files, or folders with *.scenario.toml.")
     ] = None,
-    shipped: Annotated[bool, typer.Option("--shipped", help="Those that come with the tool.")] = False,
-    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, max=64, help="How many at a time.")] = 1,
+    shipped: Annotated[bool, typer.Option("--shipped", help="Run the scenarios that come with the tool.")] = False,
+    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, max=64, help="Run this many in parallel.")] = 1,
     junit: Annotated[Path | None, typer.Option(metavar="FILE", help="Write JUnit XML.")] = None,
-    schema: Annotated[bool, typer.Option("--schema", help="Print the JSON schema of the files, and end.")] = False,
-    keys: Annotated[bool, typer.Option("--keys", help="Print the table of keys (Markdown), and end.")] = False,
-    json_output: Annotated[bool, typer.Option("--json", help="What came out as one JSON object on stdout.")] = False,
+    schema: Annotated[bool, typer.Option("--schema", help="Print the JSON schema of scenario files.")] = False,
+    keys: Annotated[bool, typer.Option("--keys", help="Print the table of keys as Markdown.")] = False,
+    json_output: Annotated[
+        bool, typer.Option("--json", help="Print the results as one JSON object on stdout.")
+    ] = False,
 ) -> None:
-    """Run scenario files: a robot in a world, orders, and what must come true."""
+    """Run scenario files: a robot, a world, orders, and the expected results."""
     with show.user_errors():
         from hil.scenarios import keys as table
         from hil.scenarios import running

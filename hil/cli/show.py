@@ -37,10 +37,11 @@ _PACKAGES: Final = ("hil", "emulator", "firmware_model")
 #: A word longer than any path that somebody works in.
 _ENDLESS: Final = re.compile(r"\S{400,}")
 #: Options of commands that run the robot.
-World = Annotated[str, typer.Option(help="corridor, room, box, paddock, or a TOML map.")]
-Seed = Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")]
+World = Annotated[str, typer.Option(help="The robot's environment: corridor, room, box, paddock, or a TOML map.")]
+Seed = Annotated[int, typer.Option(min=0, help="The seed of all random numbers.")]
 _ORDERS: Final = (
-    f"{', '.join(KEYWORDS)}, 'set V W' (m/s, rad/s), their four letters or #RAW, TIME s after start-up; repeatable"
+    f"Send an order, TIME s after start-up: {', '.join(KEYWORDS)}, 'set V W' (m/s, rad/s), their four letters, or "
+    "#RAW; repeatable"
 )
 Orders = Annotated[list[str] | None, typer.Option(metavar="[TIME:]ORDER", help=f"{_ORDERS}.")]
 OrdersOrMission = Annotated[

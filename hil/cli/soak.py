@@ -22,7 +22,7 @@ EXAMPLES: Final = """
   hil soak --faithful --json > soak.json
 
 [bold]Exit status[/bold]
-  0  the time is over
+  0  the run is complete
   2  bad input
 
   The same options give the same digests.
@@ -30,14 +30,18 @@ EXAMPLES: Final = """
 
 
 def soak(
-    for_s: Annotated[float, typer.Option("--for", metavar="SECONDS", min=1, max=1e6, help="Virtual time.")] = 600,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of everything that is random.")] = 1,
-    world: Annotated[str, typer.Option(help="A built-in world, or a TOML map.")] = "paddock",
-    faithful: Annotated[bool, typer.Option("--faithful", help="The firmware as in the C, not the corrected one.")]
+    for_s: Annotated[
+        float, typer.Option("--for", metavar="SECONDS", min=1, max=1e6, help="Run this much virtual time.")
+    ] = 600,
+    seed: Annotated[int, typer.Option(min=0, help="The seed of all random numbers.")] = 1,
+    world: Annotated[
+        str, typer.Option(help="The robot's environment: corridor, room, box, paddock, or a TOML map.")
+    ] = "paddock",
+    faithful: Annotated[bool, typer.Option("--faithful", help="Run the original firmware, without corrections.")]
     = False,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
-    """Let the robot drive for hours, break something at random every few seconds, and count what comes of it."""
+    """Let the robot drive for hours, inject a random fault every few seconds, and count the effects."""
     with show.user_errors():
         from hil.scenarios.soak import soak as run
 

@@ -48,7 +48,9 @@ PUBLISHED_CPU_LOAD: Final = 0.043188
 
 
 def tasks(
-    for_s: Annotated[float, typer.Option("--for", metavar="SECONDS", min=0.001, help="Virtual time to measure.")] = 10,
+    for_s: Annotated[
+        float, typer.Option("--for", metavar="SECONDS", min=0.001, help="Measure this much virtual time.")
+    ] = 10,
     order: show.Orders = None,
     world: show.World = "corridor",
     seed: show.Seed = 1,
@@ -57,7 +59,7 @@ def tasks(
     project: own_c.Project = None,
     include: own_c.Include = None,
     define: own_c.Define = None,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
     """Run the robot for some virtual seconds and print task times, response times and CPU load.
 

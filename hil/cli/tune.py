@@ -15,24 +15,26 @@ from hil.cli import show
 
 def tune(
     gains: Annotated[
-        list[str] | None, typer.Argument(metavar="[KP,KI...]", help="Gains to try (default: the cases of annex 4).")
+        list[str] | None, typer.Argument(metavar="[KP,KI...]", help="The gains to try (default: the cases of annex 4).")
     ] = None,
-    reference_deg: Annotated[float, typer.Option("--reference", metavar="DEG", help="Angle to turn by.")] = 45.0,
-    for_s: Annotated[float, typer.Option("--for", metavar="SECONDS", help="Virtual time of each response.")] = 5.0,
+    reference_deg: Annotated[float, typer.Option("--reference", metavar="DEG", help="Turn by this angle.")] = 45.0,
+    for_s: Annotated[
+        float, typer.Option("--for", metavar="SECONDS", help="Run each response for this much virtual time.")
+    ] = 5.0,
     true_step: Annotated[
-        bool, typer.Option("--true-step", help="Integrate with 50 ms, the task's period, not with 2.5 ms.")
+        bool, typer.Option("--true-step", help="Integrate with the task's period of 50 ms, not with 2.5 ms.")
     ] = False,
     faithful: Annotated[
-        bool, typer.Option("--faithful", help="Beside each response that of the firmware as it is in the C.")
+        bool, typer.Option("--faithful", help="Also run each response with the original firmware.")
     ] = False,
     realistic: Annotated[
-        bool, typer.Option("--realistic/--ideal", help="Gyro and wheels with noise and slip.")
+        bool, typer.Option("--realistic/--ideal", help="Simulate gyro noise and wheel slip, or not.")
     ] = False,
     seed: show.Seed = 1,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the responses (PNG, SVG).")] = None,
-    json_output: Annotated[bool, typer.Option("--json", help="One JSON object on stdout.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
-    """Turn the robot by an angle with chosen Kp and Ki of its position controller, and see what it does.
+    """Turn the robot by an angle with chosen gains Kp and Ki, and measure the step response.
 
     [bold]Examples[/bold]
       hil tune --faithful --plot annex4.png

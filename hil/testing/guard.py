@@ -20,7 +20,7 @@ from emulator.c28x.sites import Calls, Place
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Event, seconds
 from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from hil.board import Board
-from hil.testing.waits import PollingLoop, Waits
+from hil.testing.waits import PollingLoop, PollingLoops
 
 #: How often a call is looked at, and what it may compute before its loop is examined: a hundredth of a second of the
 #: chip's, less than half of one of this machine's; or how many interrupts it may be interrupted by, which is as long.
@@ -65,7 +65,7 @@ class _CallWatch:
 
     def __init__(self, board: Board, linked: Linked, limit_s: float) -> None:
         self._core, self._clock, self._findings = board.cpu, board.clock, linked.runtime.findings
-        self._waits = Waits(board, linked)
+        self._waits = PollingLoops(board, linked)
         self._limit = round(limit_s * SYSCLK_HZ)
         self._every = min(_LOOK_CYCLES, max(1, self._limit // 4))
         #: Those that have not returned, the innermost last.

@@ -42,7 +42,7 @@ _EXPRESSION_CYCLES: Final = 100
 _LONG: Final = 100_000
 
 
-class Waits:
+class PollingLoops:
     """The loops of an image, each looked at when it is asked for first."""
 
     def __init__(self, board: Board, linked: Linked) -> None:
@@ -70,7 +70,7 @@ class Waits:
 class PollingLoop:
     """A loop of a function, and what it waits for."""
 
-    def __init__(self, waits: Waits, function: Function, loop: While) -> None:
+    def __init__(self, waits: PollingLoops, function: Function, loop: While) -> None:
         self.function, self.loop = function, loop
         self._board, self._reach = waits.board, waits.reach
         self._threads, self._functions = self._reach.threads, self._reach.threads.functions
