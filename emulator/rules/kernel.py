@@ -13,28 +13,33 @@ RULES: Final[tuple[Rule, ...]] = (
     _rule(
         "race", Severity.ERROR,
         "Two threads use an object without mutual exclusion: an update can be torn or lost.", """
-Two tasks, a task and a Swi or Hwi, or `main` and an interrupt routine of a program without a kernel use the object, one
-of them writes, and nothing keeps them apart. Either
-several scalars belong together (a structure, a frame): the higher one comes in between, and the lower one goes on
-with half of the old and half of the new. Or the lower one reads and writes in one statement (`count = count + 1`),
-or keeps a value and clears it (`taken = flags; flags = 0;`): what the higher one writes in between is lost.
+Two threads use the object, one of them writes, and nothing excludes them from each other. The threads are two tasks, a
+task and a Swi or Hwi, or `main` and an interrupt routine of a program without a kernel. There are two forms:
 
-It is found from the order of accesses, not from luck: the two need not have met in this run. Silent are a common
-gate; a scheduler or interrupt that the *lower* of the two holds off (`Task_disable`, `Swi_disable`, `Hwi_disable`,
-IER, `Hwi_disableInterrupt`, the enable bit of the peripheral); equal priorities; a hand-over by semaphore, `Swi_post`
-or a plain flag that is written after the data and read before it; what one thread initialises before another comes;
-and `main` before `BIOS_start`, or before the first interrupt.
+* Several scalars belong together (a structure, a frame). The higher thread interrupts the lower one between them, and
+  the lower one continues with old and new values.
+* The lower thread reads and writes in one statement (`count = count + 1`), or takes a value and clears it
+  (`taken = flags; flags = 0;`). A write of the higher thread in between is lost.
 
-Without a kernel it is told at the statement of `main` that must hold the interrupt off (`DINT; ... EINT;`). A single
-integer is right there as it is: an index with one writer, a flag, a counter that `main` only reads. Not right is an
-index that a routine steps and goes by, if `main` sets it anew together with another object that decides in the routine,
-or one that both step round a ring: the routine that makes room in a full ring moves what is `main`'s.
-Some pairs hardly ever change within a run (hours and minutes): that a routine sets both, and `main` computes with both
-at once, is seen in the text. What `main` did before it began what ends in the interrupt is ordered before it.
+The detector uses the order of accesses, so the threads need not have met in this run. These are not reported:
 
-A host tool sees nothing here: there are no threads of the host, and no locks that it knows.
+* a common gate;
+* a scheduler or interrupt that the *lower* thread disables (`Task_disable`, `Swi_disable`, `Hwi_disable`, IER,
+  `Hwi_disableInterrupt`, the enable bit of the peripheral);
+* equal priorities;
+* a hand-over by a semaphore, by `Swi_post`, or by a plain flag that is written after the data and read before them;
+* data that one thread initialises before the other starts;
+* `main` before `BIOS_start` or before the first interrupt.
 
-**Mend:** put both accesses under one gate, as short as a copy; or hold the other off; or hand the data over.
+Without a kernel, the finding is at the statement of `main` that must mask the interrupt (`DINT; ... EINT;`). A single
+integer needs no mask there: an index with one writer, a flag, a counter that `main` only reads. An index that a routine
+steps and uses does need one, if `main` sets it together with another object that the routine uses in a decision.
+Some pairs rarely change within a run (hours and minutes). Then the source shows that the routine sets both and that
+`main` computes with both. What `main` did before it started a transfer is ordered before the interrupt at its end.
+
+Host tools see nothing: the host has none of these threads and locks.
+
+**Mend:** put both accesses under one gate, no longer than a copy; or mask the other thread; or hand the data over.
 """, "BIOS, Task and Swi scheduling; TFG 3.1.5",
     ),
     _rule(
@@ -48,70 +53,69 @@ uses it. A copy by words of 16 bits, a `long` that is masked by halves, or a por
     ),
     _rule(
         "race-long", Severity.WARNING, "Two threads share a 32-bit scalar without mutual exclusion.", """
-A `float` or `long` is written by one thread and read by another without a common gate. The C28x moves an aligned
-32-bit word by one instruction (MOVL, MOV32), so the value itself is whole as long as the compiler uses it; C does not
-promise that: a `long` may be added or masked by halves, and a copy in words of 16 bits is one of halves. What is
-never whole is a set: three distances that are read one after the other can come from two measurements.
+One thread writes a `float` or `long`, another reads it, and they share no gate. The C28x moves an aligned 32-bit word
+with one instruction (MOVL, MOV32), so the value is whole while the compiler uses it. C does not promise that: a `long`
+may be added or masked in halves, and a copy of 16-bit words is a copy of halves. A set is never whole: three distances
+that are read in sequence can come from two measurements.
 
-Where two threads write, the value that stays is that of whoever comes last.
+If two threads write, the last write wins.
 
 **Mend:** read and write it under the gate of its server, all values of one measurement at once.
 """, "CPU 2.2.5, MOVL; ISO C 5.1.2.3",
     ),
     _rule(
         "race-word", Severity.NOTE, "Two threads share a 16-bit word without mutual exclusion.", """
-One instruction loads or stores 16 bits, so the word is whole, and as a flag between a handler and a task that is
-enough: the finding only says that such a word exists. What remains to be looked at: the word can change between two
-reads of one function; a compiler may keep it in a register unless it is `volatile`; and it orders only what is
-written before it and read after it.
+One instruction loads or stores 16 bits, so the word is whole. That is enough for a flag between a handler and a task,
+and the finding only says that such a word exists. Check three things: the word can change between two reads of one
+function; the compiler may keep it in a register unless it is `volatile`; it orders only data that are written before it
+and read after it.
 
-A word that a lower thread reads and writes in one statement while a higher one writes it is reported as `race`.
+If a lower thread reads and writes the word in one statement while a higher one writes it, the rule is `race`.
 
 **Mend:** read it once into a local; declare it `volatile`; for more than a flag use a semaphore.
 """, "CPU, MOV; ISO C 6.7.3",
     ),
     _rule(
         "wrong-gate", Severity.ERROR, "Threads use different gates for the same object.", """
-Both sides enter a gate, and still nothing keeps them apart, because it is not the same one. Reported are two accesses
-under different gates that can meet, and a function that uses another gate than the several others which use the
-object.
+Both sides enter a gate, but not the same one, so nothing excludes them. Two cases are reported: two accesses under
+different gates that can meet, and a function that uses another gate than the several other users of the object.
 
-That a gate's name says something else than what it guards cannot be seen; that all users agree can.
+The tool does not compare the name of a gate with the object that it protects. It compares the users with each other.
 
 **Mend:** one gate for each object, and one module that owns both.
 """, "BIOS, GateMutexPri",
     ),
     _rule(
         "transaction-cut", Severity.ERROR, "Two tasks share a peripheral without mutual exclusion.", """
-A conversion lasts from the trigger until the result is read, a word on SPI from SPITXBUF to SPIRXBUF, a transfer as
-long as its slave is selected, a message on a UART from its first to its last character. When a higher task starts its
-own on the same SOC, interrupt flag, shift register or transmitter, the lower one reads the other's result, waits for
-a flag that was cleared, or sends characters in between.
+A conversion lasts from its trigger until its result is read. A word on the SPI lasts from SPITXBUF to SPIRXBUF, a
+transfer as long as its slave is selected, a message on a UART from its first to its last character. If a higher task
+starts its own on the same SOC, interrupt flag, shift register or transmitter, the lower one reads the other's result,
+waits for a flag that was cleared, or sends characters in between.
 
-The SOCs and interrupt flags of an ADC are apart: two tasks with one each are silent. So is a handler that clears the
-flag of a conversion which a task started. The finding says whether a cut has happened in this run or can happen.
+The SOCs and interrupt flags of an ADC are separate: two tasks with one each are not reported. Neither is a handler that
+clears the flag of a conversion that a task started. The finding says whether a cut happened in this run or can happen.
 
 **Mend:** a gate for each peripheral, held for the whole transaction.
 """, "TRM ADC (ADCSOCFRC1, ADCINTFLGCLR), SPI (SPITXBUF), SCI (SCITXBUF)",
     ),
     _rule(
         "gate-unused", Severity.NOTE, "A gate is created and never entered.", """
-It protects nothing. Often another gate has taken its place by mistake, and two objects now share one, so that tasks
-wait for each other without need; or the accesses that it was made for have none.
+The gate protects nothing. Often another gate is used in its place by mistake: two objects share one gate, and tasks
+wait without need. Or the accesses that it was made for have no gate.
 
-Said at the end of a run: at once if no statement of the firmware enters it, otherwise if the run was of 5 s or more
-and did not come there.
+It is reported at the end of a run: always if no statement of the firmware enters the gate, otherwise only if the run
+was 5 s or longer.
 
 **Mend:** enter it where its object is used, or remove it.
 """, "BIOS, GateMutexPri",
     ),
     _rule(
         "gate-not-left", Severity.ERROR, "A function entered a gate and returned without leaving it.", """
-The gate stays with the task: its next `enter` is a nested one, so this task notices nothing; everybody else waits for
-ever. The usual cause is a `return` before the `leave`.
+The task keeps the gate. Its next `enter` is a nested one, so this task notices nothing; all other tasks wait for ever.
+The usual cause is a `return` before the `leave`.
 
-A gate may be entered in one function and left in another. The finding is made when the function that entered has
-returned and the task then waits for something else, enters the gate anew or ends.
+A gate may be entered in one function and left in another. So the finding comes only when the function that entered has
+returned, and the task then waits for something else, enters the gate again, or ends.
 
 **Mend:** one way out of the function, and the `leave` there.
 """, "BIOS, GateMutexPri_enter: nested key",
@@ -126,21 +130,21 @@ so the gate stays taken for ever; `leave` with 0 from the inner one frees it whi
     ),
     _rule(
         "gate-owner", Severity.ERROR, "A gate was left by a task that does not own it.", """
-`GateMutexPri_leave` does not look at who calls: with key 0 it gives the gate to the next waiter, or frees it, while
-its owner is still inside. The priority that the leaving task gets is the one that the owner had saved.
+`GateMutexPri_leave` does not check its caller. With key 0 it gives the gate to the next waiter or frees it, while its
+owner is still inside. The task that left gets the priority that the owner had saved.
 
 **Mend:** leave a gate in the task that entered it, once.
 """, "BIOS, GateMutexPri_leave",
     ),
     _rule(
         "gate-order", Severity.WARNING, "Two gates are entered in opposite orders.", """
-One task holds A and enters B, another holds B and enters A. If each gets its first before either gets its second,
-both wait for ever. It need not have happened: the order is enough. Orders that a third gate keeps from meeting are
-silent.
+One task holds A and enters B; another holds B and enters A. If each gets its first gate before either gets its second,
+both wait for ever. The order is enough for the finding: the deadlock need not have happened. Orders that cannot meet
+because of a third gate are not reported.
 
-Priority inheritance does not help: it raises the owner, who waits.
+Priority inheritance does not help: it raises the owner, which waits itself.
 
-**Mend:** one order for all, or one gate at a time.
+**Mend:** one order for all tasks, or one gate at a time.
 """, "BIOS, GateMutexPri_enter",
     ),
     _rule(
@@ -168,25 +172,25 @@ call that does not wait at all is silent.
     ),
     _rule(
         "deadlock", Severity.ERROR, "Tasks wait for each other for ever: a deadlock.", """
-The ring is closed: each of the tasks waits for a gate that the next one holds. `GateMutexPri_enter` has no timeout,
-so none of them runs again; what else they hold stays taken too. The other places stand in the details.
+Each task of the ring waits for a gate that the next one holds. `GateMutexPri_enter` has no time-out, so none of them
+runs again, and their other gates stay taken. The details name the other places.
 
 Or a task pends for ever on a semaphore while it holds a gate, and the only task that posts the semaphore waits for that
-gate. The place is the pend.
+gate. Then the place is the pend.
 
 **Mend:** see `gate-order`; leave a gate before waiting for anything else.
 """, "BIOS, GateMutexPri_enter",
     ),
     _rule(
         "never-posted", Severity.ERROR, "A task or a Swi waits for ever: no statement posts it.", """
-It waits without a timeout on a semaphore, an event or a mailbox, and no function of the program posts it (or takes a
-message out of the full mailbox). The task never runs again. Often the post names another object, or it stood in a
-routine that has been taken out. A Swi that was created waits in the same way for `Swi_post` and its like.
+The task waits without a time-out on a semaphore, an event or a mailbox, and no function of the program posts it (or
+takes a message out of the full mailbox). The task never runs again. Often the post names another object, or it was in a
+routine that was removed. A Swi that is created but never posted is reported too.
 
-It is looked at when a run ends. Whoever passes the handle on, keeps it in a structure or takes the address of the
-function could do anything with it: nothing is told then.
+The check is made at the end of a run. Nothing is reported if the program passes the handle on, keeps it in a structure,
+or takes the address of the posting function: then anything could post it.
 
-**Mend:** post it where the event is seen, or take the wait away; with a timeout the task can at least say so.
+**Mend:** post it where the event is seen, or remove the wait; with a time-out the task can at least report it.
 """, "BIOS, Semaphore_pend, Event_pend, Mailbox_pend: BIOS_WAIT_FOREVER",
     ),
     _rule(
@@ -235,12 +239,13 @@ wait happens to whatever task was interrupted.
     _rule(
         "no-inheritance", Severity.WARNING,
         "Priority inheritance failed: a middle task ran while a high one waited for a gate.", """
-`GateMutexPri` raises the owner to the priority of the waiter, but within limits: the owner loses all of it when it
-leaves *any* gate whose saved priority is lower, although it still holds the other; and it is not passed on, so if the
-owner itself waits for a gate, whoever holds that one keeps his low priority. Tasks in between then delay the high one
-for as long as they like.
+`GateMutexPri` raises the owner to the priority of the waiter, but with two limits:
 
-The value is how long the high task waited, in microseconds.
+* The owner loses the inherited priority when it leaves *any* gate whose saved priority is lower, although it still
+  holds the other gate.
+* Inheritance is not transitive: if the owner itself waits for a gate, the owner of that one keeps its low priority.
+
+Then tasks in between delay the high task without a bound. The value is how long the high task waited, in microseconds.
 
 **Mend:** do not nest gates; hold them for the time of a copy.
 """, "BIOS, GateMutexPri.c: ownerOrigPri",
@@ -248,53 +253,53 @@ The value is how long the high task waited, in microseconds.
     _rule(
         "priority-inversion", Severity.WARNING,
         "Priority inversion: a task waited for a lower one that could not run.", """
-The holder of the gate has gone to sleep or waits for a semaphore, so that raising its priority helps nobody. Or the
-lock is a `GateMutex` or a semaphore (created with 1, posted by whoever took it), which raise nobody at all: any task in
-between runs first.
+The owner of the gate sleeps or waits for a semaphore, so a higher priority does not help it. Or the lock is a
+`GateMutex` or a semaphore (created with 1, posted by the task that took it): these have no priority inheritance, and
+any task in between runs first.
 
 The value is how long the high task waited, in microseconds.
 
-**Mend:** never wait while you hold a gate; use `GateMutexPri`, not a semaphore, to keep tasks apart.
+**Mend:** never wait while you hold a gate; use `GateMutexPri`, not a semaphore, for mutual exclusion.
 """, "BIOS, GateMutexPri, GateMutex, Semaphore",
     ),
     _rule(
         "semaphore-pile-up", Severity.WARNING, "A counting semaphore is posted faster than it is taken.", """
-A Clock function posts whether or not the task has come back. The count keeps every release, and later the task does
-them all at once: control loops run several times with the same input, frames go out one over the other.
+A Clock function posts whether or not the task is ready again. The count keeps every release, and later the task does
+them all at once: a control loop runs several times with the same input, frames are sent one over the other.
 
-Reported when a Clock function's semaphore holds two (one release is being late, two is a queue), and any other when
-it was never empty for a second and still grows: a burst that is worked off is what counting is for. The first message
-says where the task stands instead, and who has the CPU. The value is the largest count.
+The semaphore of a Clock function is reported at a count of two (one release is late, two are a queue). Any other
+semaphore is reported if it was never empty for a second and still grows; a burst that is worked off is normal. The
+message says where the task is and which task has the CPU. The value is the largest count.
 
 **Mend:** let the task keep its period, or use a binary semaphore so that a missed release is missed.
 """, "BIOS, Semaphore, Mode COUNTING",
     ),
     _rule(
         "deadline", Severity.WARNING, "A task missed its deadline: it had not finished at its next release.", """
-A Clock function releases the task through a semaphore; the job lasts until the task pends on it again; its deadline
-is the period. The value is the longest response time in microseconds, from the release to the end of the job, the
-details who had the CPU meanwhile. The place is where the task stood when the next release came.
+A Clock function releases the task through a semaphore. The job lasts until the task pends on it again, and its deadline
+is the period. The value is the longest response time in microseconds, from the release to the end of the job. The
+details list the CPU time of the other threads. The place is the statement of the task at its next release.
 
 **Mend:** less work, a longer period, a higher priority, or no busy wait above it.
 """, "TFG 3.4: response times against periods",
     ),
     _rule(
         "starvation", Severity.WARNING, "A ready task got no CPU for longer than its period.", """
-The place is the statement that had the CPU instead: the busy wait of a higher task, or, if there is none, where the
-higher tasks were found most often. Without a known period the patience is 100 ms. The value is how long, in
+The place is the statement that used the CPU: the busy wait of a higher task, or else the statement where the ticks most
+often found the higher tasks. If the task has no known period, the limit is 100 ms. The value is the waiting time in
 microseconds.
 
-Strict priorities give the CPU to the highest task that wants it, for as long as it wants.
+The scheduler has strict priorities and no time slices: the highest ready task runs as long as it wants.
 
-**Mend:** `Task_sleep` in place of `DelayUs`, a semaphore in place of a poll.
+**Mend:** `Task_sleep` in place of `DelayUs`, a semaphore in place of a polling loop.
 """, "BIOS, Task scheduling: no time slices",
     ),
     _rule(
         "busy-wait", Severity.NOTE, "A task busy-waits while lower tasks are ready.", """
-`DelayUs` executes instructions until the time is over; a loop on a flag does the same without a bound. Found by the
-statement that the tick interrupts: two ticks and more in one `DelayUs` or one loop, with a lower task ready. In a Swi
-or Hwi 100 us are enough, because there nothing lower runs at all. The value is the longest wait seen, in
-microseconds.
+`DelayUs` executes instructions until the time is over; a polling loop on a flag does the same without a bound. The
+detector looks at the statement that each tick interrupts: it reports two ticks or more in one `DelayUs` or one loop
+while a lower task is ready. In a Swi or Hwi 100 us are enough, because nothing lower runs there. The value is the
+longest wait in microseconds.
 
 Shorter delays are not reported: the unit of `Task_sleep` is the tick.
 
@@ -304,13 +309,13 @@ Shorter delays are not reported: the unit of `Task_sleep` is the tick.
     _rule(
         "buffer-rewritten", Severity.ERROR,
         "A buffer was overwritten while an interrupt was still sending it.", """
-The driver keeps pointer and length and returns; the handler takes the characters as the transmitter has room: at 9600
-baud a frame of 27 takes 28 ms. A task that makes its next frame in the same place within that time changes the rest
-of the one before, and what arrives is a mixture.
+The driver keeps the pointer and the length and returns. The handler takes the characters as the transmitter has room: a
+frame of 27 characters takes 28 ms at 9600 baud. If a task writes its next frame to the same buffer within that time, a
+mixture of both frames is sent.
 
-The buffer is recognised by what a handler does: it reads a word and writes SCITXBUF. Silent are words that have been
-read already, a buffer that has been read to its end, and a task that the handler has told so (a semaphore, a count
-that the task looks at).
+The detector recognises a transmit buffer by its handler: it reads a word and writes SCITXBUF. Not reported are words
+that were already read, a buffer that was read to its end, and a task that the handler has informed (a semaphore, a
+count that the task checks).
 
 **Mend:** wait until the frame has left, use two buffers in turn, or copy into the driver.
 """, "TRM SCI; TFG 3.1.4",
@@ -320,14 +325,14 @@ that the task looks at).
         Severity.ERROR,
         "A heap block was used after it was freed.",
         """
-The words belong to the heap again. The first four become the header of a free block, the rest stays as it was until
-somebody else is given the same place: until then a read finds almost everything as before, and a write does no harm
-that shows. The finding says who gave the block out, where it was given back, and what lies there now.
+The words belong to the heap again. The first four become the header of a free block. The others keep their values until
+the heap gives the same place out again, so for a while reads and writes seem to work. The finding names the allocation,
+the free, and the present content.
 
-Typical: a list that is freed with `p = p->next` behind `free(p)`; a second pointer to the same block that nobody set to
-NULL; a message that its sender gives back while the receiver still reads it.
+Typical: a list that is freed with `p = p->next` after `free(p)`; a second pointer to the same block that was not set to
+NULL; a message that the sender frees while the receiver still reads it.
 
-**Mend:** read what is still needed before the block is given back; let one owner give it back, after its last use.
+**Mend:** read what is still needed before the free; let one owner free the block, after its last use.
 """,
         "ISO C 7.20.3.2; CERT MEM30-C",
     ),
@@ -350,15 +355,15 @@ allocation.
     ),
     _rule(
         "kernel-handle", Severity.ERROR, "A kernel function was called with an invalid handle.", """
-The handle is NULL (the object was never created, or it is used before it is; the creation failed; a `*_delete` has set
-it to NULL), it is a copy of one whose object was deleted, or it belongs to an object of another kind.
+The handle is NULL (never created, used too early, creation failed, or deleted), it is a copy of a handle whose object
+was deleted, or its object is of another kind.
 
-The kernel does not look. Through NULL it works on the RAM at address 0, where every NULL handle finds what the last one
-has left: a semaphore of whatever count, a gate that nobody owns. Through a deleted one it works on what the heap has
-given to somebody else. Nothing is said, and what then happens depends on the bytes there. Here the program ends.
+The kernel does not check. Through NULL it works on the RAM at address 0, which all NULL handles share: a semaphore with
+any count, a gate without an owner. Through a deleted handle it works on words that the heap may have given out again.
+There is no error message, and the effect depends on the bytes there. The emulator ends the program.
 
-**Mend:** create the object before anything that can use it is started, look at what `*_create` returns, and delete an
-object when nobody has its handle any more.
+**Mend:** create the object before its users start, check what `*_create` returns, and delete an object only when no
+handle of it is left.
 """, "XDCtools, `*_create` and `*_delete`; BIOS",
     ),
     _rule(

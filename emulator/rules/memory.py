@@ -113,13 +113,13 @@ Arguments that the function does not take harm nobody, and nothing is reported.
         Severity.ERROR,
         "A pointer to a local was used after its function had returned.",
         """
-The local's words on the stack belong to whoever is called next, an interrupt included. As long as nobody lies there
-the old value is still found, and everything seems to work. The finding says who lies there now.
+The next call, or an interrupt, reuses the local's words on the stack. Until then the old value is still there, and
+everything seems to work. The finding names the object that now uses the words.
 
 Typical: a function that returns its own array; a driver that keeps the address of a caller's buffer and sends it
 later.
 
-**Mend:** make the buffer a file-scope object, or let the caller hand it in and keep it until it is done with.
+**Mend:** make the buffer a file-scope object, or let the caller pass it and keep it until the driver is done.
 """,
         "ISO C 6.2.4 p2",
     ),

@@ -102,10 +102,10 @@ The number is looked at before any cast. Fields that take any word are left out:
         "A pin drives a level that a write to the whole port copied into its latch.",
         """
 `GPxDAT` reads the levels of the pins and writes the latches. An assignment to one field of it, or `GPxDAT.all ^= ...`,
-reads the whole port and writes it back: the latch of every input becomes what the pin was just then. Nothing is seen of
-that until the pin becomes an output, and then it drives this level: a bus that several pull low is driven high.
+reads the whole port and writes it back: the latch of every input gets the present level of its pin. This has no effect
+until the pin becomes an output. Then the pin drives this level: for example, it drives a bus high that others pull low.
 
-The finding stands at the statement that copied; it is told when an output drives a level that was copied so.
+The finding is made when an output drives a copied level. Its place is the statement that copied it.
 
 **Mend:** write `GPxSET`, `GPxCLEAR` or `GPxTOGGLE`, which touch no other pin.
 """,
@@ -194,11 +194,11 @@ It is looked at when a run ends, told at the statement that wrote the first such
         Severity.WARNING,
         "A trip puts an output into high impedance, and no statement chose that.",
         """
-`TZCTL.TZA` and `TZB` say what a trip does with an output, and 0, which a reset leaves there, is high impedance: nobody
-drives the pin then. A gate driver or a transistor behind it keeps whatever charge it has, unless the board pulls the
-line. A driver that selects a trip (`TZSEL`) and never writes `TZCTL` has hardly meant that.
+`TZCTL.TZA` and `TZB` select what a trip does with an output. Their reset value 0 is high impedance: the chip does not
+drive the pin. A gate driver or a transistor then keeps its charge, unless the board pulls the line. A driver that
+selects a trip (`TZSEL`) and never writes `TZCTL` has probably not meant that.
 
-It is looked at when a run ends, for outputs that have actions (`AQCTLA`, `AQCTLB`).
+The check is made at the end of a run, for outputs that have actions (`AQCTLA`, `AQCTLB`).
 
 **Mend:** `TZCTL.bit.TZA = TZ_FORCE_LO`; if high impedance is meant, write `TZ_HIZ` so that it can be read.
 """,
@@ -247,11 +247,11 @@ handler.
         Severity.ERROR,
         "An ADC interrupt was moved to another SOC during a conversion.",
         """
-One `ADCINT` serves one SOC at a time. If `INT1SEL` is changed while a conversion that was to set the flag is running,
-its end sets nothing: who waits for it waits for ever, or takes the end of somebody else's conversion for its own.
+One `ADCINT` serves one SOC at a time. If `INT1SEL` is changed during a conversion that should set the flag, its end
+sets nothing. The driver then waits for ever, or takes the end of another conversion for its own.
 
-It needs two tasks (or a task and an interrupt) that both use the channel selection, and hits only when one interrupts
-the other within the microsecond of a conversion.
+Two tasks (or a task and an interrupt) that both change the channel selection are needed, and one must interrupt the
+other within the microsecond of a conversion.
 
 **Mend:** one `ADCINT` for each user, or a gate around selection, start, wait and read.
 """,
@@ -543,12 +543,12 @@ STOP that is under way.
         Severity.WARNING,
         "The driver leaves the I2C bus busy after a NACK.",
         """
-When nobody acknowledges an address or a byte, the controller holds SCL low and waits for the program: a STOP or a new
-START is its decision. Until then `BB` is 1. A driver that waits for `BB` to fall, or that sends nothing while it
-stands, waits for itself.
+After a NACK of an address or a byte, the controller holds SCL low and waits: the program must set STOP or a new START.
+Until then `BB` is 1. A driver that waits for `BB` to fall, or that sends nothing while it is 1, waits for itself.
 
-Reported at the look at `I2CSTR` that comes 100 ms (CHOICE) behind the first one since the refusal, with no `STT` and no
-`STP` written between them (also where `STP` stood before: what that does is a choice, `stops_when_refused`).
+The finding is made at the first read of `I2CSTR` that comes 100 ms (CHOICE) or more after the first read since the
+NACK, if neither `STT` nor `STP` was written between them (also if `STP` was set before: its effect then is a choice,
+`stops_when_refused`).
 
 **Mend:** set `STP` where `NACK` was seen, wait for `BB` to fall, and clear `NACK`.
 """,
@@ -601,7 +601,7 @@ transaction.
         Severity.WARNING,
         "A word was sent on the SPI while no chip select was low.",
         """
-The word leaves the chip and nobody takes it; what is received is the level of an undriven line.
+The word leaves the chip, but no device takes it. The word that is received is the level of an undriven line.
 
 **Mend:** lower the chip select before the first word of a transaction, and make its pin an output.
 """,
@@ -640,15 +640,15 @@ one.
         Severity.ERROR,
         "A polling loop waits for an event that cannot come.",
         """
-The loop does nothing but look, and no event is left (or none for a very long time) that could change what it looks
-at: a conversion that was never started, an interrupt flag that is not selected, a transmitter in reset. On the chip
-the task hangs, and with it every task below it.
+A polling loop only reads, and no event is left (or none for a very long time) that could change what it reads: a
+conversion that was never started, an interrupt flag that is not selected, a transmitter in reset. On the chip the task
+hangs, and so does every task below it.
 
-A loop that is written without an end and looks at nothing, `while (1) ;`, is none of these: it idles between the
-interrupts of a program. In an interrupt routine it is one, because nothing interrupts a routine.
+The idle loop of a program, `while (1) ;`, reads nothing and is not reported: interrupts run in between. In an interrupt
+routine it is reported, because nothing interrupts a routine.
 
-**Mend:** give each wait an end (a count or a time) and an answer to it; check that the event is configured before the
-wait begins.
+**Mend:** give each wait a limit (a count or a time) and handle the time-out; check that the event is configured before
+the wait begins.
 """,
     ),
 )
