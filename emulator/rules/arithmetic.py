@@ -104,17 +104,15 @@ type says that the wrap is meant.
         Severity.ERROR,
         "A comparison of two time stamps was wrong because the counter had wrapped.",
         """
-A counter of 16 bits begins anew after 65536 counts, and so does every time that is computed from it. `now >= end` is
-true at once when `end` has wrapped and `now` has not, and false for a whole round the other way. `now == end` misses
-the time if nobody looks at that very count. `(int) (now - last) > LIMIT` is negative once more than half of the range
-has passed.
+A 16-bit counter wraps after 65536 counts, and so does every time that is computed from it. `now >= end` is true at once
+if `end` has wrapped and `now` has not; in the opposite case it is false for a whole round. `now == end` misses the time
+if it is not tested at exactly that count. `(int) (now - last) > LIMIT` is negative once more than half of the range has
+passed.
 
-Stamps are followed from CPU timers, eCAPs, the kernel's clock and what interrupt routines count, through variables,
-members and functions. The finding is made when the counter has wrapped between the two and the comparison goes wrong.
-A stamp of 32 bits of which an object of 16 bits keeps the lower half, and which is then held against 32 bits, is seen
-in the text: the run need not last 65536 counts.
-
-Comparing for order is right where a branch takes the difference: `if (now < last) d = 65536 - last + now;`.
+The detector follows stamps from CPU timers, eCAPs, the kernel's clock and counters of interrupt routines, through
+variables, members and functions. It reports a comparison that goes wrong because the counter has wrapped between the
+two stamps. A comparison by order is right if its branch takes the difference:
+`if (now < last) d = 65536 - last + now;`.
 
 **Mend:** compare differences: `(unsigned int) (now - last) >= INTERVAL`, or `(int) (now - end) >= 0` for a time that is
 at most half of the range ahead.

@@ -111,11 +111,10 @@ bound and without oscillation, and a mission must end without a collision.
     ),
     _rule(
         "no-effect", Severity.WARNING, "A statement, an order or a setting has no effect.", """
-What is written down as a function of the program - an order of the protocol, a parameter, a calibration, a branch -
-must change some output in some situation. If the same run with and without it is the same byte for byte, it has no
-effect.
+Every function of the program that is written down (an order of the protocol, a parameter, a calibration, a branch) must
+change some output in some situation. If the same run with and without it is equal byte for byte, it has no effect.
 
-**Mend:** complete it or remove it; code that does nothing is read by everybody who looks for a fault.
+**Mend:** complete it or remove it. Code without an effect costs everyone time who searches for a fault.
 """,
     ),
     _rule(
@@ -143,20 +142,20 @@ The message states the figure, the recomputed value and the formula. Nothing of 
     ),
     _rule(
         "text-versus-code", Severity.NOTE, "The documentation and the code disagree.", """
-A sentence of the documentation (period, priority, pin, unit, range, order of a frame's fields, who calls whom) and what
-the program does contradict each other. One of them is wrong; a reader who trusts the text builds on sand.
+A sentence of the documentation contradicts the program: a period, priority, pin, unit, range, the order of a frame's
+fields, or the caller of a function. One of them is wrong, and readers trust the text.
 
-The message states both. What the code does is measured or read from its tree, not asserted.
+The message states both. What the code does is measured or read from its tree, not assumed.
 
 **Mend:** decide which is meant and change the other.
 """,
     ),
     _rule(
         "wrong-result", Severity.ERROR, "A function returns a wrong result.", """
-A function with a definition of its own (a median, a temperature in degrees, the end of a frame) is called with an input
-whose result anybody can work out by hand, and returns something else.
+A function with a clear definition (a median, a temperature in degrees, the end of a frame) is called with an input
+whose result can be computed by hand, and it returns something else.
 
-**Mend:** the message has input, result and right result; that is the test to keep.
+**Mend:** the message has the input, the result and the right result; keep them as a test.
 """,
     ),
     _rule(

@@ -15,15 +15,15 @@ RULES: Final[tuple[Rule, ...]] = (
         Severity.ERROR,
         "A loop never ends: nothing that it computes can end it.",
         """
-The loop calls nothing and asks no register, so only its own computing could end it, and it has run for a fifth of a
-second of the chip's time: a counter that nobody steps, an unsigned number that is waited for to fall below 0, a search
-for a mark that is not there. A call outside of any task ends with an error, because on the chip it would not end at
-all; a task goes on. So does a `main` whose loop is written without an end, while the tool lets its time pass: that is
-what the program does between its interrupts.
+The loop calls nothing and reads no register, so only its own computation could end it, and it has run for a fifth of a
+second of the chip's time. Typical: a counter that is never stepped, an unsigned number that must become less than 0, a
+search for a mark that is not there. A call outside of any task ends with an error, because on the chip it would not
+return; a task continues. A `main` that is written as an endless loop continues too, while the tool lets its time pass:
+such a program works in its interrupts.
 
-Interrupts go on meanwhile, tasks of lower priority do not.
+Interrupts still run, tasks of lower priority do not.
 
-**Mend:** bound the loop by a count as well. The finding stands at the head of the loop.
+**Mend:** bound the loop by a count as well. The finding is at the head of the loop.
 """,
         "CERT MSC21-C",
     ),

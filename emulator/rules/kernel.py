@@ -149,23 +149,24 @@ Priority inheritance does not help: it raises the owner, which waits itself.
     ),
     _rule(
         "gate-across-wait", Severity.WARNING, "A task waited while it held a gate, and blocked other tasks.", """
-It sleeps, or waits for an event or a message, between `enter` and `leave`. Whoever needs the gate meanwhile, of
-whatever priority, waits for as long: a control loop stands still because a task of low priority has nothing to do.
+Between `enter` and `leave` the task sleeps, or waits for an event or a message. Any task that needs the gate, of
+whatever priority, waits for the same time: a control loop stops because a task of low priority waits.
 
-Told where the wait has lasted its whole time-out and a task has stood at the gate for more than 20 ms of it, or for
-more than 100 ms of a sleep: a driver may keep a part while it measures. A wait that an interrupt ends is how a driver
-keeps a bus for its transfer, and is silent. The value is how long the other task has stood, in milliseconds.
+It is reported if the wait lasted its whole time-out and another task was blocked at the gate for more than 20 ms of it,
+or for more than 100 ms of a sleep: a driver may keep a part while it measures. A wait that an interrupt ends is not
+reported: so does a driver keep a bus for its transfer. The value is the blocked time of the other task, in
+milliseconds.
 
 **Mend:** wait first, enter then; hold a gate for the time of a copy.
 """, "BIOS, GateMutexPri_enter",
     ),
     _rule(
         "timeout-ignored", Severity.WARNING, "The time-out of a mailbox was ignored.", """
-`Mailbox_pend` with a time-out returns FALSE when nothing has come, and leaves the message as it was. A call whose
-result is dropped takes the last message once more, for as long as its sender is silent: a dead sensor is steered by.
+`Mailbox_pend` with a time-out returns FALSE when no message has come, and does not change the message. A call that
+ignores the result uses the last message again, as long as the sender is silent: the program acts on a dead sensor.
 
-Told at the second message in a row that did not come, behind one that did. A cast to `void` says that it is meant; a
-call that does not wait at all is silent.
+It is reported at the second missing message in a row, after one that came. A cast to `void` says that it is meant; a
+call with time-out 0 is not reported.
 
 **Mend:** `if (Mailbox_pend(...)) { ... } else { stop; }`.
 """, "BIOS, Mailbox_pend: returns FALSE on timeout",
@@ -208,12 +209,12 @@ period loses releases by design, and is silent.
     _rule(
         "event-lost", Severity.ERROR,
         "A flag was cleared after the transfer was started, and its event was lost.", """
-`main` starts a transfer, its interrupt sets `Done`, and only then `main` clears `Done` and waits: the event has gone,
-and nothing will set it again. With a quick part, or a long interrupt in between, that happens; mostly it does not.
+`main` starts a transfer, its interrupt sets `Done`, and only then `main` clears `Done` and waits. The event is lost,
+and nothing sets the flag again. It happens only with a fast part, or with a long interrupt in between.
 
-Told in programs without the kernel, when the interrupt had come between the start and the statement that clears, nobody
-had looked at the flag since the start, and `main` looks at it before it starts anything anew. Ticks of timers are left
-out: the next one comes.
+It is reported in programs without the kernel, if the interrupt came between the start and the statement that clears the
+flag, the flag was not read since the start, and `main` reads it before it starts anything again. Ticks of timers are
+not reported: the next one comes.
 
 **Mend:** clear the flag, then start.
 """, "TRM SPI, I2C, ADC, DMA: interrupts at the end of what was started",

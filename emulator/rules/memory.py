@@ -97,12 +97,12 @@ at 0.
         Severity.WARNING,
         "A function was called through a pointer of another type, and an argument or the result is missing.",
         """
-A cast makes any function fit any pointer, and the call goes by the pointer's type. This chip's compiler passes the
-first arguments in registers, each class of values in its own: an `int` in AL, a `long` in ACC, a pointer in XAR4, a
-`float` in R0H. A function that takes more than it is given, or a value of another class, reads a register that holds
-something else; so does a caller that takes a result from a function without one. The emulator gives 0.
+A cast makes any function fit any pointer, and the call uses the pointer's type. This chip's compiler passes the first
+arguments in registers, one set for each class of values: an `int` in AL, a `long` in ACC, a pointer in XAR4, a `float`
+in R0H. A function that takes more arguments than were passed, or a value of another class, reads a register with other
+content. So does a caller that takes a result from a function without one. The emulator gives 0.
 
-Arguments that the function does not take harm nobody, and nothing is reported.
+Surplus arguments do no harm and are not reported.
 
 **Mend:** a function of the type that the pointer has, without the cast.
 """,
