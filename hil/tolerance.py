@@ -1,4 +1,4 @@
-"""How sure a computation time is: what was calibrated, and what was not.
+"""The tolerance of computation times: which code is calibrated, and which is not.
 
 The tasks of the port were fitted to the times measured on the robot; what remains of them is a residual that can be
 stated.  Any other code is computed from a table of cycles without a measurement: `UNCALIBRATED_FACTOR` says how far
