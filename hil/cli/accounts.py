@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
 
+from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ
 from emulator.compiled import BUILDS, MODE
+from emulator.rules import Severity
 from hil.client.plot import MOVING, save
 from hil.machine import START_UP, Machine, RobotMachine, Setup
 from hil.reports.json_report import findings_of
-from hil.reports.model import report_of
+from hil.reports.model import report_of, rule_of
 from hil.robot.moving_picture import save_moving
 from hil.robot.picture import drive_of
 from hil.session import Session
@@ -31,13 +33,20 @@ def status_line(session: Session) -> str:
     machine, pacer = session.machine, session.pacer
     lag = pacer.lag
     time = f"{machine.clock.now / SYSCLK_HZ:.1f}s x{pacer.ratio(machine.clock.now):.2f} lag {lag.last_s * 1e3:.0f}ms"
-    traffic = f"in {session.bytes_to_robot} out {session.bytes_from_robot}B findings {len(machine.findings)}"
+    traffic = f"in {session.bytes_to_robot} out {session.bytes_from_robot}B findings {_findings(machine.findings)}"
     counters = session.port.counters if session.port else None
     if isinstance(machine, RobotMachine):
         dropped = f"dropped {counters.frames_dropped if counters else 0}"
         return f"{time} {_robot(machine)} {traffic} {dropped} lag max {lag.max_s * 1e3:.0f}ms"
     dropped = f"dropped {counters.bytes_dropped if counters else 0}B"
     return f"{time} {traffic} {dropped} lag max {lag.max_s * 1e3:.0f}ms"
+
+
+def _findings(findings: Iterable[Finding]) -> str:
+    """How many, and how many of them are errors."""
+    severities = [rule_of(finding.rule).severity for finding in findings]
+    errors = severities.count(Severity.ERROR)
+    return f"{len(severities)} ({errors} error{'s' * (errors != 1)})" if errors else str(len(severities))
 
 
 def _robot(machine: RobotMachine) -> str:

@@ -10,6 +10,7 @@ from typing import Annotated, Any, Final
 import typer
 from rich.table import Table
 
+from emulator.c28x.findings import Finding
 from hil.cli import show
 from hil.client.plot import check_plot_file
 from hil.machine import Setup
@@ -138,10 +139,11 @@ def replay(
         if to_console:
             _play_frames(recording, link, listen, port, wait, output, json_output=json_output)
             return
-        verdict, setup = _play_orders(recording, world, seed, output, quiet=json_output)
+        verdict, setup, findings = _play_orders(recording, world, seed, output, quiet=json_output)
     if json_output:
         show.print_json({"log": str(log), "setup": setup.as_dict(), "problems": recording.problems, **asdict(verdict)})
     else:
+        show.print_findings(findings)
         _print_verdict(verdict)
     if not verdict.equal:
         raise typer.Exit(show.EXIT_FAILED)
@@ -149,7 +151,8 @@ def replay(
 
 def _play_orders(
     recording: Recording, world: str | None, seed: int | None, output: Path | None, *, quiet: bool
-) -> tuple[Verdict, Setup]:
+) -> tuple[Verdict, Setup, list[Finding]]:
+    """What came of it, on which robot, and what was found on the way."""
     known = setup_of(recording)
     if known is None:
         show.say(f"hil: {recording.name}: does not say which robot it was; taking the standard one", to_stderr=True)
@@ -171,7 +174,7 @@ def _play_orders(
             raise KeyboardInterrupt
         if wire is not None:
             wire.end(recording.duration_ns)
-    return verdict, setup
+    return verdict, setup, list(machine.findings)
 
 
 def _play_frames(

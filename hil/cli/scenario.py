@@ -13,6 +13,7 @@ from rich.table import Table
 
 from hil.cli import show
 from hil.files import check_target
+from hil.reports.model import merged
 
 if TYPE_CHECKING:
     from hil.scenarios.running import ScenarioOutcome
@@ -116,6 +117,8 @@ def _run(paths: list[Path], jobs: int, *, quiet: bool) -> list[ScenarioOutcome]:
 
 
 def _print(outcomes: list[ScenarioOutcome]) -> None:
+    # Of the first legs: what the second ones find beside is what they are there for.
+    show.print_findings(merged(finding for outcome in outcomes for finding in outcome.legs[0].findings))
     terminal = show.console()
     table = Table(title=f"Scenarios: {len(outcomes)}", title_justify="left")
     for heading in ("scenario", "thesis", "run", "expectation", "", "seen"):

@@ -80,12 +80,7 @@ def _print(soaked: Soaked) -> None:
     for kind, count in sorted(soaked.mounted.items()):
         table.add_row(kind, str(count), str(soaked.fired[kind]), str(soaked.met[kind]))
     terminal.print(table)
-    table = Table(title="Findings", title_justify="left")
-    table.add_column("rule")
-    table.add_column("so often", justify="right")
-    for rule, count in soaked.findings.most_common():
-        table.add_row(rule, f"{count:,}")
-    terminal.print(table)
+    show.print_findings(soaked.findings)
     for what, why in (("the firmware ended", soaked.ended), ("the robot did not come back", soaked.stranded)):
         for one in why:
             show.say(f"{escape(one)}: {what}; switched off and on")

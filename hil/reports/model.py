@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -218,6 +218,16 @@ class Report:
 def report_of(findings: Iterable[Finding], name: str = "run") -> Report:
     """A report of what a run has found, weighed as the project of the current folder says.  Raises ValueError."""
     return Report.of(findings, run=Run(name), policy=Policy.load(Path.cwd()))
+
+
+def merged(findings: Iterable[Finding]) -> list[Finding]:
+    """What several runs have found, each defect once: as it was found first, and how often in all of them."""
+    found: dict[tuple[object, ...], Finding] = {}
+    for finding in findings:
+        key = (finding.rule, finding.object, finding.place)
+        first = found.get(key)
+        found[key] = finding if first is None else replace(first, count=first.count + finding.count)
+    return list(found.values())
 
 
 def rule_of(rule_id: str) -> Rule:

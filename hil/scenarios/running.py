@@ -11,9 +11,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ, seconds
 from hil.files import replacing
 from hil.machine import FirmwareStopped
+from hil.reports.excerpt import relative_path
 from hil.reports.policy import Policy
 from hil.scenarios.expectation import Check, Watching
 from hil.scenarios.scenario import Scenario, load_scenario
@@ -35,13 +37,14 @@ class ScenarioRun:
     checks: tuple[Check, ...]
     virtual_s: float
     uart_sha256: str
-    findings: tuple[str, ...]
+    findings: tuple[Finding, ...]
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data."""
         return {
             "fixes": list(self.fixes), "stopped": self.stopped, "checks": [check.as_dict() for check in self.checks],
-            "virtual_s": self.virtual_s, "uart_sha256": self.uart_sha256, "findings": list(self.findings),
+            "virtual_s": self.virtual_s, "uart_sha256": self.uart_sha256,
+            "findings": sorted({finding.rule for finding in self.findings}),
         }  # fmt: skip
 
 
@@ -86,7 +89,7 @@ class ScenarioOutcome:
     def as_dict(self) -> dict[str, Any]:
         """Plain data."""
         return {
-            "name": self.name, "file": self.file, "passed": self.passed, "failures": self.failures,
+            "name": self.name, "file": relative_path(self.file), "passed": self.passed, "failures": self.failures,
             "description": self.description, "thesis": self.thesis, "defects": list(self.defects),
             "runs": [leg.as_dict() for leg in self.legs],
         }  # fmt: skip
@@ -147,7 +150,7 @@ def _leg(scenario: Scenario, progress: Callable[[float], None], plot: str = "", 
                 new.write_text("\n".join(("time_s,x_m,y_m,heading_rad", *rows)) + "\n", encoding="utf-8")
         return ScenarioRun(
             scenario.setup.fixes, stopped, (*checks, *failed), bench.clock.now / SYSCLK_HZ, bench.uart_sha256,
-            tuple(sorted({finding.rule for finding in bench.findings})),
+            tuple(bench.findings),
         )  # fmt: skip
 
 

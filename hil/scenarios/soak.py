@@ -16,13 +16,15 @@ from dataclasses import dataclass, field, replace
 from random import Random
 from typing import Any, Final
 
-from emulator.clock import seconds
+from emulator.c28x.findings import Finding
+from emulator.clock import SYSCLK_HZ, seconds
 from hil.bench import Bench
 from hil.client.orders import KEYWORDS, LONGEST_ORDER, order, set_reference
 from hil.faults import Fault, mount
 from hil.faults.all import FAULTS
 from hil.faults.kinds import FaultParameter, Value
 from hil.machine import FirmwareStopped, Setup
+from hil.reports.model import merged
 
 #: The world in which neither the firmware as in the C nor the corrected one gets stuck by itself.
 WORLD: Final = "paddock"
@@ -57,8 +59,8 @@ class Soaked:
     met: Counter[str] = field(default_factory=Counter)
     #: Kinds that this board cannot have.
     not_here: set[str] = field(default_factory=set)
-    #: Rule -> how often it was found.
-    findings: Counter[str] = field(default_factory=Counter)
+    #: Each defect once, with how often it was found; its time is that of the soak.
+    findings: list[Finding] = field(default_factory=list)
     #: Switched off and on because the firmware had ended: why; because the robot did not come back: after which fault.
     ended: list[str] = field(default_factory=list)
     stranded: list[str] = field(default_factory=list)
@@ -71,10 +73,13 @@ class Soaked:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
+        rules: Counter[str] = Counter()
+        for finding in self.findings:
+            rules[finding.rule] += finding.count
         return {
             name: dict(sorted(value.items())) if isinstance(value, Counter)
             else sorted(value) if isinstance(value, set) else value
-            for name, value in vars(self).items()
+            for name, value in (vars(self) | {"findings": rules}).items()
         }  # fmt: skip
 
 
@@ -132,8 +137,8 @@ class _Soak:
             bench.close()
         told.travelled_m += bench.world.travelled_m
         told.collisions += bench.world.robot.collisions
-        for finding in bench.findings:
-            told.findings[finding.rule] += finding.count
+        here = (replace(each, time_cycles=each.time_cycles + round(before_s * SYSCLK_HZ)) for each in bench.findings)
+        told.findings = merged([*told.findings, *here])
         self._uart.update(bench.uart_sha256.encode("ascii"))
         self._trace.update(bench.trace_sha256.encode("ascii"))
 

@@ -16,9 +16,11 @@ from emulator.c28x.findings import Finding
 from emulator.rules import RULES
 from hil.client.keys import LEAVE, STOP
 from hil.reports.excerpt import readable, shown
+from hil.reports.model import rule_of
+from hil.reports.terminal import STYLE
 
 #: The longest last: on a narrow screen it is the one that is cut (arrow keys scroll).
-COLUMNS = ("rule", "times", "first ms", "task", "place")
+COLUMNS = ("severity", "rule", "times", "first ms", "task", "place")
 
 
 class FindingsTable(DataTable[Text]):
@@ -58,10 +60,11 @@ class FindingsTable(DataTable[Text]):
 def _row(finding: Finding) -> list[Text]:
     place = finding.place
     where = shown(place) if place else finding.object
+    severity = rule_of(finding.rule).severity
     first = f"{finding.time_us / 1e3:.3f}"
     return [
-        Text(finding.rule), Text(str(finding.count), justify="right"), Text(first, justify="right"),
-        Text(finding.task), Text(where),
+        Text(severity.value, STYLE[severity]), Text(finding.rule), Text(str(finding.count), justify="right"),
+        Text(first, justify="right"), Text(finding.task), Text(where),
     ]  # fmt: skip
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from emulator.rules import Severity
 from hil.reports.baseline import Baseline, known
-from hil.reports.model import Report, Run
+from hil.reports.model import Report, Run, merged
 from hil.reports.policy import Policy
 from tests.hil.reports.samples import finding, module
 
@@ -56,3 +56,12 @@ def test_errors_come_first_and_keep_their_order(tmp_path: Path) -> None:
     rules = ["figure", "unit", "no-effect", "rotation-sign"]  # note, error, warning, error
     report = Report.of([finding(file, 3, rule=rule) for rule in rules], run=Run("x"))
     assert [entry.rule.id for entry in report.worst_first] == ["unit", "rotation-sign", "no-effect", "figure"]
+
+
+def test_what_several_runs_found_is_merged_by_rule_object_and_place(tmp_path: Path) -> None:
+    file = tmp_path / "us.c"
+    first, again, elsewhere = finding(file, 3, count=2), finding(file, 3, count=5), finding(file, 4)
+    one, other = merged([first, elsewhere, again])
+    assert (one.count, one.time_cycles, one.place) == (7, first.time_cycles, first.place)
+    assert other == elsewhere
+    assert first.count == 2  # what a run has found stays as it is

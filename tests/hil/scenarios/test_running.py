@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -193,6 +194,10 @@ def test_two_at_a_time_are_the_same_as_one_after_the_other(
         assert invoke(["scenario", *files, "-j", jobs, "--json", "--junit", str(tmp_path / f"{jobs}.xml")]) == 1
         told.append(json.loads(capsys.readouterr().out)["scenarios"])
     assert told[0] == told[1]
+    assert invoke(["scenario", *files, "-j", "2"]) == 1
+    told_last = capsys.readouterr().out
+    # What was found is the table that every command has, before the verdicts.
+    assert re.search(r"^\d+ errors?, \d+ warnings?.*Scenarios: 2", told_last, re.MULTILINE | re.DOTALL)
     assert [(one["name"], one["passed"]) for one in told[0]] == [("b", True), ("a", False)]
     assert (tmp_path / "1.xml").read_text() == (tmp_path / "2.xml").read_text()
     suites = ElementTree.parse(tmp_path / "1.xml").getroot()

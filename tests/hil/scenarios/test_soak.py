@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from pathlib import Path
 from random import Random
 
@@ -61,6 +62,16 @@ def test_it_ends_when_it_is_told_to(capsys: pytest.CaptureFixture[str]) -> None:
     assert told.seconds < 60
     assert invoke(["soak", "--for", "5", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["seconds"] > 5
+
+
+def test_what_it_found_is_the_table_that_every_command_has(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["soak", "--for", "1", "--faithful"]) == 0
+    out = capsys.readouterr().out
+    assert re.search(r"^\d+ errors?, \d+ warnings?", out, re.MULTILINE)
+    assert out.index(" error ") < out.index(" warning ")  # the worst first
+    assert invoke(["soak", "--for", "1", "--faithful", "--json"]) == 0
+    counts = json.loads(capsys.readouterr().out)["findings"]
+    assert all(rule in out for rule in counts)
 
 
 @pytest.mark.slow

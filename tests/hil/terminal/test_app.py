@@ -269,7 +269,7 @@ def test_findings_are_listed_and_enter_shows_one_in_full() -> None:
         await becomes(pilot, lambda: "findings: 2" in "".join(screen(app)))
         await becomes(pilot, lambda: "connected" in screen(app)[0])
         (row,) = [line for line in screen(app) if "uninitialised" in line]
-        assert row.strip("│ ").split() == ["uninitialised", "1", "0.000", "TaskUS", "average", "(us.py:120)"]
+        assert row.strip("│ ").split() == ["error", "uninitialised", "1", "0.000", "TaskUS", "average", "(us.py:120)"]
         next(iter(robot.findings)).count = 70
         await becomes(pilot, lambda: any(re.search("uninitialised +70 ", line) for line in screen(app)))
         await pilot.press("l", "enter")
