@@ -82,6 +82,9 @@ def invoke(arguments: list[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except Exception as error:
+        if isinstance(error.__cause__, KeyboardInterrupt):  # in a `__set_name__`, before Python 3.12
+            complain("interrupted")
+            return EXIT_INTERRUPTED
         if os.environ.get("HIL_TRACEBACK"):
             raise
         if isinstance(error, OSError) and show.of_standard_output(error):

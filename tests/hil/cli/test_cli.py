@@ -71,6 +71,18 @@ def test_a_defect_of_ours_is_one_line_that_says_where_it_is(
         invoke(["conformance"])
 
 
+def test_an_interrupt_that_python_wraps_is_one_all_the_same(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Named:
+        def __set_name__(self, owner: type, name: str) -> None:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr("hil.cli.app", lambda **_: type("Owner", (), {"named": Named()}))
+    assert invoke(["board"]) == 130
+    assert capsys.readouterr().err == "hil: error: interrupted\n"
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a file that is always full (/dev/full of Linux)")
 @pytest.mark.parametrize("arguments", [["--version"], ["board"], ["explain"]])
 def test_standard_output_that_is_full_is_one_line(arguments: list[str]) -> None:
