@@ -145,7 +145,7 @@ def frame_bits(frame: CanFrame) -> tuple[int, ...]:
 
 
 class CanNode(Protocol):
-    """Who hangs on a bus."""
+    """A node of a bus."""
 
     @property
     def bit_cycles(self) -> int:

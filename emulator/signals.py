@@ -18,7 +18,7 @@ from emulator.signal import Signal
 
 
 class Edges(Protocol):
-    """The `Signal` of a level: whoever takes both levels and high impedance can listen."""
+    """The `Signal` of a level: its listeners take both levels and high impedance."""
 
     def connect(self, listener: Callable[[int | None], object]) -> Callable[[], None]:
         """Call `listener(level)` at every edge from now on; what is returned ends that."""
@@ -196,7 +196,7 @@ class AnalogWire:
     """A voltage.  `source(cycles) -> volts` is asked when somebody samples: what drives the wire, told to listeners.
 
     Outside of the chip one source can be on the wire; while the chip itself drives it, that one does not count.
-    A source that is `steady` gives one voltage until another one takes its place, which `stepped` tells; any other
+    A source that is `steady` gives one voltage until another one replaces it, which `stepped` tells; any other
     may change from one cycle to the next without a word.
     """
 

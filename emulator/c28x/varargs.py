@@ -18,7 +18,7 @@ from emulator.c28x.memory import Memory
 
 
 class Reporter(Protocol):
-    """Whoever has findings: the kernel's core, a runtime."""
+    """An owner of findings: the kernel's core, or a runtime."""
 
     @property
     def findings(self) -> Findings:

@@ -18,7 +18,7 @@ FRACTION_BITS: Final = 4
 
 
 class Ramp:
-    """RAMPSTS, computed when somebody asks.  Times are in SYSCLK cycles."""
+    """RAMPSTS, computed on demand.  Times are in SYSCLK cycles."""
 
     __slots__ = ("_begin", "_start", "_step", "running")
 

@@ -11,7 +11,7 @@ from emulator.signal import Signal
 
 
 class ApwmOutput:
-    """The level now, by `look()`, and its changes, which `wanted(on)` asks for while somebody hears them."""
+    """The level now, by `look()`, and its changes, which `wanted(on)` requests while there are listeners."""
 
     __slots__ = ("_look", "_told", "_wanted", "changed", "heard")
 

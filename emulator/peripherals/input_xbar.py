@@ -106,7 +106,7 @@ def _nothing() -> None:
 
 
 class XbarInput:
-    """One input of the X-BAR: its level, for who takes it among others."""
+    """One input of the X-BAR: its level, for receivers that select among inputs."""
 
     __slots__ = ("_number", "_xbar")
 

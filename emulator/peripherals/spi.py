@@ -49,7 +49,7 @@ class Spi:
 
     `rx_interrupt` and `tx_interrupt` are pulses into the PIE; without FIFO all interrupts leave on the RX line.
     `select(level)` drives SPISTE.
-    `lspclk_divider()` is SYSCLK cycles a LSPCLK cycle; whoever changes it calls `clock_changed`.
+    `lspclk_divider()` is SYSCLK cycles a LSPCLK cycle; code that changes it calls `clock_changed`.
     """
 
     def __init__(

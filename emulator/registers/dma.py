@@ -96,7 +96,7 @@ class PRIORITYCTRL1(Register, eallow=True):
 
 
 class PRIORITYSTAT(Register):
-    """Who is served.  TRM DMA registers; HDR PRIORITYSTAT_BITS."""
+    """The channel that is served.  TRM DMA registers; HDR PRIORITYSTAT_BITS."""
     ACTIVESTS_SHADOW = F(6, 4, R, 0, "channel that channel 1 interrupted")
     ACTIVESTS        = F(2, 0, R, 0, "channel that is served; 0 = none")
 

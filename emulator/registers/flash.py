@@ -181,5 +181,5 @@ class FlashEccRegs(Block, struct="FLASH_ECC_REGS"):
 
 
 class FlashPumpSemaphoreRegs(Block, struct="FLASH_PUMP_SEMAPHORE_REGS"):
-    """Who owns the pump of the flash.  HDR struct FLASH_PUMP_SEMAPHORE_REGS."""
+    """The owner of the flash pump.  HDR struct FLASH_PUMP_SEMAPHORE_REGS."""
     PUMPREQUEST = At(0x00, PUMPREQUEST)

@@ -69,7 +69,7 @@ class Activity:
 
 
 class TaskStatistics:
-    """Listen with it: `trace.listen(TaskStatistics())`.  `reset` forgets the past, not who is running."""
+    """Listen with it: `trace.listen(TaskStatistics())`.  `reset` forgets the past, but not the running task."""
 
     def __init__(self) -> None:
         self.tasks: dict[str, Activity] = {}

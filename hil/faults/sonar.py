@@ -93,7 +93,7 @@ class EchoStuck(_OfSensor):
 
 
 class CrossTalk(_OfSensor):
-    """Somebody else's sonar pings nearby."""
+    """Another sonar pings nearby."""
 
     def begin(self) -> None:
         """It begins."""

@@ -108,7 +108,7 @@ class Computed(Course):
 class GeneratedCourse(Course):
     """What a generator yields, `(time_s, value)` in the order of time, taken from it when it is needed.
 
-    It may be endless.  Who asks about the past finds the latest `REMEMBERED` points.
+    It may be endless.  Of the past it keeps the latest `REMEMBERED` points.
     """
 
     def __init__(

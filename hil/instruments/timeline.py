@@ -30,7 +30,7 @@ Event = tuple[int, str, str]
 
 
 class TaskTimeline:
-    """States while the events go by.  `spans` are those that have ended; whoever wants to may take them away."""
+    """States while the events go by.  `spans` are those that have ended; a reader may remove them."""
 
     def __init__(self, base: Mapping[str, int]) -> None:
         self._base = base

@@ -24,7 +24,7 @@ PAUSE_NS: Final = 40_000_000
 
 
 class WireListener(Protocol):
-    """Whoever wants to see what passes.  Times in nanoseconds since recording began."""
+    """A listener of both directions of a line.  Times in nanoseconds since recording began."""
 
     def to_robot(self, data: bytes, time_ns: int) -> None:
         """Bytes were given to the line towards the robot."""

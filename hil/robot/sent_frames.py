@@ -25,7 +25,7 @@ class FrameRow(NamedTuple):
 
 
 class SentFrames:
-    """Bytes as they were sent; what they say is worked out when somebody asks."""
+    """Bytes as they were sent; they are decoded on demand."""
 
     def __init__(self) -> None:
         self._bytes = bytearray()

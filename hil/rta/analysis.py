@@ -42,7 +42,7 @@ _Demand = tuple[Callable[[int], int], int]
 
 
 class Protocol(StrEnum):
-    """What a gate does while somebody more urgent waits."""
+    """How a gate treats its owner while a task of higher priority waits."""
 
     NONE = "none"
     INHERITANCE = "inheritance"

@@ -25,7 +25,7 @@ KEPT_DISTANCES: Final = 16
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Somebody has the CPU, in cycles; `gate` is what a task holds meanwhile."""
+    """A span in which one thread has the CPU, in cycles; `gate` is what a task holds meanwhile."""
 
     who: str
     begin: int
@@ -35,7 +35,7 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class Activation:
-    """One activation from ready to end, with who ran, and who came when."""
+    """One activation from ready to end: the threads that ran, and the releases in between."""
 
     task: str
     ready: int

@@ -50,7 +50,7 @@ _TIMER_TRIGGERS: Final = (1, 2, 3)
 
 
 class Reach:
-    """Who can change objects and registers: what the firmware says of it, and how the chip is set now."""
+    """What can change objects and registers, by the firmware's source and the present state of the chip."""
 
     def __init__(self, board: Board, modules: list[Module], replaced: Set[str]) -> None:
         self._board, self._modules, self.replaced = board, modules, replaced

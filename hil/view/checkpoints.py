@@ -38,7 +38,7 @@ Progress = Callable[[float], None]
 class RecordedInput:
     """Something done from outside at `cycles`: `do` is a name of `hands`, `values` its arguments.
 
-    `scripted` ones were planned before the run and are not forgotten when somebody does something else.
+    `scripted` ones were planned before the run and stay when another input is given.
     """
 
     cycles: int

@@ -43,7 +43,7 @@ class _GivenUp(Exception):
 
 
 class MachineThread:
-    """One board.  `commands` is what others want done; everything else is read by others, never written."""
+    """One board.  `commands` is the queue of commands from other threads; they only read everything else."""
 
     def __init__(
         self,

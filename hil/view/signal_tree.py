@@ -79,7 +79,7 @@ def found(labels: Mapping[str, str], words: str) -> dict[str, str]:
 
 
 class SignalTree:
-    """`on_ticked(name, on)`: somebody wants a signal recorded, or no more."""
+    """`on_ticked(name, on)`: a signal is to be recorded, or no longer."""
 
     def __init__(self, on_ticked: Callable[[str, bool], None]) -> None:
         self._on_ticked = on_ticked

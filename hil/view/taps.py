@@ -19,7 +19,7 @@ Accessed = Callable[[Cell, str, int], None]
 
 @dataclass(frozen=True, slots=True)
 class LastWriter:
-    """Who wrote a register last."""
+    """The last writer of a register."""
 
     cycles: int
     #: None where no firmware stood behind the write: the kernel's or the start-up's own.
@@ -65,7 +65,7 @@ class Taps:
             self.step(register, access, word)
 
     def writer(self, register: Cell) -> LastWriter | None:
-        """Who wrote a register last."""
+        """The last writer of a register."""
         known = self.writers.get(register)
         if known is None:
             return None

@@ -40,7 +40,7 @@ class BlockedTask:
 
 
 class Inversion:
-    """Measures who ran while a task waited."""
+    """Measures which threads ran while a task waited."""
 
     def __init__(
         self,

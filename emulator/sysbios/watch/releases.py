@@ -32,7 +32,7 @@ _KEPT: Final = 10_000
 
 @dataclass(slots=True)
 class Release:
-    """One post of a Clock function, and who had had how much CPU time by then."""
+    """One post of a Clock function, and the CPU time of each thread at that time."""
 
     time: int
     spot: Spot

@@ -25,7 +25,7 @@ STEP_M: Final = 0.005
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """The robot and what stands around it at one moment."""
+    """The robot and its surroundings at one moment."""
 
     status: Status
     #: Where the firmware believes to be, in the world's frame; None: it keeps that elsewhere.

@@ -33,7 +33,7 @@ DIRECTOR_PRIORITY: Final = 15
 
 @dataclass
 class GateState:
-    """A gate: who owns it, the priority to return to, who waits."""
+    """A gate: its owner, the priority to return to, its waiters."""
 
     owner: str = ""
     original: int = 0
