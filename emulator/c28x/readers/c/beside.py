@@ -38,8 +38,10 @@ class Beside:
         if self._found is None:
             self._found = {}
             for path in self._files():
-                for name in functions(path.read_text(encoding="latin-1")):
-                    self._found.setdefault(name, path)
+                names = list(functions(path.read_text(encoding="latin-1")))
+                if "main" not in names:  # another program, which is no library
+                    for name in names:
+                        self._found.setdefault(name, path)
         return self._found.get(function)
 
     def _files(self) -> Iterator[Path]:

@@ -79,6 +79,11 @@ def test_sources_lie_in_source_beside_include_too(library: Path, tmp_path: Path)
     assert "source.port" in build.program.modules
 
 
+def test_another_program_is_no_library(library: Path) -> None:
+    (library / "port.c").write_text(PORT_C + "void main(void) { }\n", encoding="utf-8")
+    assert Beside([library]).file("PORT_set") is None
+
+
 def test_a_link_that_leaves_the_folder_is_not_followed(library: Path, tmp_path: Path) -> None:
     (library / "port.c").rename(tmp_path / "port.c")
     (library / "port.c").symlink_to(tmp_path / "port.c")
