@@ -236,7 +236,8 @@ class RegistersPanel:
         self._fields.show([field_row(each, moved=bool(bits & each.field.mask)) for each in now.fields])
         if self._fields.visible is not bool(now.fields):
             self._fields.visible = bool(now.fields)
-        count = f"{len(now.registers)} registers" + (" and more" if in_full and len(now.registers) == MOST else "")
+        many = len(now.registers)
+        count = f"{many} register{'' if many == 1 else 's'}" + (" and more" if in_full and many == MOST else "")
         _text(self._count, f"{count}; bold: not as after reset; marked: changed since the last stop or look")
         _text(self._note, now.note)
         if now.writer != self._writer:
