@@ -17,6 +17,7 @@ from urllib.request import urlopen
 
 from tests.bad_day.figure import REPOSITORY
 from tests.hil.view.conftest import View
+from tests.hil.waiting import PATIENCE_S
 
 CALLERS = 20
 #: So often twenty pages come and go; in the cases of every run once.
@@ -145,7 +146,7 @@ class _Visit:
         self.status, self.said = 0, ""
         self._updates = 0
         self._known = asyncio.Event()
-        self._client = socketio.AsyncClient(reconnection=False)
+        self._client = socketio.AsyncClient(reconnection=False, request_timeout=PATIENCE_S)
         self._client.on("update", self._updated)
         self._client.on("run_javascript", self._asked)
 
@@ -157,8 +158,9 @@ class _Visit:
             assert found is not None, self.said[:200]
             query = f"client_id={found[1]}&next_message_id=0&implicit_handshake=true&tab_id={id(self)}&document_id=1"
             await self._client.connect(
-                f"{self._address}?{query}", socketio_path="/_nicegui_ws/socket.io", transports=["websocket"]
-            )
+                f"{self._address}?{query}", socketio_path="/_nicegui_ws/socket.io", transports=["websocket"],
+                wait_timeout=PATIENCE_S,
+            )  # fmt: skip
         return self
 
     async def fed(self) -> bool:
