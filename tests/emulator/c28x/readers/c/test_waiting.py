@@ -10,6 +10,7 @@ from __future__ import annotations
 import pytest
 
 from emulator.c28x.passes.checks import check
+from emulator.c28x.passes.stamps import Stamps
 from tests.emulator.c28x.readers.c.workshop import read
 
 #: `isr` writes whatever may be waited for; the names of volatile objects begin with `v`.
@@ -36,7 +37,7 @@ static void clear(void) { flag = 0; }
 def waiting(files: str | dict[str, str]) -> list[tuple[str, int, int, str]]:
     """Each finding of the rule: file, line, column, object."""
     modules = read({"drv.c": files} if isinstance(files, str) else files).translate()
-    found = check(modules, {v: v.initial for module in modules for v in module.variables})
+    found = check(modules, {v: v.initial for m in modules for v in m.variables}, Stamps(modules, frozenset()))
     return [
         (f.place.file.rsplit("/", 1)[-1], f.place.line, f.place.column, f.object)
         for f in found
