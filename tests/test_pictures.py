@@ -46,7 +46,7 @@ def assert_moves(made: Path, kept: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("picture", pictures(), ids=lambda picture: picture.file.name)
 def test_it_is_what_the_command_draws(picture: Picture, tmp_path: Path) -> None:
-    in_browser = picture.command.startswith(("tests.hil.view.", "tests.hil.page."))
+    in_browser = picture.command.startswith(("tests.hil.view.", "tests.hil.page.", "tests.hil.docs."))
     if in_browser:
         needs_browser()
     made = picture.make(tmp_path)

@@ -13,14 +13,15 @@ from textual.screen import ModalScreen
 from textual.widgets import DataTable, Footer, Markdown, Static
 
 from emulator.c28x.findings import Finding
-from emulator.rules import RULES
+from emulator.rules import RULES, Severity
 from hil.client.keys import LEAVE, STOP
 from hil.reports.excerpt import readable, shown
 from hil.reports.model import rule_of
-from hil.reports.terminal import STYLE
 
 #: The longest last: on a narrow screen it is the one that is cut (arrow keys scroll).
 COLUMNS = ("severity", "rule", "times", "first ms", "task", "place")
+#: Colours that can be read on light and on dark.
+STYLE = {Severity.ERROR: "bold red", Severity.WARNING: "magenta", Severity.NOTE: "blue"}
 
 
 class FindingsTable(DataTable[Text]):

@@ -37,12 +37,14 @@ MOST_CPU_S = 1.0
 
 
 def _cpu_s(pid: int) -> float:
-    """What a process has used of the processor."""
+    """What a process and those that it has started have used of the processor."""
     try:
         fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+        children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
     except OSError:
         return 0.0
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    own = sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")  # itself, and what it has waited for
+    return own + sum(_cpu_s(int(child)) for child in children)
 
 
 def case(seed: int) -> str:

@@ -1,0 +1,71 @@
+"""A picture of the tutorial: ``python -m tests.hil.docs.picture tutorial-red.png`` (or ``tutorial-board.png``)."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tempfile
+from contextlib import chdir
+from pathlib import Path
+from typing import Any, Final
+
+from playwright.sync_api import sync_playwright
+from rich.console import Console
+from rich.terminal_theme import DEFAULT_TERMINAL_THEME
+from rich.text import Text
+
+import hil
+from tests.hil.view.conftest import CHROMIUM, View
+
+SIZE: Final = {"width": 1280, "height": 800}
+WRONG: Final = re.compile(r"// (sum \+= Samples\[SAMPLES\];)")
+#: The time that a session took, which is another each time.
+TOOK: Final = re.compile(r" in [\d.]+s")
+TUTORIAL: Final = Path(hil.__file__).with_name("docs") / "tutorial.md"
+
+
+def red_test(page: Any) -> None:
+    """What pytest prints when the commented line of the driver is a statement."""
+    driver = Path("ranger.c")
+    driver.write_text(WRONG.sub(r"\1", driver.read_text(encoding="utf-8")), encoding="utf-8")
+    command = ["pytest", "-q", "--color=yes", "-k", "0.5"]
+    done = subprocess.run([sys.executable, "-m", *command], capture_output=True, text=True, check=False)
+    with open("/dev/null", "w", encoding="utf-8") as nowhere:
+        console = Console(record=True, width=100, file=nowhere)
+        console.print(Text.from_ansi(TOOK.sub("", done.stdout.strip())))
+    page.set_content(console.export_svg(title="pytest -k 0.5", theme=DEFAULT_TERMINAL_THEME))
+
+
+def board(page: Any) -> None:
+    """The page of the program on its board: a register with its fields, and who wrote it."""
+    (main,) = re.findall(r"```c\n(/\* main\.c \*/.*?)```", TUTORIAL.read_text(encoding="utf-8"), re.DOTALL)
+    Path("main.c").write_text(main, encoding="utf-8")
+    run = View("--no-open", "--board", "board.py", "--firmware", ".", "--put", "infrared.distance_m=0.5")
+    page.goto(run.address)
+    page.get_by_role("tab", name="Registers", exact=True).click(timeout=90_000)
+    page.get_by_label("search all registers").fill("AdcbRegs ADCSOC0CTL")
+    page.wait_for_function("document.querySelectorAll('.registers tbody tr').length === 1", timeout=60_000)
+    page.locator(".registers tbody button").click()
+    page.locator(".fields tbody tr").first.wait_for(timeout=60_000)
+    page.get_by_role("button", name="Pause", exact=True).click()
+    run.process.terminate()
+
+
+def main() -> None:
+    """The picture that is asked for, in the current folder."""
+    (name,) = sys.argv[1:]
+    made = Path(name).resolve()
+    with sync_playwright() as driver, tempfile.TemporaryDirectory() as folder, chdir(folder):
+        subprocess.run([sys.executable, "-m", "hil", "new", "ranger"], check=True, capture_output=True)
+        browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        page = browser.new_page(viewport=SIZE)
+        with chdir("ranger"):
+            {"tutorial-red": red_test, "tutorial-board": board}[made.stem](page)
+            shown = page.locator("svg").first if made.stem == "tutorial-red" else page
+            shown.screenshot(path=made)
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()
