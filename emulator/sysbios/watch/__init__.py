@@ -11,6 +11,7 @@ nothing, and cost nothing in an image that nobody watches.  Which rules there ar
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Protocol
 
 from emulator.c28x.link import Linked
@@ -77,6 +78,8 @@ class KernelWatch:
         self.releases = Releases(threads, spots, names, findings, calls)
         self.lost_posts = LostPosts(spots, names, findings, calls, linked)
         self.lost_events = LostEvents(threads, spots, findings, linked.program.modules.values())
+        #: Register -> the interrupts that a write to it starts, each with the words that do.
+        self._started: dict[Tapped, list[tuple[int, Callable[[int], bool]]]] = {}
         self.patience = Patience(threads, spots, findings, self.releases, calls, starved_cycles)
         runtime = linked.runtime
 
@@ -151,13 +154,34 @@ class KernelWatch:
         Whatever its writer did before, the routine comes behind it.
         """
 
-        def begun(_register: Any, access: str, word: int, _lanes: int) -> None:
-            if access == "write" and begins(word):
-                self.threads.release(register)
-                self.lost_events.start(number)
-
-        register.tap(begun)
+        started = self._started.get(register)
+        if started is None:
+            started = self._started[register] = []
+            register.tap(partial(self._written, register, started))
+        started.append((number, begins))
         self.threads.begun.setdefault(number, []).append(register)
+
+    def _written(
+        self, register: Tapped, started: list[tuple[int, Callable[[int], bool]]],
+        _register: Any, access: str, word: int, _lanes: int,
+    ) -> None:  # fmt: skip
+        """Something is written to a register of `starts`."""
+        if access != "write":
+            return
+        kernel = self.threads.kernel
+        if kernel.active:
+            # Whoever gets a handler later knows what its creator knew.
+            table = kernel.hwis.table
+            for number, begins in started:
+                if number in table and begins(word):
+                    self.threads.release(register)
+                    break
+            return
+        numbers = [number for number, begins in started if begins(word)]
+        if numbers:
+            self.threads.release(register)
+        for number in numbers:
+            self.lost_events.start(number)
 
     def adc(self, regs: TappedBlock, results: TappedBlock) -> None:
         """Watch the transactions of an ADC."""
