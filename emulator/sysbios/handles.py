@@ -121,6 +121,8 @@ class Handles:
             return arguments
         for i, kind, behind in prototypes().get(name, ()):
             value = arguments[i]
+            if value.__class__ is self.classes.get(kind) and not value.deleted:
+                continue
             if behind and value is not None:
                 value = value.load()
             if (value is None or value is NULL) and (name, i) in _OPTIONAL:

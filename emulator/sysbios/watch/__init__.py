@@ -11,7 +11,6 @@ nothing, and cost nothing in an image that nobody watches.  Which rules there ar
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any, Protocol
 
 from emulator.c28x.link import Linked
@@ -157,31 +156,37 @@ class KernelWatch:
         started = self._started.get(register)
         if started is None:
             started = self._started[register] = []
-            register.tap(partial(self._written, register, started))
+            register.tap(self._starting(register, started))
         started.append((number, begins))
         self.threads.begun.setdefault(number, []).append(register)
 
-    def _written(
-        self, register: Tapped, started: list[tuple[int, Callable[[int], bool]]],
-        _register: Any, access: str, word: int, _lanes: int,
-    ) -> None:  # fmt: skip
-        """Something is written to a register of `starts`."""
-        if access != "write":
-            return
-        kernel = self.threads.kernel
-        if kernel.active:
-            # Whoever gets a handler later knows what its creator knew.
-            table = kernel.hwis.table
-            for number, begins in started:
-                if number in table and begins(word):
-                    self.threads.release(register)
-                    break
-            return
-        numbers = [number for number, begins in started if begins(word)]
-        if numbers:
-            self.threads.release(register)
-        for number in numbers:
-            self.lost_events.start(number)
+    def _starting(
+        self, register: Tapped, started: list[tuple[int, Callable[[int], bool]]]
+    ) -> Callable[[Any, str, int, int], None]:  # fmt: skip
+        """What is told of each write to a register of `starts`."""
+        threads, kernel, table = self.threads, self.threads.kernel, self.threads.kernel.hwis.table
+        #: Those that have a handler, when there were so many handlers.  Who makes one later hands on what it knows.
+        handled: list[Callable[[int], bool]] = []
+        handlers = 0
+
+        def begun(_register: Any, _access: str, word: int, _lanes: int) -> None:
+            nonlocal handled, handlers
+            if kernel.active:
+                if len(table) != handlers:
+                    handlers = len(table)
+                    handled = [begins for number, begins in started if number in table]
+                for begins in handled:
+                    if begins(word):
+                        threads.release(register)
+                        return
+                return
+            numbers = [number for number, begins in started if begins(word)]
+            if numbers:
+                threads.release(register)
+            for number in numbers:
+                self.lost_events.start(number)
+
+        return begun
 
     def adc(self, regs: TappedBlock, results: TappedBlock) -> None:
         """Watch the transactions of an ADC."""
