@@ -152,11 +152,13 @@ class SysCtrl:
             made = f"{low * factor / 1e6:g} MHz" + (f" with a crystal of {low / 1e6:g} MHz" if crystal else "")
             findings = self._cpu.findings
             findings.cause = self._set_by
-            findings.report(
-                "unmodelled", f"SYSCLK is set to {made}, which is not modelled: it is {SYSCLK_HZ / 1e6:g} MHz here",
-                object=clkcfg["SYSPLLMULT"].path, value=clkcfg["SYSPLLMULT"].value,
-            )  # fmt: skip
-            findings.cause = None
+            try:
+                findings.report(
+                    "unmodelled", f"SYSCLK is set to {made}, which is not modelled: it is {SYSCLK_HZ / 1e6:g} MHz here",
+                    object=clkcfg["SYSPLLMULT"].path, value=clkcfg["SYSPLLMULT"].value,
+                )  # fmt: skip
+            finally:
+                findings.cause = None
 
     @property
     def _quarters(self) -> int:

@@ -48,12 +48,11 @@ def pairs(modules: Iterable[Module]) -> dict[str, list[Pair]]:
     own = {f.path: f for module in modules for f in module.functions}
     written: dict[_Word, set[str]] = {}
     inside: set[str] = set()
-    for routine in own.values():
-        if routine.interrupt:
-            for f in _reached(routine, own):
-                inside.add(f.path)
-                for word in _writes(f):
-                    written.setdefault(word, set()).add(routine.name)
+    for routine, reached in _routines(own):
+        for f in reached:
+            inside.add(f.path)
+            for word in _writes(f):
+                written.setdefault(word, set()).add(routine.name)
     found: dict[str, list[Pair]] = {}
     for f in own.values() if written else ():
         if f.path in inside:
@@ -75,14 +74,12 @@ def continued(modules: Iterable[Module]) -> dict[str, set[tuple[str, str]]]:
     own = {f.path: f for module in modules for f in module.functions}
     stepped: dict[str, dict[str, set[str]]] = {}
     inside: set[str] = set()
-    for routine in own.values():
-        if routine.interrupt:
-            reached = _reached(routine, own)
-            inside |= {f.path for f in reached}
-            used = {path for f in reached for path in _used(f)}
-            steps = {path for f in reached for path in _steps(f)}
-            for path in used & steps:
-                stepped.setdefault(path, {})[routine.name] = used - {path}
+    for routine, reached in _routines(own):
+        inside |= {f.path for f in reached}
+        used = {path for f in reached for path in _used(f)}
+        steps = {path for f in reached for path in _steps(f)}
+        for path in used & steps:
+            stepped.setdefault(path, {})[routine.name] = used - {path}
     found: dict[str, set[tuple[str, str]]] = {}
     for f in own.values() if stepped else ():
         sets = {path for path, _ in _writes(f)}
@@ -98,12 +95,11 @@ def turned_by_both(modules: Iterable[Module]) -> dict[str, set[str]]:
     own = {f.path: f for module in modules for f in module.functions}
     by_routine: dict[str, set[str]] = {}
     inside: set[str] = set()
-    for routine in own.values():
-        if routine.interrupt:
-            for f in _reached(routine, own):
-                inside.add(f.path)
-                for path in _turns(f):
-                    by_routine.setdefault(path, set()).add(routine.name)
+    for routine, reached in _routines(own):
+        for f in reached:
+            inside.add(f.path)
+            for path in _turns(f):
+                by_routine.setdefault(path, set()).add(routine.name)
     others = {path for f in own.values() if by_routine and f.path not in inside for path in _turns(f)}
     return {path: routines for path, routines in by_routine.items() if path in others}
 
@@ -140,6 +136,13 @@ def _used(f: Function) -> Iterator[str]:
             root = p.root if isinstance(p, LValue) else None
             if isinstance(root, Variable) and root.kind == "global" and root.ctype.leaves == 1:
                 yield root.declaration.path
+
+
+def _routines(own: dict[str, Function]) -> Iterator[tuple[Function, list[Function]]]:
+    """The interrupt routines, each with the functions that it reaches."""
+    for routine in own.values():
+        if routine.interrupt:
+            yield routine, _reached(routine, own)
 
 
 def _reached(f: Function, own: dict[str, Function]) -> list[Function]:

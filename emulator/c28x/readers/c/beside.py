@@ -15,9 +15,11 @@ from typing import Final
 #: A larger file is no driver.
 _LARGEST_BYTES: Final = 2_000_000
 _SKIPPED: Final = re.compile(
-    r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|^[ \t]*\#(?:\\\n|[^\n])*""", re.DOTALL | re.MULTILINE
+    r"""//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|^[ \t]*\#(?:\\\n|[^\n])*""",
+    re.DOTALL | re.MULTILINE,
 )
-_HEAD: Final = re.compile(r"(\w+)\s*\([^(){};]*(?:\([^(){};]*\)[^(){};]*)*\)\s*$")
+#: Nothing is tried twice, however long a name is or how many parentheses stand open.
+_HEAD: Final = re.compile(r"\b(\w++)\s*+\([^(){};]*+(?:\([^(){};]*+\)[^(){};]*+)*+\)\s*+$")
 
 
 class Beside:

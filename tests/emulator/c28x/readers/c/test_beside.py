@@ -102,6 +102,12 @@ def test_beginnings_of_functions(text: str, found: list[str]) -> None:
     assert list(functions(text)) == found
 
 
+@pytest.mark.parametrize("text", ["/* ", "a", "a(", "a() ", "a(b() ", " ", '"', "'a", "\\\n#", "{a(){"])
+def test_a_hostile_file_of_a_megabyte_is_searched_once(text: str) -> None:
+    found = list(functions("int f(void) { } " + text * (1_000_000 // len(text)) + "{"))
+    assert found[0] == "f"
+
+
 @given(st.text(alphabet="abc(){};\"'/*#\\\n ", max_size=200))
 def test_any_text_is_searched(text: str) -> None:
     assert all(name.isidentifier() for name in functions(text))
