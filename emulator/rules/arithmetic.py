@@ -22,7 +22,7 @@ happens.
 On a host `int` has 32 bits, and neither the test nor the sanitizer there sees anything. A bit shifted into the sign
 bit (`1 << 15`, every mask for bit 15) loses nothing and is reported only if the result is widened.
 
-**Mend:** compute in `long` (cast an *operand*, not the result), or divide before you add.
+**Fix:** compute in `long` (cast an *operand*, not the result), or divide before you add.
 """,
         "ISO C 6.5 p5; CC table 6-1; CPU 2.3 (OVM)",
     ),
@@ -39,7 +39,7 @@ On a host the operation has 32 bits and is right. A difference of two unsigned v
 is how elapsed counts are taken and is not reported; nor is a result that is cast to its own type, which says that the
 wrap is meant.
 
-**Mend:** cast one operand first: `(long) a * b`, `((int) adc - 2048) * 0.001`.
+**Fix:** cast one operand first: `(long) a * b`, `((int) adc - 2048) * 0.001`.
 """,
         "ISO C 6.3.1.8 with the widths of CC table 6-1",
     ),
@@ -53,7 +53,7 @@ percentage. The finding is made only when a remainder was really lost.
 
 Compilers are silent: it is valid C.
 
-**Mend:** make one operand a float: `(float) a / b`. If the whole number is meant, keep it in an integer.
+**Fix:** make one operand a float: `(float) a / b`. If the whole number is meant, keep it in an integer.
 """,
         "ISO C 6.5.5 p6",
     ),
@@ -70,7 +70,7 @@ and what it is divided by or shifted down to (`(int) ((long) a * b >> 15)`), is 
 
 On a host both sides have 32 bits.
 
-**Mend:** make the object `long`, or bring the value into range before the assignment.
+**Fix:** make the object `long`, or bring the value into range before the assignment.
 """,
         "ISO C 6.3.1.3 p3",
     ),
@@ -94,7 +94,7 @@ A wrap of more than half the range is taken for the elapsed count of a free-runn
 Of two constants it is seen in the source: `400u * 195u` is 12464, because `unsigned int` has 16 bits. A cast to its own
 type says that the wrap is meant.
 
-**Mend:** subtract the smaller from the larger one, or compute in a signed type that is wide enough.
+**Fix:** subtract the smaller from the larger one, or compute in a signed type that is wide enough.
 """,
         "ISO C 6.2.5 p9",
         how="dynamic/static",
@@ -114,7 +114,7 @@ variables, members and functions. It reports a comparison that goes wrong becaus
 two stamps. A comparison by order is right if its branch takes the difference:
 `if (now < last) d = 65536 - last + now;`.
 
-**Mend:** compare differences: `(unsigned int) (now - last) >= INTERVAL`, or `(int) (now - end) >= 0` for a time that is
+**Fix:** compare differences: `(unsigned int) (now - last) >= INTERVAL`, or `(int) (now - end) >= 0` for a time that is
 at most half of the range ahead.
 """,
         "ISO C 6.2.5 p9; TRM, CPU timers",
@@ -130,7 +130,7 @@ One side is unsigned, so the other is converted: -1 counts as 65535. An error co
 
 Seen as it runs, when the value is negative; and in the source, when a minus or a negative constant stands there.
 
-**Mend:** test for negative first, or make both sides signed.
+**Fix:** test for negative first, or make both sides signed.
 """,
         "ISO C 6.3.1.8",
         how="dynamic/static",
@@ -149,7 +149,7 @@ limit becomes the limit); by a cast, if the result is widened and multiplied, di
 additions and subtractions, which come out right, masks and shifts, a factor above 65535, and a number that is limited
 by being refused (`if (x >= N) return;` refuses negative ones too).
 
-**Mend:** limit below 0 first, and compute in a signed type that is wide enough.
+**Fix:** limit below 0 first, and compute in a signed type that is wide enough.
 """,
         "ISO C 6.3.1.3 p2",
     ),
@@ -165,7 +165,7 @@ not wrap at 256, CRC-8 shifts its bits out of the octet and keeps them, `~b` set
 On every host it is right, which is why such drivers arrive tested. The finding shows what eight bits would have
 given. A counter that is stepped by a constant and held against a limit is not reported: to it 16 bits are welcome.
 
-**Mend:** mask with `& 0xFF`; extend the sign by hand (`if (t > 127) t -= 256;`).
+**Fix:** mask with `& 0xFF`; extend the sign by hand (`if (t > 127) t -= 256;`).
 """,
         "CC table 6-1",
         how="dynamic/static",
@@ -178,7 +178,7 @@ given. A counter that is stepped by a constant and held against a limit is not r
 C leaves the result undefined. What this chip gives depends on the library (`--float-to-int` chooses between
 saturation and the low bits); NaN gives some number, too. A duty cycle or a register is then set to it.
 
-**Mend:** limit the float before the conversion. Look for the place where it left its range: `hil explain nan`.
+**Fix:** limit the float before the conversion. Look for the place where it left its range: `hil explain nan`.
 """,
         "ISO C 6.3.1.4 p1",
     ),
@@ -191,7 +191,7 @@ The prototype wants an integer, and C cuts the fraction in silence: 2.9 volts be
 the end of a run, and only where the greatest value lay between 1 and 10 and lost a tenth of itself: a float that was
 scaled to what the function takes is not reported, nor is one to which a half was added to round it.
 
-**Mend:** scale it to the unit that the function takes; a cast if the whole part is meant.
+**Fix:** scale it to the unit that the function takes; a cast if the whole part is meant.
 """,
         "ISO C 6.5.2.2 p7, 6.3.1.4 p1",
     ),
@@ -205,7 +205,7 @@ converts in silence, because the prototype says so.
 
 A cast says that the whole part is meant, and is not reported.
 
-**Mend:** `fabsf(x)`, or `fabs(x)`.
+**Fix:** `fabsf(x)`, or `fabs(x)`.
 """,
         "ISO C 7.20.6.1, 7.12.7.2",
         how="static",
@@ -220,7 +220,7 @@ A float division gives infinity, or NaN for 0/0; with the chip's own divider (`-
 
 A host stops the program for integers, so the case was never met there if it never happened there.
 
-**Mend:** test the divisor; for a measured period, decide what "none yet" means.
+**Fix:** test the divisor; for a measured period, decide what "none yet" means.
 """,
         "ISO C 6.5.5 p5",
     ),
@@ -231,7 +231,7 @@ A host stops the program for integers, so the case was never met there if it nev
         """
 `1 << 20` is a shift of a 16-bit `int`: undefined, and 0 at best. On a host it is 1048576.
 
-**Mend:** shift an `unsigned long`: `1UL << n`; check the count.
+**Fix:** shift an `unsigned long`: `1UL << n`; check the count.
 """,
         "ISO C 6.5.7 p3",
     ),
@@ -244,7 +244,7 @@ The place of birth: a product beyond 3.4e38, a square root of a negative number.
 every sum, and no comparison with NaN is true. Floats are watched in an image that is linked with `watch`;
 `math.h` is watched always, and a division by zero has a rule of its own.
 
-**Mend:** limit the operands; look at the first value in the finding.
+**Fix:** limit the operands; look at the first value in the finding.
 """,
         "IEEE 754 7.2, 7.4",
     ),
@@ -256,7 +256,7 @@ every sum, and no comparison with NaN is true. Floats are watched in an image th
 It arrived in a file-scope object or in an argument of a library or kernel function (a text that is sent, a sine). The
 first arrival at each place is reported. An integrator that has taken up a NaN never gets rid of it.
 
-**Mend:** follow the value back: `nan`, `division-by-zero`, or an object that was never written (`--fill nan`).
+**Fix:** follow the value back: `nan`, `division-by-zero`, or an object that was never written (`--fill nan`).
 """,
         "IEEE 754 6.2",
     ),

@@ -22,7 +22,7 @@ where values above 32767 are cut off, one direction becomes a large positive rat
 
 No compiler sees it: each conversion is defined. The test is the world: a rate goes in, a rate comes out.
 
-**Mend:** combine the octets as `unsigned`, convert the 16-bit result to a signed 16-bit type once, and only then scale.
+**Fix:** combine the octets as `unsigned`, convert the 16-bit result to a signed 16-bit type once, and only then scale.
 """, "L3G4200D data sheet, OUT_X_L..OUT_Z_H: two's complement",
     ),
     _rule(
@@ -33,7 +33,7 @@ it is not full scale divided by 32768, which is 13 % too small.
 
 An integrated angle carries the error on: a quarter turn ends 11 degrees short.
 
-**Mend:** multiply by the sensitivity of the data sheet for the full scale that is configured.
+**Fix:** multiply by the sensitivity of the data sheet for the full scale that is configured.
 """, "L3G4200D data sheet, table of mechanical characteristics: So",
     ),
     _rule(
@@ -42,7 +42,7 @@ At rest the corrected rate must stay within a bound (degrees/s) that the part's 
 after calibration. An offset that is averaged over too few samples, summed in a type that overflows, or measured while
 the robot moves, stays in every later reading and grows without limit in the integrated angle.
 
-**Mend:** average new samples (data ready), in a 32-bit sum, at rest; check the spread before the mean is accepted.
+**Fix:** average new samples (data ready), in a 32-bit sum, at rest; check the spread before the mean is accepted.
 """, "L3G4200D data sheet: DVoff, OffDr",
     ),
     _rule(
@@ -51,7 +51,7 @@ Twelve conversions make one distance. If one of them is replaced by any other va
 result may move by no more than the spread of the other eleven (cm). That is what a median is for; a mean lets a twelfth
 of the error through, and a sort that does not sort, or reads beside its array, lets through anything.
 
-**Mend:** sort a copy completely, take the middle (for an even number: the mean of the two middles).
+**Fix:** sort a copy completely, take the middle (for an even number: the mean of the two middles).
 """,
     ),
     _rule(
@@ -60,7 +60,7 @@ With a wall at a known distance (cm) the driver's reading must agree within the 
 converter's step. Wrong: a slope that belongs to another supply voltage, twelve conversions divided by a number that is
 not twelve, an offset that is added twice.
 
-**Mend:** derive slope and offset from the supply, the reference and the number of conversions, and check both ends of
+**Fix:** derive slope and offset from the supply, the reference and the number of conversions, and check both ends of
 the range.
 """, "LV-MaxSonar-EZ data sheet: Vcc/512 per inch",
     ),
@@ -72,7 +72,7 @@ follow the true path within wheel slip and the resolution of the encoders, in ev
 What breaks it: different units on two branches (millimetres when straight, metres when turning), an angle that is not
 wrapped, integer division before scaling, the wrong sign of a turn, a counter's overflow taken as a jump.
 
-**Mend:** one unit throughout; difference of counts in a signed type of the counter's width; one formula for all turns.
+**Fix:** one unit throughout; difference of counts in a signed type of the counter's width; one formula for all turns.
 """,
     ),
     _rule(
@@ -81,7 +81,7 @@ From the end of the order's last byte on the line to the first changed output (P
 stated time (ms) may pass, whatever the robot does meanwhile. An order that waits behind a busy loop, behind a task of
 higher priority that never sleeps, or in a buffer that is only looked at now and then, is late without a sign of it.
 
-**Mend:** let the receiver's interrupt wake the task that acts; keep long work below it in priority.
+**Fix:** let the receiver's interrupt wake the task that acts; keep long work below it in priority.
 """,
     ),
     _rule(
@@ -90,7 +90,7 @@ Bytes that are no order - cut off, too long, two run together, with a wrong keyw
 references, outputs and memory as they were, and the next good order must work. A parser that trusts a terminator runs
 out of its buffer; one that converts before it checks acts on half a number.
 
-**Mend:** bound every loop by the buffer; check the whole frame first, then act; resynchronise at the start character.
+**Fix:** bound every loop by the buffer; check the whole frame first, then act; resynchronise at the start character.
 """,
     ),
     _rule(
@@ -98,7 +98,7 @@ out of its buffer; one that converts before it checks acts on half a number.
 After STOP (or the bumper) every motor must get its neutral output within one control period and keep it (PWM duty, m/s)
 until another order comes: no remembered reference, no integral left in a controller, no task that writes once more.
 
-**Mend:** a stop sets state, references, integrators and outputs in one place; every writer of outputs asks the state.
+**Fix:** a stop sets state, references, integrators and outputs in one place; every writer of outputs asks the state.
 """,
     ),
     _rule(
@@ -106,7 +106,7 @@ until another order comes: no remembered reference, no integral left in a contro
 Told a speed (m/s) and a rate (rad/s), the true motion must settle on them, without a lasting error beyond the stated
 bound and without oscillation, and a mission must end without a collision.
 
-**Mend:** see what the controller is fed: unit, sign, sampling period, saturation of the integral.
+**Fix:** see what the controller is fed: unit, sign, sampling period, saturation of the integral.
 """,
     ),
     _rule(
@@ -114,7 +114,7 @@ bound and without oscillation, and a mission must end without a collision.
 Every function of the program that is written down (an order of the protocol, a parameter, a calibration, a branch) must
 change some output in some situation. If the same run with and without it is equal byte for byte, it has no effect.
 
-**Mend:** complete it or remove it. Code without an effect costs everyone time who searches for a fault.
+**Fix:** complete it or remove it. Code without an effect costs everyone time who searches for a fault.
 """,
     ),
     _rule(
@@ -127,7 +127,7 @@ The author of a driver can say which unit a value has, in a comment where it is 
 object, above a function for its result, `// hil: unit v mm/s` for its parameter `v`. Then `hil check` tells each place
 where a value of one unit goes where another one is declared, and each sum or comparison of two.
 
-**Mend:** put the unit in the name, convert at one border, send what the protocol says.
+**Fix:** put the unit in the name, convert at one border, send what the protocol says.
 """,
     ),
     _rule(
@@ -137,7 +137,7 @@ is not the sum of C/T, a response time that leaves out a blocking term, a bound 
 
 The message states the figure, the recomputed value and the formula. Nothing of the firmware needs to run for it.
 
-**Mend:** correct the figure, and see whether the conclusion drawn from it (schedulable, deadline met) still holds.
+**Fix:** correct the figure, and see whether the conclusion drawn from it (schedulable, deadline met) still holds.
 """, how="static",
     ),
     _rule(
@@ -147,7 +147,7 @@ fields, or the caller of a function. One of them is wrong, and readers trust the
 
 The message states both. What the code does is measured or read from its tree, not assumed.
 
-**Mend:** decide which is meant and change the other.
+**Fix:** decide which is meant and change the other.
 """,
     ),
     _rule(
@@ -155,7 +155,7 @@ The message states both. What the code does is measured or read from its tree, n
 A function with a clear definition (a median, a temperature in degrees, the end of a frame) is called with an input
 whose result can be computed by hand, and it returns something else.
 
-**Mend:** the message has the input, the result and the right result; keep them as a test.
+**Fix:** the message has the input, the result and the right result; keep them as a test.
 """,
     ),
     _rule(
@@ -178,7 +178,7 @@ it longer (`--for`).
 Keeping the last value may be right: a set point that stays until there is another one. Then say so at the statement,
 `hil: allow stale-value, ...`.
 
-**Mend:** keep the time of the value beside it, look at its age where it is used, and beyond the age that the machine
+**Fix:** keep the time of the value beside it, look at its age where it is used, and beyond the age that the machine
 can bear go to what is safe: stop, or say that there is no value.
 """,
     ),
@@ -195,7 +195,7 @@ not: the finding is the smallest example that was met.
 | `odd`, `even`, `odd v` | f(-v) is -f(v), is f(v) |
 | `idempotent` | f(f(x)) is f(x); of any other function: the second of two calls alike changes no object |
 
-**Mend:** the example is the test to keep. Where the declaration asks for too much, give the range for which it holds.
+**Fix:** the example is the test to keep. Where the declaration asks for too much, give the range for which it holds.
 """,
     ),
     _rule(
@@ -203,7 +203,7 @@ not: the finding is the smallest example that was met.
 A well-formed order asks for a speed, an angle or a time outside the stated range of the machine, and the firmware
 passes it on. What follows is decided by the first thing that saturates.
 
-**Mend:** hold the value within the range where the order is taken, or refuse the order.
+**Fix:** hold the value within the range where the order is taken, or refuse the order.
 """, "TFG 3.2.3: +-0.3 m/s, +-1.57 rad/s",
     ),
     _rule(
@@ -211,7 +211,7 @@ passes it on. What follows is decided by the first thing that saturates.
 Each value is protected by its gate, and the set is not: a writer that runs between two reads of the same reader leaves
 it with one value of the old and another of the new measurement. No race is reported, since every access has a gate.
 
-**Mend:** write the whole set, and read the whole set, inside one critical section.
+**Fix:** write the whole set, and read the whole set, inside one critical section.
 """,
     ),
 )  # fmt: skip

@@ -23,7 +23,7 @@ such a program works in its interrupts.
 
 Interrupts still run, tasks of lower priority do not.
 
-**Mend:** bound the loop by a count as well. The finding is at the head of the loop.
+**Fix:** bound the loop by a count as well. The finding is at the head of the loop.
 """,
         "CERT MSC21-C",
     ),
@@ -41,7 +41,7 @@ Found in the text of a whole program, which says every value that the object can
 each of them, pass by pass, until one leaves the state or they come round again. Silent where a way out hangs on
 anything else: a register, a stamp, what another function counts.
 
-**Mend:** set the object where the state is entered, and only count it in the state.
+**Fix:** set the object where the state is entered, and only count it in the state.
 """,
         "CERT MSC07-C",
         how="static",
@@ -57,7 +57,7 @@ that waits for it goes on: the duty grows beyond its period, the tries never end
 Found in the text of a whole program: the object is given nothing but constants and steps of one size in one direction,
 the test for equality is what ends the loop, or what chooses between a further step and its end.
 
-**Mend:** compare for order (`duty < wanted`), and set the goal exactly when it is passed.
+**Fix:** compare for order (`duty < wanted`), and set the goal exactly when it is passed.
 """,
         "CERT MSC21-C",
         how="static",
@@ -74,7 +74,7 @@ test for "young enough" fails for ever.
 Found in the text of a whole program: the counter is an object that only an interrupt routine counts up, and every value
 of the stamp is the counter's, or earlier by a constant. A stamp that lies ahead (`end = now + LIMIT`) is silent.
 
-**Mend:** `(unsigned int) (now - last)`.
+**Fix:** `(unsigned int) (now - last)`.
 """,
         "ISO C 6.2.5 p9",
         how="static",
@@ -95,7 +95,7 @@ that it has before the switch.
 The finding is made when such a value comes. An object that only the missing case leaves without a value is not reported
 besides.
 
-**Mend:** the missing case; a `default` with a safe value.
+**Fix:** the missing case; a `default` with a safe value.
 """,
         "ISO C 6.8.4.2; CERT MSC01-C",
     ),

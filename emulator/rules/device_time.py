@@ -30,7 +30,7 @@ When it is reported:
   range. A burst of conversions counts as one reading: a mean of it takes out the converter's noise, no more. In a
   ring of three sensors a range is held for 147 ms.
 
-**Mend:** look at data ready, or read at the data rate (ODR, sensor cycle) and no faster; take as many *samples* as
+**Fix:** look at data ready, or read at the data rate (ODR, sensor cycle) and no faster; take as many *samples* as
 the filter needs.
 """,
         "L3G, STATUS_REG and output data rate; EZ, timing description",
@@ -44,7 +44,7 @@ More than a fifth of 20 reads gave a sample that had been read before, spread ov
 the sensor. The finding gives both rates. Nothing new is learnt by it: bus and CPU time go, an integral over the reads
 counts each sample several times, and a filter has another cut-off than was meant.
 
-**Mend:** set the output data rate above the task's, or release the task by data ready.
+**Fix:** set the output data rate above the task's, or release the task by data ready.
 """,
         "L3G, output data rate (CTRL_REG1.DR)",
     ),
@@ -60,7 +60,7 @@ later still for each sensor behind the first.
 
 An offset that is averaged over such reads stays in every later value.
 
-**Mend:** wait once after start-up, or throw the first samples away.
+**Fix:** wait once after start-up, or throw the first samples away.
 """,
         "L3G, operating modes; EZ, timing description",
     ),
@@ -75,7 +75,7 @@ voltage is more than 2 inches from the range before and from the range to come, 
 
 A driver that reads at any time cannot avoid it, and needs a filter that throws a lone value away.
 
-**Mend:** read in the last 4.7 ms of the cycle (start the sensors yourself and wait 45 ms), or take the pulse width.
+**Fix:** read in the last 4.7 ms of the cycle (start the sensors yourself and wait 45 ms), or take the pulse width.
 """,
         "EZ, timing description",
     ),
@@ -87,7 +87,7 @@ A driver that reads at any time cannot avoid it, and needs a filter that throws 
 With `CTRL_REG4.BDU = 0` the outputs change at any time, also between low and high byte. Near a change of the high
 byte the value jumps by 256 digits: +3 and -2 give -253 or 258. It happens seldom, and never on the desk.
 
-**Mend:** set `BDU` before the first read, and read both bytes of every axis that you start to read.
+**Fix:** set `BDU` before the first read, and read both bytes of every axis that you start to read.
 """,
         "L3G, CTRL_REG4: BDU",
     ),
@@ -99,7 +99,7 @@ byte the value jumps by 256 digits: +3 and -2 give -253 or 258. It happens seldo
 `CTRL_REG5.FIFO_EN = 1` with `FIFO_CTRL_REG.FM = 000`: bypass is the mode in which the FIFO stays empty. The outputs
 give the newest sample only, as without `FIFO_EN`.
 
-**Mend:** choose a mode (FIFO, stream) and read by level, or leave `FIFO_EN` off.
+**Fix:** choose a mode (FIFO, stream) and read by level, or leave `FIFO_EN` off.
 """,
         "L3G, FIFO: bypass mode",
     ),

@@ -39,7 +39,7 @@ Some pairs rarely change within a run (hours and minutes). Then the source shows
 
 Host tools see nothing: the host has none of these threads and locks.
 
-**Mend:** put both accesses under one gate, no longer than a copy; or mask the other thread; or hand the data over.
+**Fix:** put both accesses under one gate, no longer than a copy; or mask the other thread; or hand the data over.
 """, "BIOS, Task and Swi scheduling; TFG 3.1.5",
     ),
     _rule(
@@ -48,7 +48,7 @@ Host tools see nothing: the host has none of these threads and locks.
 The C28x moves an aligned 32-bit word by one instruction (MOVL, MOV32), so the value is whole as long as the compiler
 uses it. A copy by words of 16 bits, a `long` that is masked by halves, or a port to another processor is not.
 
-**Mend:** `DINT;` before the access and `EINT;` after it, or a copy that is read twice until both are equal.
+**Fix:** `DINT;` before the access and `EINT;` after it, or a copy that is read twice until both are equal.
 """, "CPU 5: MOVL; ISO C 7.14.1.1",
     ),
     _rule(
@@ -60,7 +60,7 @@ that are read in sequence can come from two measurements.
 
 If two threads write, the last write wins.
 
-**Mend:** read and write it under the gate of its server, all values of one measurement at once.
+**Fix:** read and write it under the gate of its server, all values of one measurement at once.
 """, "CPU 2.2.5, MOVL; ISO C 5.1.2.3",
     ),
     _rule(
@@ -72,7 +72,7 @@ and read after it.
 
 If a lower thread reads and writes the word in one statement while a higher one writes it, the rule is `race`.
 
-**Mend:** read it once into a local; declare it `volatile`; for more than a flag use a semaphore.
+**Fix:** read it once into a local; declare it `volatile`; for more than a flag use a semaphore.
 """, "CPU, MOV; ISO C 6.7.3",
     ),
     _rule(
@@ -82,7 +82,7 @@ different gates that can meet, and a function that uses another gate than the se
 
 The tool does not compare the name of a gate with the object that it protects. It compares the users with each other.
 
-**Mend:** one gate for each object, and one module that owns both.
+**Fix:** one gate for each object, and one module that owns both.
 """, "BIOS, GateMutexPri",
     ),
     _rule(
@@ -95,7 +95,7 @@ waits for a flag that was cleared, or sends characters in between.
 The SOCs and interrupt flags of an ADC are separate: two tasks with one each are not reported. Neither is a handler that
 clears the flag of a conversion that a task started. The finding says whether a cut happened in this run or can happen.
 
-**Mend:** a gate for each peripheral, held for the whole transaction.
+**Fix:** a gate for each peripheral, held for the whole transaction.
 """, "TRM ADC (ADCSOCFRC1, ADCINTFLGCLR), SPI (SPITXBUF), SCI (SCITXBUF)",
     ),
     _rule(
@@ -106,7 +106,7 @@ wait without need. Or the accesses that it was made for have no gate.
 It is reported at the end of a run: always if no statement of the firmware enters the gate, otherwise only if the run
 was 5 s or longer.
 
-**Mend:** enter it where its object is used, or remove it.
+**Fix:** enter it where its object is used, or remove it.
 """, "BIOS, GateMutexPri",
     ),
     _rule(
@@ -117,7 +117,7 @@ The usual cause is a `return` before the `leave`.
 A gate may be entered in one function and left in another. So the finding comes only when the function that entered has
 returned, and the task then waits for something else, enters the gate again, or ends.
 
-**Mend:** one way out of the function, and the `leave` there.
+**Fix:** one way out of the function, and the `leave` there.
 """, "BIOS, GateMutexPri_enter: nested key",
     ),
     _rule(
@@ -125,7 +125,7 @@ returned, and the task then waits for something else, enters the gate again, or 
 Nesting lives in the key alone: 0 for the enter that took the gate, 1 for a nested one. `leave` with 1 does nothing,
 so the gate stays taken for ever; `leave` with 0 from the inner one frees it while the outer one still counts on it.
 
-**Mend:** keep each key in a local of its own and give back that one, inner first.
+**Fix:** keep each key in a local of its own and give back that one, inner first.
 """, "BIOS, GateMutexPri_leave",
     ),
     _rule(
@@ -133,7 +133,7 @@ so the gate stays taken for ever; `leave` with 0 from the inner one frees it whi
 `GateMutexPri_leave` does not check its caller. With key 0 it gives the gate to the next waiter or frees it, while its
 owner is still inside. The task that left gets the priority that the owner had saved.
 
-**Mend:** leave a gate in the task that entered it, once.
+**Fix:** leave a gate in the task that entered it, once.
 """, "BIOS, GateMutexPri_leave",
     ),
     _rule(
@@ -144,7 +144,7 @@ because of a third gate are not reported.
 
 Priority inheritance does not help: it raises the owner, which waits itself.
 
-**Mend:** one order for all tasks, or one gate at a time.
+**Fix:** one order for all tasks, or one gate at a time.
 """, "BIOS, GateMutexPri_enter",
     ),
     _rule(
@@ -157,7 +157,7 @@ or for more than 100 ms of a sleep: a driver may keep a part while it measures. 
 reported: so does a driver keep a bus for its transfer. The value is the blocked time of the other task, in
 milliseconds.
 
-**Mend:** wait first, enter then; hold a gate for the time of a copy.
+**Fix:** wait first, enter then; hold a gate for the time of a copy.
 """, "BIOS, GateMutexPri_enter",
     ),
     _rule(
@@ -168,7 +168,7 @@ ignores the result uses the last message again, as long as the sender is silent:
 It is reported at the second missing message in a row, after one that came. A cast to `void` says that it is meant; a
 call with time-out 0 is not reported.
 
-**Mend:** `if (Mailbox_pend(...)) { ... } else { stop; }`.
+**Fix:** `if (Mailbox_pend(...)) { ... } else { stop; }`.
 """, "BIOS, Mailbox_pend: returns FALSE on timeout",
     ),
     _rule(
@@ -179,7 +179,7 @@ runs again, and their other gates stay taken. The details name the other places.
 Or a task pends for ever on a semaphore while it holds a gate, and the only task that posts the semaphore waits for that
 gate. Then the place is the pend.
 
-**Mend:** see `gate-order`; leave a gate before waiting for anything else.
+**Fix:** see `gate-order`; leave a gate before waiting for anything else.
 """, "BIOS, GateMutexPri_enter",
     ),
     _rule(
@@ -191,7 +191,7 @@ routine that was removed. A Swi that is created but never posted is reported too
 The check is made at the end of a run. Nothing is reported if the program passes the handle on, keeps it in a structure,
 or takes the address of the posting function: then anything could post it.
 
-**Mend:** post it where the event is seen, or remove the wait; with a time-out the task can at least report it.
+**Fix:** post it where the event is seen, or remove the wait; with a time-out the task can at least report it.
 """, "BIOS, Semaphore_pend, Event_pend, Mailbox_pend: BIOS_WAIT_FOREVER",
     ),
     _rule(
@@ -203,7 +203,7 @@ Told where one statement posts the semaphore several times in one call while it 
 on it has a loop behind the pend, which would take everything that has come. A Clock that posts a binary semaphore each
 period loses releases by design, and is silent.
 
-**Mend:** a counting semaphore; or one post, and a loop in the task that goes on until the queue is empty.
+**Fix:** a counting semaphore; or one post, and a loop in the task that goes on until the queue is empty.
 """, "BIOS, Semaphore, Mode BINARY",
     ),
     _rule(
@@ -216,7 +216,7 @@ It is reported in programs without the kernel, if the interrupt came between the
 flag, the flag was not read since the start, and `main` reads it before it starts anything again. Ticks of timers are
 not reported: the next one comes.
 
-**Mend:** clear the flag, then start.
+**Fix:** clear the flag, then start.
 """, "TRM SPI, I2C, ADC, DMA: interrupts at the end of what was started",
     ),
     _rule(
@@ -224,7 +224,7 @@ not reported: the next one comes.
 `Clock_Params.startFlag` is FALSE unless the program sets it: the Clock then waits for a `Clock_start`. If no statement
 calls that for it, its function never runs, and neither does what the function would release.
 
-**Mend:** `params.startFlag = TRUE` before `Clock_create`, or `Clock_start` when it is to begin.
+**Fix:** `params.startFlag = TRUE` before `Clock_create`, or `Clock_start` when it is to begin.
 """, "BIOS, Clock_Params: startFlag; Clock_start",
     ),
     _rule(
@@ -234,7 +234,7 @@ if the count is not 0), `Event_pend`, `Mailbox_pend` and `Mailbox_post` with one
 `GateMutex_enter` and `Task_sleep` are not allowed there: the assertion ends the program, and with assertions off the
 wait happens to whatever task was interrupted.
 
-**Mend:** post a semaphore and let a task wait; `Semaphore_pend(sem, BIOS_NO_WAIT)` may be called anywhere.
+**Fix:** post a semaphore and let a task wait; `Semaphore_pend(sem, BIOS_NO_WAIT)` may be called anywhere.
 """, "BIOS, Semaphore_A_badContext, GateMutexPri_A_badContext",
     ),
     _rule(
@@ -248,7 +248,7 @@ wait happens to whatever task was interrupted.
 
 Then tasks in between delay the high task without a bound. The value is how long the high task waited, in microseconds.
 
-**Mend:** do not nest gates; hold them for the time of a copy.
+**Fix:** do not nest gates; hold them for the time of a copy.
 """, "BIOS, GateMutexPri.c: ownerOrigPri",
     ),
     _rule(
@@ -260,7 +260,7 @@ any task in between runs first.
 
 The value is how long the high task waited, in microseconds.
 
-**Mend:** never wait while you hold a gate; use `GateMutexPri`, not a semaphore, for mutual exclusion.
+**Fix:** never wait while you hold a gate; use `GateMutexPri`, not a semaphore, for mutual exclusion.
 """, "BIOS, GateMutexPri, GateMutex, Semaphore",
     ),
     _rule(
@@ -272,7 +272,7 @@ The semaphore of a Clock function is reported at a count of two (one release is 
 semaphore is reported if it was never empty for a second and still grows; a burst that is worked off is normal. The
 message says where the task is and which task has the CPU. The value is the largest count.
 
-**Mend:** let the task keep its period, or use a binary semaphore so that a missed release is missed.
+**Fix:** let the task keep its period, or use a binary semaphore so that a missed release is missed.
 """, "BIOS, Semaphore, Mode COUNTING",
     ),
     _rule(
@@ -281,7 +281,7 @@ A Clock function releases the task through a semaphore. The job lasts until the 
 is the period. The value is the longest response time in microseconds, from the release to the end of the job. The
 details list the CPU time of the other threads. The place is the statement of the task at its next release.
 
-**Mend:** less work, a longer period, a higher priority, or no busy wait above it.
+**Fix:** less work, a longer period, a higher priority, or no busy wait above it.
 """, "TFG 3.4: response times against periods",
     ),
     _rule(
@@ -292,7 +292,7 @@ microseconds.
 
 The scheduler has strict priorities and no time slices: the highest ready task runs as long as it wants.
 
-**Mend:** `Task_sleep` in place of `DelayUs`, a semaphore in place of a polling loop.
+**Fix:** `Task_sleep` in place of `DelayUs`, a semaphore in place of a polling loop.
 """, "BIOS, Task scheduling: no time slices",
     ),
     _rule(
@@ -304,7 +304,7 @@ longest wait in microseconds.
 
 Shorter delays are not reported: the unit of `Task_sleep` is the tick.
 
-**Mend:** `Task_sleep`, or let the peripheral's interrupt post a semaphore.
+**Fix:** `Task_sleep`, or let the peripheral's interrupt post a semaphore.
 """, "BIOS, Task_sleep",
     ),
     _rule(
@@ -318,7 +318,7 @@ The detector recognises a transmit buffer by its handler: it reads a word and wr
 that were already read, a buffer that was read to its end, and a task that the handler has informed (a semaphore, a
 count that the task checks).
 
-**Mend:** wait until the frame has left, use two buffers in turn, or copy into the driver.
+**Fix:** wait until the frame has left, use two buffers in turn, or copy into the driver.
 """, "TRM SCI; TFG 3.1.4",
     ),
     _rule(
@@ -333,7 +333,7 @@ the free, and the present content.
 Typical: a list that is freed with `p = p->next` after `free(p)`; a second pointer to the same block that was not set to
 NULL; a message that the sender frees while the receiver still reads it.
 
-**Mend:** read what is still needed before the free; let one owner free the block, after its last use.
+**Fix:** read what is still needed before the free; let one owner free the block, after its last use.
 """,
         "ISO C 7.20.3.2; CERT MEM30-C",
     ),
@@ -349,7 +349,7 @@ are the same to a HeapMem, and not reported.
 
 The heap asserts what it can see (`HeapMem_A_invalidFree`); the rest goes through and breaks something later, elsewhere.
 
-**Mend:** set the pointer to NULL where the block is given back; give the heap, the pointer and the size of the
+**Fix:** set the pointer to NULL where the block is given back; give the heap, the pointer and the size of the
 allocation.
 """,
         "ISO C 7.20.3.2; XDCtools xdc/runtime/Memory.xdc (free); CERT MEM34-C",
@@ -363,7 +363,7 @@ The kernel does not check. Through NULL it works on the RAM at address 0, which 
 any count, a gate without an owner. Through a deleted handle it works on words that the heap may have given out again.
 There is no error message, and the effect depends on the bytes there. The emulator ends the program.
 
-**Mend:** create the object before its users start, check what `*_create` returns, and delete an object only when no
+**Fix:** create the object before its users start, check what `*_create` returns, and delete an object only when no
 handle of it is left.
 """, "XDCtools, `*_create` and `*_delete`; BIOS",
     ),
@@ -376,7 +376,7 @@ and an interrupt needs 48 words on top of whatever runs: what leaves less is too
 The kernel looks at the last word (0x00BE while it is untouched) at every task switch and stops the program; an array
 that jumps over that word, or the value 190 in it, escapes it. Here the stack pointer itself is watched too.
 
-**Mend:** a larger `stackSize`; large arrays at file scope.
+**Fix:** a larger `stackSize`; large arrays at file scope.
 """, "BIOS, Task_E_stackOverflow; CC 7.2: stack",
     ),
     _rule(
@@ -384,7 +384,7 @@ that jumps over that word, or the value 190 in it, escapes it. Here the stack po
 C evaluates it and drops it. A value that was meant to be seen is not, or a conversion was forgotten: the values
 behind it then stand in the wrong place.
 
-**Mend:** a conversion for it, or leave it out.
+**Fix:** a conversion for it, or leave it out.
 """, "ISO C 7.19.6.1",
         how="static",
     ),
@@ -395,7 +395,7 @@ argument is whatever the caller's frame holds.
 
 The C compiler does not know these functions as formats and says nothing.
 
-**Mend:** one argument for each conversion; `%%` for a percent sign is printed here by way of an unknown conversion.
+**Fix:** one argument for each conversion; `%%` for a percent sign is printed here by way of an unknown conversion.
 """, "XDCtools, xdc/runtime/System.xdt",
         how="dynamic/static",
     ),
@@ -407,7 +407,7 @@ word and shifts every argument behind it by a word, an `int` passed for `%ld` ta
 
 On a host where `int` and `long` have the size of a register the same line works.
 
-**Mend:** `%ld` with `long`, `%d` with `int`, and a cast where it is not obvious.
+**Fix:** `%ld` with `long`, `%d` with `int`, and a cast where it is not obvious.
 """, "XDCtools, xdc/runtime/System.xdt; CC table 6-1",
         how="dynamic/static",
     ),
@@ -417,7 +417,7 @@ On a host where `int` and `long` have the size of a register the same line works
 paired wrongly. `%f` takes its argument and prints the letter `f` unless it is enabled in the configuration. `sprintf`
 of `stdio.h` has all of these; `%n`, `%a` and `ll` it does not have here.
 
-**Mend:** `%x` prints small letters; scale a float to an integer, or enable `%f` (`System.extendedFormats`).
+**Fix:** `%x` prints small letters; scale a float to an integer, or enable `%f` (`System.extendedFormats`).
 """, "XDCtools, xdc/runtime/System.xdc",
     ),
     _rule(
@@ -425,7 +425,7 @@ of `stdio.h` has all of these; `%n`, `%a` and `ll` it does not have here.
 Numbers are converted in a local array of 16 characters. A zero-padded width or a precision above that writes over
 what lies behind it on the stack of whoever prints.
 
-**Mend:** pad in the buffer of the caller.
+**Fix:** pad in the buffer of the caller.
 """, "XDCtools, xdc/runtime/System.c: OUTMAX",
     ),
 )  # fmt: skip

@@ -23,7 +23,7 @@ reads it just the same.
 Compilers warn only of the plain cases, and on a host the memory is often zero by chance: `result += v[i]` then works
 for years. Link with two fills (`--fill zero`, `--fill nan`) to see what the value reaches.
 
-**Mend:** give the object its start value where it is declared. The finding names the element or the member.
+**Fix:** give the object its start value where it is declared. The finding names the element or the member.
 """,
         "ISO C 6.7.8 p10; CC, system initialisation under the COFF ABI",
     ),
@@ -40,7 +40,7 @@ one that runs into the next row is seen although it stays within the object.
 Objects are laid out in the order of their declaration, locals in the order of the function (the linker of a real
 project may choose otherwise: the neighbour named here is that of this layout).
 
-**Mend:** correct the limit of the loop; begin at 1 where the element before is looked at.
+**Fix:** correct the limit of the loop; begin at 1 where the element before is looked at.
 """,
         "ISO C 6.5.6 p8",
     ),
@@ -55,7 +55,7 @@ is not reported.
 
 No bounds checker sees it, for no bound is broken.
 
-**Mend:** add the length before the remainder, `(head + 9) % 10`; compute products of indices in `unsigned long`.
+**Fix:** add the length before the remainder, `(head + 9) % 10`; compute products of indices in `unsigned long`.
 """,
         "ISO C 6.2.5 p9",
     ),
@@ -72,7 +72,7 @@ told where a function of the library reads on behind the member.
 A memory checker of a host guards the heap and, with luck, the gap behind an object. There is no gap here: the next
 object begins at the next word.
 
-**Mend:** test for the end as well as for the mark; pass the length along with the pointer.
+**Fix:** test for the end as well as for the mark; pass the length along with the pointer.
 """,
         "ISO C 6.5.6 p8",
     ),
@@ -88,7 +88,7 @@ pointers and functions have gone through it so far: one spoils the value of the 
 A host ends the program at once with a signal; here it goes on. A null pointer that is *called* runs whatever stands
 at 0.
 
-**Mend:** let the pointer point to an object of its own before it is used; test what a search returns.
+**Fix:** let the pointer point to an object of its own before it is used; test what a search returns.
 """,
         "ISO C 6.5.3.2 p4; HDR linker command files (M0 at 0)",
     ),
@@ -104,7 +104,7 @@ content. So does a caller that takes a result from a function without one. The e
 
 Surplus arguments do no harm and are not reported.
 
-**Mend:** a function of the type that the pointer has, without the cast.
+**Fix:** a function of the type that the pointer has, without the cast.
 """,
         "ISO C 6.5.2.2 p9; CERT EXP37-C",
     ),
@@ -119,7 +119,7 @@ everything seems to work. The finding names the object that now uses the words.
 Typical: a function that returns its own array; a driver that keeps the address of a caller's buffer and sends it
 later.
 
-**Mend:** make the buffer a file-scope object, or let the caller pass it and keep it until the driver is done.
+**Fix:** make the buffer a file-scope object, or let the caller pass it and keep it until the driver is done.
 """,
         "ISO C 6.2.4 p2",
     ),
@@ -133,7 +133,7 @@ String literals and constants stand in flash. The store executes and changes not
 On a host the page is protected and the program ends. A pointer that was cast to lose its `const` hides it from the
 compiler.
 
-**Mend:** copy the text into an array first: `char label[8] = "idle";`.
+**Fix:** copy the text into an array first: `char label[8] = "idle";`.
 """,
         "ISO C 6.4.5 p6; HDR linker command files (.econst in flash)",
     ),
@@ -148,7 +148,7 @@ in every second case.
 
 A host reads any address, or traps; neither shows this.
 
-**Mend:** put the words together (`(unsigned long) w[i + 1] << 16 | w[i]`), or copy them with `memcpy` into an object.
+**Fix:** put the words together (`(unsigned long) w[i + 1] << 16 | w[i]`), or copy them with `memcpy` into an object.
 """,
         "CPU 2.2.5",
     ),
@@ -163,7 +163,7 @@ numbers and the neighbour.
 
 On a host `4 * n` is right, so tests there pass; a memory checker never sees the chip's sizes.
 
-**Mend:** write `n * sizeof(float)` or `sizeof v`; here `sizeof(float)` is 2.
+**Fix:** write `n * sizeof(float)` or `sizeof v`; here `sizeof(float)` is 2.
 """,
         "CC table 6-1 (char 16 bits)",
     ),
@@ -176,7 +176,7 @@ The length is larger than what is left of the source or of the target. The words
 and the finding says whose they are. A member has an end of its own: a length that stands in the call and leaves the
 member is told before the program runs, and a text that is copied or printed into a member and is longer, as it runs.
 
-**Mend:** take the length from the smaller of the two objects, with `sizeof`, in 16-bit words.
+**Fix:** take the length from the smaller of the two objects, with `sizeof`, in 16-bit words.
 """,
         "ISO C 7.1.4, 7.21.2.1",
         how="dynamic/static",
@@ -192,7 +192,7 @@ either, and `strncpy(p, text, sizeof p)` copies two characters.
 
 Blocks that hold pointers are not reported.
 
-**Mend:** `sizeof *p` for one object, and a length that is handed in for an array.
+**Fix:** `sizeof *p` for one object, and a length that is handed in for an array.
 """,
         "ISO C 6.5.3.4, 6.7.5.3 p7; CERT ARR01-C",
         how="static",

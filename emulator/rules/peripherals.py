@@ -15,14 +15,16 @@ RULES: Final[tuple[Rule, ...]] = (
         Severity.ERROR,
         "A protected register was written while EALLOW was off.",
         """
-Most configuration registers of this chip take a write only between `EALLOW` and `EDIS`. Outside, the store executes
-and the register keeps its old value: no trap, no flag, no bus error.
+A configuration register keeps its old value after a write. The pin does not switch, or the clock does not run.
 
-No host tool sees it, because on a host a register is a variable. On the chip it shows as a pin that does not switch
-or a clock that does not run.
+Most configuration registers of this chip accept a write only between `EALLOW` and `EDIS`. Outside, the CPU executes
+the store and the register ignores it. There is no trap, no flag and no bus error. No host tool sees the defect,
+because on a host a register is a plain variable.
 
-**Mend:** put `EALLOW;` before and `EDIS;` behind the group of writes. Two of them do not nest: an `EDIS` in a
-function that you call ends your own `EALLOW` too. An interrupt starts with EALLOW off.
+An interrupt routine starts with EALLOW off. The two macros do not nest: an `EDIS` in a function that you call also
+ends your own `EALLOW`.
+
+**Fix:** `EALLOW;` before the group of writes, `EDIS;` after it.
 """,
         "TRM, system control: EALLOW-protected registers; SPRU430, ST1",
     ),
@@ -31,9 +33,12 @@ function that you call ends your own `EALLOW` too. An interrupt starts with EALL
         Severity.ERROR,
         "A register of a module was used while the module's clock was off.",
         """
-Out of reset every peripheral's clock is off. A write to a module without clock is lost, and a read gives 0.
+A peripheral does not react: its registers read 0, and nothing that the program writes to them stays.
 
-**Mend:** set the module's bit in `CpuSysRegs.PCLKCRn` (between `EALLOW` and `EDIS`) before the first other access.
+After reset the clock of every peripheral is off. A module without a clock loses each write and returns 0 for each
+read.
+
+**Fix:** set the module's bit in `CpuSysRegs.PCLKCRn` (between `EALLOW` and `EDIS`) before the first other access.
 """,
         "TRM, system control: PCLKCRn",
     ),
@@ -42,13 +47,17 @@ Out of reset every peripheral's clock is off. A write to a module without clock 
         Severity.WARNING,
         "Ones were written to reserved bits of a register.",
         """
-The manual asks for zeros in reserved bits. Often the word was meant for another register or another layout: all 16
-bits of a baud rate written to `SCILBAUD` lose their upper half, a constant of another device family sets the wrong
-bits.
+The manual requires zeros in reserved bits. A one there usually means that the word was computed for another register
+or another layout. Examples: all 16 bits of a baud rate are written to `SCILBAUD`, which loses the upper half; a
+constant of another device family sets the wrong bits; an I2C address that contains the R/W bit is longer than 7 bits.
 
-A write of all ones is not reported (registers are cleared in that way), nor a write to a register of flags.
+These writes are not reported:
 
-**Mend:** build the word from the fields, or assign `.bit.FIELD`.
+* a word of all ones (programs clear registers in that way);
+* a word with ones in all reserved bits of a register that is mostly reserved (`~mask`);
+* a write to a register of flags.
+
+**Fix:** build the word from the fields, or assign to `.bit.FIELD`.
 """,
         "TRM, register descriptions",
     ),
@@ -57,10 +66,10 @@ A write of all ones is not reported (registers are cleared in that way), nor a w
         Severity.NOTE,
         "The firmware uses a function that the emulator does not model.",
         """
-The chip or the part has this function and the emulator does not: what happens next differs from silicon. It is no
-defect of the firmware, and no result that depends on it can be trusted.
+The chip or the part has this function, and the emulator does not have it. From here on the run differs from the
+silicon. This is no defect of the firmware, but do not trust a result that depends on the function.
 
-**Mend:** do without it in emulation, or model it (`emulator/peripherals/README.md`).
+**Fix:** avoid the function in emulation, or add it to the model (`emulator/peripherals/README.md`).
 """,
     ),
     _rule(
@@ -68,16 +77,23 @@ defect of the firmware, and no result that depends on it can be trusted.
         Severity.ERROR,
         "A module or a part was used before it was configured.",
         """
-The finding names the register: a converter without power, a serial module in reset or without a baud rate, a pin that
-is still set to another function, an encoder counter with `QPEN = 0` or `QPOSMAX = 0`, a duty for a counter that
-stands still (`TBCLKSYNC`), an axis of the gyro that is switched off, a sonar that nobody has started.
+The program uses a module, and the module does nothing: it returns zeros, the last value, or silence. Nothing stops the
+program.
 
-None of these stops anything: the program goes on with zeros, with the last value, or with silence.
+The finding names the register or the pin that is missing. Examples:
 
-Pins and counters of an ePWM are looked at from 10 ms after the first compare value on, because start-up code may set
-them in any order.
+* an ADC without power (`ADCPWDNZ = 0`);
+* a serial module in reset or without a baud rate;
+* a pin that still has another function;
+* an eQEP counter with `QPEN = 0` or `QPOSMAX = 0`;
+* a duty cycle for an ePWM counter that does not count (`TBCLKSYNC`);
+* an axis of the gyro that is switched off;
+* a sonar that was never started.
 
-**Mend:** set the register that the finding names before the access, in the order that the manual's example gives.
+Start-up code may set an ePWM in any order. So its pins and counter are checked only when 10 ms have passed since the
+first compare value.
+
+**Fix:** set the register that the finding names before the access, in the order of the manual's example.
 """,
         "TRM, initialisation of each module; DS, GPIO muxed pins",
     ),
@@ -86,13 +102,14 @@ them in any order.
         Severity.ERROR,
         "A number was computed that its field of a register does not hold.",
         """
-A compare value, a period, a code of a DAC, a number of words or of a channel is stored without its upper bits: -4 in
-`CMPA` is 65532, which the counter never reaches; 4100 in the twelve bits of `DACVALS` is 4, the other end of the
-output. A cast in front of it changes nothing, and hides it from the compiler.
+The program computes a number for a field, and the field stores only the lower bits. -4 in `CMPA` becomes 65532, which
+the counter never reaches. 4100 in the twelve bits of `DACVALS` becomes 4, the other end of the output range.
 
-The number is looked at before any cast. Fields that take any word are left out: data, phases, positions, flags.
+A cast does not help: it only hides the loss from the compiler. The detector takes the number before any cast. It
+checks fields that hold a quantity: compare values, periods, DAC codes, lengths, channel numbers. It does not check
+fields that accept any word, such as data, phases, positions and flags.
 
-**Mend:** limit the number to the range of the field, below too, in the type in which it was computed.
+**Fix:** limit the number to the range of the field, at both ends, in the type in which it was computed.
 """,
         "TRM, register descriptions",
     ),
@@ -107,7 +124,7 @@ until the pin becomes an output. Then the pin drives this level: for example, it
 
 The finding is made when an output drives a copied level. Its place is the statement that copied it.
 
-**Mend:** write `GPxSET`, `GPxCLEAR` or `GPxTOGGLE`, which touch no other pin.
+**Fix:** write `GPxSET`, `GPxCLEAR` or `GPxTOGGLE`, which touch no other pin.
 """,
         "TRM GPIO: GPxDAT, GPxSET, GPxCLEAR, GPxTOGGLE",
     ),
@@ -116,13 +133,14 @@ The finding is made when an output drives a copied level. Its place is the state
         Severity.ERROR,
         "A device is clocked faster than its data sheet allows.",
         """
-A word was sent to a selected part with a shorter period of the clock than it takes at least. It works on one desk, and
-not on another, or when it is cold. The clock is LSPCLK (SYSCLK / 4 out of reset) divided by `SPIBRR + 1`: whoever takes
-another LSPCLK into account than the one that `LOSPCP` makes is wrong by that factor.
+A part works on one desk and fails on another, or when it is cold. The program sent a word to the selected part with a
+clock faster than its data sheet allows.
 
-The finding names both clocks and the registers that make them.
+The SPI clock is LSPCLK / (`SPIBRR` + 1), and LSPCLK / 4 for `SPIBRR` below 3. LSPCLK is SYSCLK / 4 after reset;
+`LOSPCP` sets it. If the driver assumes another LSPCLK, its clock is wrong by that factor. The finding names both
+clocks and the registers that produce them.
 
-**Mend:** a greater `SPIBRR`; the greatest clock stands in the part's data sheet (L3G4200D and LIS3DH: 10 MHz).
+**Fix:** a larger `SPIBRR`. The data sheet of the part gives the highest clock (L3G4200D and LIS3DH: 10 MHz).
 """,
         "TRM SPI: baud rate; L3G, SPI slave timing values: tc(SPC)",
     ),
@@ -131,13 +149,16 @@ The finding names both clocks and the registers that make them.
         Severity.ERROR,
         "The two ends of a serial line use different baud rates.",
         """
-A character came with a bit length that its receiver cannot follow: half a bit off at the tenth bit is too much. It
-takes other characters, or none, for those that were sent. The baud rate is LSPCLK / (8 * (BRR + 1)): whoever
-takes another LSPCLK into account than the one that `LOSPCP` makes (SYSCLK / 4 out of reset) is wrong by that factor.
+The receiver gets wrong characters, or none.
 
-A program that is checked without a board of its own (`--board`) may have another peer than the robot's: a note then.
+The two ends of the line use different bit times. The tenth bit is sampled 9.5 bit times after the start edge, so an
+error of half a bit there is too much. The baud rate is LSPCLK / (8 * (BRR + 1)). LSPCLK is SYSCLK / 4 after reset;
+`LOSPCP` sets it. If the driver assumes another LSPCLK, its rate is wrong by that factor.
 
-**Mend:** the rate of the peer, computed with the LSPCLK that is set.
+If you check a program without a board of its own (`--board`), its real peer may use another rate than the robot's
+peer. Then the finding is a note.
+
+**Fix:** compute the divider for the peer's rate from the LSPCLK that is set.
 """,
         "TRM SCI: baud rate; asynchronous serial format",
     ),
@@ -146,30 +167,38 @@ A program that is checked without a board of its own (`--board`) may have anothe
         Severity.ERROR,
         "An event can never come: one of the settings on its way is missing.",
         """
-Events of this chip pass several modules, and each has a setting of its own. If one link is missing nothing fails: the
-event just never comes. The finding names the link, and stands where it is set wrongly, or where the rest of its
-register is set; what waits for the event stands behind it ("wanted by"):
+The program waits for an event, and the event never comes.
 
-* a conversion waits for an ePWM (`TRIGSEL`) whose counter stands still (`TBCLKSYNC`, `CTRMODE`, `TBPRD`), that gives no
-  trigger (`SOCAEN`, `SOCAPRD`), or gives it at a compare value that the counter never reaches;
-* `PIEIER` lets an interrupt through whose source is not enabled, whose pin was never chosen (`INPUTxSELECT` of an
-  external interrupt), or which has no routine while another line of the group has one and is not let through;
-* a channel of the DMA was never started, listens to no trigger, or to an ADC interrupt that is not enabled;
-* an eCAP has no input, stands, loads nothing (`CAPLDEN`), or ends before the event that is waited for (`STOP_WRAP`);
-* a position is read of `QPOSLAT`, which the unit timer never loads (`QCLM`), or the unit timer has no period;
-* the digital compare of an ePWM listens to a TRIP of the X-BAR without an enabled mux, or to a comparator that is off;
-* the dead band makes a pair of outputs, and only one of them has a pin;
-* a DAC that gets codes drives no pin;
-* an I2C or a SCI that is used is held in reset, an interrupt wants more words than its FIFO holds;
-* a CAN that is used stays in Init, an object that is set up is never valid, or nothing asks for its transmission;
-* a pin that the chip itself drives is qualified with longer samples than its pulses;
-* a compare value is above the period, so that the output never changes at it (one above it is 100 % and is right);
-* a compare register is never loaded from its shadow (`LOADAMODE = 3`).
+An event passes through several modules on this chip, and each module has a setting of its own. If one setting is
+missing, nothing reports an error. The finding names the missing setting. It is at the statement that sets it wrongly,
+or at a statement that sets up the same register. The details name the statement that waits ("wanted by"). These
+connections are checked:
 
-It is looked at when a run ends, and told only if no statement of the program could set the link: a program that
-starts its timer later, on an order that did not come in this run, is right.
+* ADC trigger: `TRIGSEL` selects an ePWM whose counter does not count (`TBCLKSYNC`, `CTRMODE`, `TBPRD`), which sends no
+  trigger (`SOCAEN`, `SOCAPRD`), or which sends it at a compare value that the counter never reaches. Or it selects a
+  CPU timer that does not run.
+* Interrupts: `PIEIER` enables an interrupt whose source is not enabled, or an external interrupt whose pin was never
+  selected (`INPUTxSELECT`). Or it enables a line without a routine, while another line of the group has a routine and
+  is not enabled. Or `IER` or `ENPIE` does not pass the interrupt on.
+* DMA: a channel was never started, has no trigger, or uses an ADC interrupt that is not enabled.
+* eCAP: it has no input, its counter is stopped, no edge loads it (`CAPLDEN`), or its sequence ends before the event
+  that is enabled (`STOP_WRAP`).
+* eQEP: the program reads `QPOSLAT`, which the unit timer never loads (`QCLM`), or the unit timer has no period.
+* ePWM digital compare: it uses a TRIP input of the X-BAR that has no enabled mux, or a comparator that is off.
+* ePWM outputs: the dead band makes a pair of outputs, and one of them has no pin. A compare value is above the period,
+  so the output never changes there (one above the period means 100 % and is right). A compare register is never loaded
+  from its shadow (`LOADAMODE = 3`).
+* DAC: it gets codes and drives no pin.
+* I2C and SCI: the module stays in reset, or an interrupt needs more characters than the FIFO holds.
+* SPI: the interrupt of a direction is not enabled.
+* CAN: the controller stays in Init, a message object that is set up is never valid, or nothing requests its
+  transmission.
+* Pins: the chip itself drives a pin, and the input qualification of the pin needs longer pulses.
 
-**Mend:** set the register that the finding names, or take away what waits for it.
+The check is made at the end of a run. It reports a setting only if no statement of the program could set it. A program
+that starts its timer on an order that did not come in this run is not reported.
+
+**Fix:** set the register that the finding names, or remove what waits for the event.
 """,
         "TRM ADC: SOC triggers; TRM ePWM: time base, counter compare, event trigger; TRM PIE, external interrupts",
     ),
@@ -178,14 +207,15 @@ starts its timer later, on an order that did not come in this run, is right.
         Severity.WARNING,
         "A compare value was computed beyond the period.",
         """
-The counter goes up to `TBPRD`. A compare value above it is never reached: the output stays where the period has put it,
-100 % whatever the controller asks for, or 0 % where the compare sets. One above the period is how a counter that counts
-up says 100 %, and is right; so is a constant, which is meant as it stands, and a value that is there before the longer
-period it is for.
+The output stays at 100 %, or at 0 % if the compare event sets it, whatever the controller computes.
 
-It is looked at when a run ends, told at the statement that wrote the first such value.
+The counter counts up to `TBPRD`. It never reaches a compare value above `TBPRD`, so the output does not change there.
 
-**Mend:** limit the value to `TBPRD + 1`, above and below, in a signed type.
+The check is made at the end of a run. The finding is at the statement that wrote the first such value. These values
+are not reported: one above the period, which means 100 % for a counter that counts up; a constant; a value that is
+written just before the longer period that it is meant for.
+
+**Fix:** limit the value to `TBPRD + 1` and to 0, in a signed type.
 """,
         "TRM ePWM: counter compare",
     ),
@@ -200,7 +230,7 @@ selects a trip (`TZSEL`) and never writes `TZCTL` has probably not meant that.
 
 The check is made at the end of a run, for outputs that have actions (`AQCTLA`, `AQCTLB`).
 
-**Mend:** `TZCTL.bit.TZA = TZ_FORCE_LO`; if high impedance is meant, write `TZ_HIZ` so that it can be read.
+**Fix:** `TZCTL.bit.TZA = TZ_FORCE_LO`; if high impedance is meant, write `TZ_HIZ` so that it can be read.
 """,
         "TRM ePWM: trip zone, TZCTL",
     ),
@@ -209,15 +239,20 @@ The check is made at the end of a run, for outputs that have actions (`AQCTLA`, 
         Severity.ERROR,
         "A result was read before it was ready.",
         """
-`ADCRESULTn` while its conversion waits or runs, or before there was any; `SPIRXBUF` while the word is still shifting,
-or a second time; `SCIRXBUF` with `RXRDY = 0` or an empty FIFO, `I2CDRR` likewise. What is read is the previous result,
-or 0: a plausible number that belongs to another moment, or to another channel.
+The program gets a plausible number that belongs to another moment or to another channel.
 
-After a hardware trigger it is normal that a driver takes the latest result while the next one is made; only
-conversions that the firmware forces itself are reported. One read of an empty receive buffer before the first word or
-character is not reported either: start-up code does that to empty it.
+It reads a result register before the new result is there, so it gets the previous result, or 0. These reads are
+reported:
 
-**Mend:** wait for the flag (`ADCINTFLG`, `SPISTS.INT_FLAG`, `SCIRXST.RXRDY`, the FIFO level) before the read.
+* `ADCRESULTn` while its conversion waits or runs, or before the first conversion;
+* `SPIRXBUF` while the word is still being shifted, or a second time;
+* `SCIRXBUF` with `RXRDY = 0` or with an empty FIFO;
+* `I2CDRR` without a new byte.
+
+These reads are not reported: the latest result of a conversion that hardware triggers, because drivers use it in that
+way; and one read of an empty receive buffer before the first word, because start-up code clears the buffer with it.
+
+**Fix:** wait for the flag (`ADCINTFLG`, `SPISTS.INT_FLAG`, `SCIRXST.RXRDY`, the FIFO level) before the read.
 """,
         "TRM ADC, SPI, SCI",
     ),
@@ -226,19 +261,26 @@ character is not reported either: start-up code does that to empty it.
         Severity.ERROR,
         "An old flag was taken for a new event, or blocks it.",
         """
-Flags of this chip stay set until the program clears them. A wait for a flag that is set already ends at once: the
-driver reads the result of the event before, for ever one behind. And an interrupt is given only for the first event:
-while the flag (`ADCINT`, `QFLG.INT`) or the group's acknowledge (`PIEACK`) stands, the next ones are swallowed.
+The driver always reads the result of the event before, or an interrupt comes once and never again.
 
-Reported where the old flag is believed: the read of a result whose conversion still runs, the read of `INT_FLAG`
-while a word shifts, the second unit time-out seen without a `QCLR`, a message of the I2C that is given up before its
-address had an answer, a FIFO of the SCI that is emptied a second time for one overflow, the latch of a one-shot trip
-(`TZFLG.OST`) that stands while `TZFLG.INT` is cleared again and again, a message of the CAN whose NewDat stays set and
-which is taken again and again; or where an interrupt is lost.
+Flags of this chip stay set until the program clears them. A wait for a flag that is already set ends at once. And an
+interrupt is generated only for the first event: while the flag (`ADCINT`, `QFLG.INT`) or the acknowledge bit of the
+group (`PIEACK`) is set, later events generate none.
 
-**Mend:** clear the flag *before* the action that will set it again (ADC: `ADCINTFLGCLR`; SPI: read `SPIRXBUF` after
-each word, also after one that was only sent; eQEP: `QCLR`; I2C: `NACK`; SCI: `RXFFOVF`), and write `PIEACK` in every
-handler.
+The finding is made where the program believes the old flag, or where an interrupt is lost:
+
+* ADC: a result is read while its conversion still runs, and the flag of the conversion before is set;
+* SPI: `INT_FLAG` is read while a word is being shifted, and it belongs to the word before;
+* eQEP and CPU timer: the program sees the second time-out without a clear since the first (`QCLR`, `TCR.TIF`);
+* I2C: the program gives up a message because of an old `NACK`, before the address was answered;
+* SCI: the program empties the FIFO a second time for one overflow (`RXFFOVF`);
+* ePWM: the one-shot latch (`TZFLG.OST`) stays set while the program clears `TZFLG.INT` again and again;
+* CAN: `NewDat` stays set, and the program takes the same message again and again;
+* PIE: a routine leaves its flag or `PIEACK` set.
+
+**Fix:** clear the flag *before* the action that will set it again. ADC: `ADCINTFLGCLR`. SPI: read `SPIRXBUF` after
+each word, also after a word that was only sent. eQEP: `QCLR`. I2C: `NACK`. SCI: `RXFFOVF`. Write `PIEACK` in every
+interrupt routine.
 """,
         "TRM ADC interrupts, SPI INT_FLAG, eQEP QCLR, PIE acknowledge",
     ),
@@ -247,13 +289,13 @@ handler.
         Severity.ERROR,
         "An ADC interrupt was moved to another SOC during a conversion.",
         """
-One `ADCINT` serves one SOC at a time. If `INT1SEL` is changed during a conversion that should set the flag, its end
-sets nothing. The driver then waits for ever, or takes the end of another conversion for its own.
+The driver waits for ever, or takes the end of another conversion for the end of its own.
 
-Two tasks (or a task and an interrupt) that both change the channel selection are needed, and one must interrupt the
-other within the microsecond of a conversion.
+One `ADCINT` belongs to one SOC at a time. If the program changes `INT1SEL` during a conversion that should set the
+flag, the end of that conversion sets nothing. This needs two tasks (or a task and an interrupt) that both change the
+selection, and one must interrupt the other within the microsecond of a conversion.
 
-**Mend:** one `ADCINT` for each user, or a gate around selection, start, wait and read.
+**Fix:** one `ADCINT` for each user, or a gate around selection, start, wait and read.
 """,
         "TRM ADC: ADCINTSEL1N2",
     ),
@@ -262,10 +304,12 @@ other within the microsecond of a conversion.
         Severity.ERROR,
         "A conversion began before the analog core was powered up.",
         """
-After `ADCCTL1.ADCPWDNZ = 1` the core needs 500 us. A conversion that begins earlier ends in time, with its flag, and
-gives a number without meaning.
+The first results have no meaning.
 
-**Mend:** `DELAY_US(500)` or more behind the power-up, once.
+The analog core needs 500 us after `ADCCTL1.ADCPWDNZ = 1`. A conversion that begins earlier ends in time and sets its
+flag, but its result is not a measurement.
+
+**Fix:** `DELAY_US(500)` or more after the power-up, once.
 """,
         "TRM ADC: power-up sequence",
     ),
@@ -274,10 +318,12 @@ gives a number without meaning.
         Severity.ERROR,
         "The sample window of a conversion is too short.",
         """
-The sampling capacitor needs 75 ns (12 bits) or 320 ns (16 bits) at least: `ACQPS` is 14 or 63, more for a source with
-a high resistance. With less it keeps part of the channel converted before.
+The result contains a part of the channel that was converted before.
 
-**Mend:** set `ACQPS` of every `ADCSOCnCTL` in use; its reset value is too small.
+The sampling capacitor needs a window of at least 75 ns (12 bits) or 320 ns (16 bits) to charge. At 200 MHz that is
+`ACQPS` = 14 or 63. A source with a high resistance needs more.
+
+**Fix:** set `ACQPS` in every `ADCSOCnCTL` that is used; its reset value is too small.
 """,
         "DS, ADC timing; TRM ADC: ACQPS",
     ),
@@ -286,10 +332,10 @@ a high resistance. With less it keeps part of the channel converted before.
         Severity.ERROR,
         "The ADC's clock is above its limit.",
         """
-ADCCLK is at most 50 MHz: at 200 MHz the divider must be 4 or more, that is `ADCCTL2.PRESCALE` 6 or more. The reset
-value is the fastest one.
+ADCCLK may be 50 MHz at most. At 200 MHz the divider must be 4 or more, so `ADCCTL2.PRESCALE` must be 6 or more. The
+reset value is the smallest divider. Above the limit the data sheet specifies nothing.
 
-**Mend:** `PRESCALE = 6` at 200 MHz, before the converter is powered.
+**Fix:** `PRESCALE = 6` at 200 MHz, before the converter is powered up.
 """,
         "DS, ADC characteristics",
     ),
@@ -298,8 +344,11 @@ value is the fastest one.
         Severity.ERROR,
         "The resolution and the signal mode of the ADC do not match.",
         """
-Only 12 bits single-ended and 16 bits differential are specified. Set them through `AdcSetMode`, which loads the trims
-that belong to the mode.
+The data sheet specifies no accuracy for the results.
+
+The chip has two modes only: 12 bits single-ended, and 16 bits differential. Each mode needs its own trim values.
+
+**Fix:** set the mode with `AdcSetMode`, which also loads the trim values of the mode.
 """,
         "TRM ADC: ADCCTL2; HDR F2837xS_Adc.c",
     ),
@@ -308,11 +357,13 @@ that belong to the mode.
         Severity.WARNING,
         "An ADC burst does not fit the round robin, or uses an SOC that was not set up.",
         """
-With `BURSTEN` each trigger starts the next `BURSTSIZE + 1` SOCs of the round robin, which are those from `SOCPRIORITY`
-to 15, and then SOC`SOCPRIORITY` again. With four of them and bursts of three the second burst begins at the fourth: the
-results change places from burst to burst. And a SOC that nobody set up converts channel 0 with the shortest window.
+The results change places from burst to burst, or one of them belongs to channel 0.
 
-**Mend:** as many SOCs in the round robin as a burst has, or a multiple: `SOCPRIORITY = 16 - (BURSTSIZE + 1)`, and the
+With `BURSTEN` each trigger starts the next `BURSTSIZE + 1` SOCs of the round robin. The round robin contains the SOCs
+from `SOCPRIORITY` to 15, and then begins at `SOCPRIORITY` again. With four SOCs and bursts of three, the second burst
+begins at the fourth SOC. An SOC that the program did not set up converts channel 0 with the shortest window.
+
+**Fix:** as many SOCs in the round robin as a burst has, or a multiple: `SOCPRIORITY = 16 - (BURSTSIZE + 1)`, and the
 sources in the last SOCs.
 """,
         "TRM ADC: burst mode",
@@ -322,12 +373,14 @@ sources in the last SOCs.
         Severity.ERROR,
         "A limit of a post-processing block compares a negative result, which this silicon does wrong.",
         """
-`ADCPPBxRESULT` is negative once `ADCPPBxOFFREF` lies above the result (or below it, with `TWOSCOMPEN`). The manual
-compares it with `TRIPHI` and `TRIPLO` as signed numbers; the silicon does not. The emulator compares as the manual
-says, so that an interrupt that comes here may not come on the chip.
+An interrupt of a limit comes in the emulator and not on the chip, or the other way round.
 
-**Mend:** leave `ADCPPBxOFFREF` at 0 where the limits interrupt. A second block of the same SOC may subtract the
-reference and watch for the zero crossing.
+`ADCPPBxRESULT` is negative if `ADCPPBxOFFREF` is above the result (or below it, with `TWOSCOMPEN`). The manual
+compares it with `TRIPHI` and `TRIPLO` as signed numbers. The silicon does not (erratum). The emulator follows the
+manual.
+
+**Fix:** leave `ADCPPBxOFFREF` at 0 where the limits generate interrupts. A second block of the same SOC may subtract
+the reference and detect the zero crossing.
 """,
         "ERR, ADC: post-processing block limit compare",
     ),
@@ -336,12 +389,19 @@ reference and watch for the zero crossing.
         Severity.ERROR,
         "A word or a request was lost: the one before it was still waiting.",
         """
-The finding names the register: a word came to `SPIRXBUF` before the last one was read, a FIFO was full, a character
-replaced one in `SCIRXBUF`, `SPITXBUF` or `SCITXBUF` was written while one waited in it, an SOC was triggered again
-before its conversion had begun (`ADCSOCOVF1`). The hardware sets an overflow flag that nobody looks at. Or 16
-characters came to a FIFO of the SCI that was running and that `RXFIFORESET` holds in reset since then.
+A character, a word or a conversion is missing.
 
-**Mend:** read in time (interrupt, FIFO), or wait for room (`BUFFULL_FLAG`, `TXRDY`, FIFO level) before a write.
+A new word arrived while the one before was still waiting, so one of them is lost. The finding names the register:
+
+* a word arrived in `SPIRXBUF`, `SCIRXBUF` or `I2CDRR` before the last one was read, or the FIFO was full;
+* the program wrote `SPITXBUF`, `SCITXBUF` or `I2CDXR` while a word waited there;
+* an SOC was triggered again before its conversion had begun (`ADCSOCOVF1`);
+* a DMA channel got a second request before it had served the first;
+* 16 characters came to an SCI FIFO that the program had used and then held in reset (`RXFIFORESET`).
+
+The hardware sets an overflow flag in most of these cases, and the program does not look at it.
+
+**Fix:** read in time (interrupt, FIFO), or wait for room (`BUFFULL_FLAG`, `TXRDY`, FIFO level) before a write.
 """,
         "TRM SPI, SCI, ADC: overrun and overflow flags",
     ),
@@ -350,10 +410,12 @@ characters came to a FIFO of the SCI that was running and that `RXFIFORESET` hol
         Severity.WARNING,
         "A register was written while its lock was set.",
         """
-`GPxLOCK`, `CPUSYSLOCK1` and `INPUTSELECTLOCK` freeze configuration until the lock is taken back or until reset. The
-write is dropped without a sign.
+A configuration register keeps its old value after a write.
 
-**Mend:** finish the configuration before the lock is set.
+Lock registers (`GPxLOCK`, `CPUSYSLOCK1`, `INPUTSELECTLOCK` and those of other modules) freeze the configuration until
+the program clears the lock, or until reset. The register ignores the write, without an error.
+
+**Fix:** finish the configuration before you set the lock.
 """,
         "TRM GPIO: GPxLOCK; system control: CPUSYSLOCK1; X-BAR: INPUTSELECTLOCK",
     ),
@@ -362,10 +424,10 @@ write is dropped without a sign.
         Severity.ERROR,
         "A pin of the chip drives against another driver.",
         """
-Two push-pull outputs with different levels short the supply through both. Here the wire reads 0, on the board one of
-them suffers.
+Two push-pull outputs drive one wire to different levels. On the board they short the supply, and one of them can be
+damaged. In the emulator the wire reads 0.
 
-**Mend:** make the pin an input (or let it go) before the other side drives; check direction and function of the pin.
+**Fix:** make the pin an input before the other side drives. Check the direction and the function of the pin.
 """,
         "TRM GPIO: GPxDIR",
     ),
@@ -374,13 +436,19 @@ them suffers.
         Severity.ERROR,
         "A DMA channel uses an address that the DMA cannot reach.",
         """
-The DMA has a bus of its own. It leads to the global shared RAM (`RAMGS0` to `RAMGS15`), to the results of the ADCs,
-and over two bridges to ePWM, eCAP, eQEP, DAC, CMPSS, SDFM (`SECMSEL.PF1SEL`) and McBSP, SPI, uPP (`PF2SEL`). A bridge
-belongs to the CLA until its field is set to 1. Reads of anything else give 0 here, and writes are lost; the channel
-counts on and interrupts as if all were well.
+The DMA channel counts and interrupts as if all were well, but the data are zeros or do not arrive.
 
-**Mend:** put buffers into a `ramgs` section (`#pragma DATA_SECTION`), and set the field of the bridge between `EALLOW`
-and `EDIS`.
+The DMA has its own bus. It reaches only these addresses:
+
+* the global shared RAM (`RAMGS0` to `RAMGS15`) and the ADC results;
+* over the first bridge (`SECMSEL.PF1SEL`): ePWM, eCAP, eQEP, DAC, CMPSS, SDFM;
+* over the second bridge (`PF2SEL`): McBSP, SPI, uPP.
+
+A bridge belongs to the CLA until its field is set to 1. In the emulator a read of any other address gives 0, and a
+write there is lost.
+
+**Fix:** place the buffers in a `ramgs` section (`#pragma DATA_SECTION`), and set the field of the bridge between
+`EALLOW` and `EDIS`.
 """,
         "TRM, DMA and system control: SECMSEL; DS, memory map",
     ),
@@ -389,10 +457,12 @@ and `EDIS`.
         Severity.ERROR,
         "An interrupt was taken that has no handler.",
         """
-The line is enabled in `PIEIER` and `IER`, and its vector leads nowhere. On the chip the CPU jumps to whatever the
-vector RAM holds.
+The program jumps to a random address when the interrupt comes.
 
-**Mend:** plug the vector before the line is enabled; enable only what has a handler.
+`PIEIER` and `IER` enable the line, and no routine is in its vector. The CPU jumps to the address that the vector RAM
+happens to hold.
+
+**Fix:** set the vector before you enable the line; enable only lines that have a routine.
 """,
         "TRM PIE: vector table",
     ),
@@ -401,19 +471,20 @@ vector RAM holds.
         Severity.ERROR,
         "Interrupts follow each other without a gap, and nothing else runs.",
         """
-An interrupt is taken as soon as its routine has returned, again and again, and what it interrupts (`main`, a task, a
-routine that lets interrupts through) gets not one statement between two of them. It counts as a storm after 1000
-interrupts in a row that took 2,000,000 cycles (10 ms at 200 MHz) in all, if none of these cycles was left to what they
-interrupt; the run ends there. An interrupt that leaves it a single statement each time is none, however fast it is.
+The program seems dead. The debugger finds it in the same interrupt routine each time.
 
-Typical: a timer whose period is 0, or shorter than its routine; an ADC in continuous mode whose conversions end sooner
-than the routine; a FIFO whose level flag is cleared while its level still holds, so that it is set again at once; a
-routine that sets its own flag in `PIEIFR` or `IFR`. On the chip the program seems dead, and the debugger finds it in
-the routine each time.
+The interrupt comes again as soon as its routine returns. The interrupted code (`main`, a task, or a routine that
+allows interrupts) does not execute one statement in between. It is a storm after 1000 interrupts in a row that took
+2,000,000 cycles (10 ms at 200 MHz) in all. The run ends there. An interrupt that leaves one statement each time is not
+reported, however fast it is.
 
-**Mend:** take away what the source asks for before its flag is cleared: read the FIFO, fill it, or disable the
-interrupt until there is something to do. Make a period longer than the routine and what else must run; sum up samples
-by ePWM-triggered conversions or the DMA.
+Typical causes: a timer with a period of 0, or shorter than its routine; an ADC in continuous mode whose conversions
+are shorter than the routine; a FIFO flag that is cleared while the level still holds, so the hardware sets it again at
+once; a routine that sets its own flag in `PIEIFR` or `IFR`.
+
+**Fix:** remove the cause before you clear the flag: read the FIFO, fill it, or disable the interrupt until there is
+work. Make the period longer than the routine and all other code that must run. Collect samples with conversions that
+an ePWM triggers, or with the DMA.
 """,
         "TRM PIE; TRM SCI, FIFO interrupt flags",
     ),
@@ -422,13 +493,17 @@ by ePWM-triggered conversions or the DMA.
         Severity.ERROR,
         "The watchdog reset the device.",
         """
-Nothing wrote 0x55 and 0xAA to `WDKEY` in time, a window was missed, or `WDCR` was written without its check bits. The
-program starts again from nothing: RAM keeps what it held, peripherals do not. In the emulator a program of SYS/BIOS
-ends there: its pins are inputs, so that motors are off, and the world goes on without it; to begin anew is a new run.
-What runs without the kernel goes on as if it had not been reset. A service that was begun with 0x55 and not ended with
-0xAA is none; the finding stands there then.
+The program starts again from the beginning. RAM keeps its contents, and the peripherals are reset.
 
-**Mend:** service the watchdog in the slowest loop that must live; or disable it, as the start-up code does here.
+The program did not write 0x55 and then 0xAA to `WDKEY` in time, or it wrote them before the window opened, or it wrote
+`WDCR` without its check bits. If the program wrote 0x55 and then not 0xAA, the finding is at the statement that wrote
+0x55.
+
+In the emulator a SYS/BIOS program ends here: its pins become inputs, so the motors are off, and the world continues
+without it. Start a new run to start the program again. A program without the kernel continues as if it had not been
+reset.
+
+**Fix:** service the watchdog in the slowest loop that must run, or disable it, as the start-up code does here.
 """,
         "TRM system control: watchdog",
     ),
@@ -437,13 +512,14 @@ What runs without the kernel goes on as if it had not been reset. A service that
         Severity.WARNING,
         "An interrupt services the watchdog while the main program hangs.",
         """
-`main` waits in a loop that nothing can end any more, and an interrupt goes on to write 0x55 and 0xAA to `WDKEY`. The
-watchdog is there for just that case, and does nothing about it: everything that blinks by a timer blinks on.
+`main` hangs, and the watchdog does not reset the chip, because an interrupt routine still writes 0x55 and 0xAA to
+`WDKEY`. The watchdog exists for exactly this case.
 
-Told by `hil check FILE...` when a run ends in such a loop (`endless-poll`), at the service.
+`hil check FILE...` reports it at the end of a run in which `main` hangs in a loop (`endless-poll`). The place is the
+statement that services the watchdog.
 
-**Mend:** service the watchdog in the loop of `main`. If an interrupt has to do it, then only when `main` has said since
-the last time that it lives: a flag that `main` sets and the interrupt takes back.
+**Fix:** service the watchdog in the loop of `main`. If an interrupt must do it, let `main` set a flag in each pass,
+and let the routine service the watchdog only if the flag is set, and then clear it.
 """,
         "TRM system control: watchdog",
     ),
@@ -452,10 +528,12 @@ the last time that it lives: a flag that `main` sets and the interrupt takes bac
         Severity.WARNING,
         "A value in a shadow register was lost before it was loaded.",
         """
-A compare value, a period or an action was written to its shadow and the register was switched to immediate mode
-before the load point came: the value never becomes active.
+A new compare value, period or action never becomes active.
 
-**Mend:** choose the mode before the value is written.
+The program wrote the value to the shadow register and then switched the register to immediate mode before the load
+event. In immediate mode the hardware uses the active register, and the value in the shadow is lost.
+
+**Fix:** select the mode before you write the value.
 """,
         "TRM ePWM: shadow registers",
     ),
@@ -464,9 +542,12 @@ before the load point came: the value never becomes active.
         Severity.WARNING,
         "The prescalers of the eQEP capture unit were changed while it ran.",
         """
-`UPPS` and `CCPS` may be changed only with `CEN = 0`; the period that is being measured is wrong otherwise.
+One measured period is wrong.
 
-**Mend:** clear `QCAPCTL.CEN`, set the prescalers, set `CEN`.
+The prescalers `UPPS` and `CCPS` may be changed only while `CEN = 0`. If they change while the capture unit runs, the
+measurement under way mixes two units.
+
+**Fix:** clear `QCAPCTL.CEN`, set the prescalers, set `CEN`.
 """,
         "TRM eQEP: QCAPCTL",
     ),
@@ -475,13 +556,15 @@ before the load point came: the value never becomes active.
         Severity.ERROR,
         "The module clock or the bus clock of the I2C is out of range.",
         """
-The module's clock is SYSCLK / (`IPSC` + 1), and the times of the bus are counted in it: with less than 7 or more than
-12 MHz they are not kept, whatever `I2CCLKL` and `I2CCLKH` make of SCL. At 200 MHz `IPSC` is 16 to 27.
-SCL itself has 400 kHz at most: a bit lasts `I2CCLKL + d + I2CCLKH + d` module clocks, and d is 5, 6 or 7.
+Transfers on the I2C bus fail with some targets.
 
-Reported at the START that would use it.
+The module clock is SYSCLK / (`IPSC` + 1). The module counts all bus timing in it, and it needs 7 to 12 MHz, whatever
+`I2CCLKL` and `I2CCLKH` are. At 200 MHz `IPSC` must be 16 to 27. SCL may have 400 kHz at most. A bit lasts `I2CCLKL` +
+d + `I2CCLKH` + d module clocks, where d is 7, 6 or 5 for `IPSC` = 0, 1 or more.
 
-**Mend:** choose `IPSC` first, with `IRS = 0`, then `ICCL` and `ICCH` for the rate of SCL.
+The check is made at each START.
+
+**Fix:** first set `IPSC` while `IRS = 0`, then `I2CCLKL` and `I2CCLKH` for the rate of SCL.
 """,
         "TRM I2C: clock generation, I2CPSC",
     ),
@@ -490,11 +573,12 @@ Reported at the START that would use it.
         Severity.ERROR,
         "Interrupts of XRDY or RRDY are enabled while the I2C is in FIFO mode.",
         """
-With `I2CFFTX.I2CFFEN = 1` the FIFOs fill `I2CDXR` and empty `I2CDRR`, so their flags and interrupts tell the program
-nothing: the manual says not to use them then. A routine that waits for them sends or takes bytes at wrong times, or
-none.
+The interrupt routine sends or takes bytes at wrong times, or never.
 
-**Mend:** clear `XRDY` and `RRDY` in `I2CIER`, and use `TXFFIENA` and `RXFFIENA` with their levels (interrupt 8.2 or
+With `I2CFFTX.I2CFFEN = 1` the FIFOs write `I2CDXR` and read `I2CDRR`. The flags `XRDY` and `RRDY` then say nothing to
+the program, and the manual forbids their interrupts in this mode.
+
+**Fix:** clear `XRDY` and `RRDY` in `I2CIER`, and use `TXFFIENA` and `RXFFIENA` with their levels (interrupt 8.2 or
 8.4).
 """,
         "TRM I2C: basic interrupt requests, XRDYINT and RRDYINT",
@@ -504,10 +588,11 @@ none.
         Severity.ERROR,
         "The prescaler of the I2C was changed while the module ran.",
         """
-`I2CPSC` takes effect when `IRS` goes from 0 to 1. Written later it reads back as written, and the bus goes on with the
-old clock.
+The bus keeps its old clock, although `I2CPSC` reads back the new value.
 
-**Mend:** clear `I2CMDR.IRS`, write `I2CPSC`, set `IRS`.
+`I2CPSC` takes effect when `IRS` changes from 0 to 1.
+
+**Fix:** clear `I2CMDR.IRS`, write `I2CPSC`, set `IRS`.
 """,
         "TRM I2C: clock generation, I2CPSC",
     ),
@@ -516,12 +601,15 @@ old clock.
         Severity.ERROR,
         "A register of a CAN interface was used during a transfer.",
         """
-Writing the message number to `CAN_IF1CMD` or `CAN_IF2CMD` starts a transfer between the interface and the message RAM.
-Until it is over `Busy` is 1 and the registers of that interface are protected: what is written to them is lost without
-a sign. The next command then moves old values, or the command itself is the one that is lost. What a command fetches
-is not there before: a read in between gives the data of the message before.
+A CAN message is sent with old data, or the program reads the data of the message before.
 
-**Mend:** wait for `Busy` to be 0 before each use of an interface, and give interrupts an interface of their own.
+A write of the message number to `CAN_IF1CMD` or `CAN_IF2CMD` starts a transfer between the interface and the message
+RAM. Until the transfer ends, `Busy` is 1. The interface ignores all writes during this time, also a write of the next
+command. The data that a command fetches arrive only at the end of the transfer, so a read before that gives the
+previous message.
+
+**Fix:** wait for `Busy` = 0 before each use of an interface, and use one interface in tasks and the other one in
+interrupts.
 """,
         "TRM CAN: IF1/IF2 command registers, Busy",
     ),
@@ -530,11 +618,11 @@ is not there before: a read in between gives the data of the message before.
         Severity.ERROR,
         "A START was requested before the previous STOP was done.",
         """
-`I2CMDR.STP` stays 1 until the STOP condition has been made, a while after the last byte. The manual wants it to be 0
-before a new message is set up. What a START in between does no document says; here it is made behind the byte or the
-STOP that is under way.
+`I2CMDR.STP` stays 1 until the module has made the STOP condition, some time after the last byte. The manual requires
+`STP` = 0 before a new message is set up. No document says what a START in between does. The emulator makes it after
+the byte or the STOP that is under way; the chip may do something else.
 
-**Mend:** test `I2CMDR.bit.STP` before the registers of a new message are written.
+**Fix:** test `I2CMDR.bit.STP` before you write the registers of a new message.
 """,
         "TRM I2C: I2CMDR, STP",
     ),
@@ -550,7 +638,7 @@ The finding is made at the first read of `I2CSTR` that comes 100 ms (CHOICE) or 
 NACK, if neither `STT` nor `STP` was written between them (also if `STP` was set before: its effect then is a choice,
 `stops_when_refused`).
 
-**Mend:** set `STP` where `NACK` was seen, wait for `BB` to fall, and clear `NACK`.
+**Fix:** set `STP` where `NACK` was seen, wait for `BB` to fall, and clear `NACK`.
 """,
         "TRM I2C: NACK, bus activity by RM, STT and STP",
     ),
@@ -559,10 +647,12 @@ NACK, if neither `STT` nor `STP` was written between them (also if `STP` was set
         Severity.ERROR,
         "A device was addressed in an SPI clock mode that it does not support.",
         """
-Phase and polarity decide at which edge each side samples. In a wrong mode every byte arrives shifted by a bit:
-numbers that are double, half, or just odd. The phase bit of this chip counts the other way from the usual CPHA.
+Every byte is shifted by one bit: numbers are doubled, halved or odd.
 
-**Mend:** for modes 0 and 3 of the gyro: `CLKPOLARITY = 0, CLK_PHASE = 1` or `CLKPOLARITY = 1, CLK_PHASE = 0`.
+Clock polarity and phase decide at which edge each side samples. The phase bit of this chip (`CLK_PHASE`) is the
+inverse of the usual CPHA.
+
+**Fix:** for mode 0 of the gyro `CLKPOLARITY = 0, CLK_PHASE = 1`, for mode 3 `CLKPOLARITY = 1, CLK_PHASE = 0`.
 """,
         "TRM SPI: clocking schemes; L3G, SPI bus interface",
     ),
@@ -571,14 +661,15 @@ numbers that are double, half, or just odd. The phase bit of this chip counts th
         Severity.ERROR,
         "Words with more bits than the characters of the SPI were written, and their lower bits were never sent.",
         """
-`SPITXBUF` is sent from bit 15 down, `SPICHAR + 1` bits of it. With characters of 8 bits the lower half of each word
-stays at home: a driver that hands over 16 bits sends every other octet, one that does not shift its octet up
-(`SPITXBUF = c`) sends zeros.
+The device gets zeros, or only every second byte.
 
-Told at the second of two words that lose different bits. A word whose rest is written next (`w`, then `w << 8`) loses
-nothing.
+The SPI sends `SPITXBUF` from bit 15 down, `SPICHAR` + 1 bits. With 8-bit characters it does not send the lower half of
+the word. So `SPITXBUF = c` sends zeros, and a driver that writes 16 bits loses every second byte.
 
-**Mend:** `SPITXBUF = c << 8` for an octet; `SPICHAR = 15` for words.
+The finding is made at the second of two words that lose different bits. A word whose remaining bits are written next
+(`w`, then `w << 8`) loses nothing and is not reported.
+
+**Fix:** `SPITXBUF = c << 8` for a byte; `SPICHAR = 15` for words.
 """,
         "TRM SPI: SPITXBUF, left-justified; SPICHAR",
     ),
@@ -587,11 +678,13 @@ nothing.
         Severity.ERROR,
         "The chip select rose in the middle of a word or byte.",
         """
-The device throws the unfinished byte away. The usual cause is a wait that ends too early (on a flag of the word
-before, or on room in the transmit buffer, which says nothing about the shift register), or a second task that uses
-the bus.
+The last byte of a transaction has no effect.
 
-**Mend:** wait for `INT_FLAG` of the last word, read `SPIRXBUF`, then raise the chip select; one gate around the whole
+The chip select rose before the byte was complete, and the device discards an incomplete byte. Usually the driver
+waited for the wrong thing: for the flag of the word before, or for room in the transmit buffer, which does not mean
+that the shift register is empty. Or a second task used the bus.
+
+**Fix:** wait for `INT_FLAG` of the last word, read `SPIRXBUF`, then raise the chip select. Hold one gate for the whole
 transaction.
 """,
         "L3G, SPI bus interface; TRM SPI",
@@ -603,7 +696,7 @@ transaction.
         """
 The word leaves the chip, but no device takes it. The word that is received is the level of an undriven line.
 
-**Mend:** lower the chip select before the first word of a transaction, and make its pin an output.
+**Fix:** lower the chip select before the first word of a transaction, and make its pin an output.
 """,
         "L3G, SPI bus interface",
     ),
@@ -612,10 +705,11 @@ The word leaves the chip, but no device takes it. The word that is received is t
         Severity.WARNING,
         "A register of a device was accessed in a way that its data sheet forbids.",
         """
-A reserved address was read or written, a read-only register written, or bits were set that must stay 0. Reserved
-registers of the gyro hold its factory trims: writing them can spoil the part for good.
+The program read or wrote a reserved address, wrote a read-only register, or set bits that must stay 0.
 
-**Mend:** check the address, the read bit and the auto-increment bit of the command byte.
+Reserved registers of the gyro hold its factory trim values. A write there can damage the part permanently.
+
+**Fix:** check the address, the read bit and the auto-increment bit of the command byte.
 """,
         "L3G, register mapping",
     ),
@@ -624,14 +718,16 @@ registers of the gyro hold its factory trims: writing them can spoil the part fo
         Severity.ERROR,
         "A write to an EEPROM crossed the end of a page.",
         """
-Only the lower bits of the EEPROM's address count on while a message is written (six of them, a page of 64 bytes).
-Behind the last byte of the page comes its first one: what was meant for the next page replaces what stands at the
-beginning of this one, and of more bytes than a page has the first ones are lost. The EEPROM acknowledges all of it.
+After a write, the data at the beginning of a page are overwritten, and the next page did not change.
 
-Reported at the STOP that begins the write cycle.
+While the EEPROM receives a message, it increments only the lower six bits of its address: a page has 64 bytes. After
+the last byte of the page the address returns to the first byte of the same page. If a message is longer than a page,
+its first bytes are lost. The EEPROM acknowledges every byte.
 
-**Mend:** end the message at the page's end, wait for the write cycle (poll for the acknowledgment), and begin the next
-one.
+The finding is made at the STOP that begins the write cycle.
+
+**Fix:** end the message at the end of the page, wait for the write cycle (poll for the acknowledge), then begin the
+next message.
 """,
         "AT24C256: page write",
     ),
@@ -640,14 +736,15 @@ one.
         Severity.ERROR,
         "A polling loop waits for an event that cannot come.",
         """
-A polling loop only reads, and no event is left (or none for a very long time) that could change what it reads: a
-conversion that was never started, an interrupt flag that is not selected, a transmitter in reset. On the chip the task
-hangs, and so does every task below it.
+The task hangs in a polling loop, and so does every task of lower priority.
 
-The idle loop of a program, `while (1) ;`, reads nothing and is not reported: interrupts run in between. In an interrupt
-routine it is reported, because nothing interrupts a routine.
+The loop only reads, and no event is left that could change what it reads, or none for a very long time. Typical
+causes: a conversion that was never started, an interrupt flag that is not selected, a transmitter in reset.
 
-**Mend:** give each wait a limit (a count or a time) and handle the time-out; check that the event is configured before
+The idle loop of a program (`while (1) ;`) reads nothing and is not reported, because interrupts run in between. In an
+interrupt routine such a loop is reported, because nothing interrupts the routine.
+
+**Fix:** give each wait a limit (a count or a time) and handle the time-out. Check that the event is configured before
 the wait begins.
 """,
     ),

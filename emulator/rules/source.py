@@ -21,7 +21,7 @@ optimisation may take the other. C calls it undefined. The emulator goes from le
 `&&`, `||`, `?:` and the comma have an order, and so have the arguments of a call against the call itself: nothing is
 reported there.
 
-**Mend:** two statements.
+**Fix:** two statements.
 """,
         "ISO C 6.5 p2; CERT EXP30-C",
     ),
@@ -35,7 +35,7 @@ reported there.
 Not reported: what is cast to `void`, `ready && start();`, which calls, and an operation other than a comparison that
 reads a register, because the read may be what is wanted.
 
-**Mend:** the assignment that was meant, or take the statement away.
+**Fix:** the assignment that was meant, or take the statement away.
 """,
         "ISO C 6.8.3; CERT MSC12-C",
     ),
@@ -50,7 +50,7 @@ condition. Another value is reported in an `if` whose branches do not look at wh
 `while ((c = next()) != 0)`, `while (*to++ = *from++)`, `if ((p = find()))` and `if (p = find()) use(p);` are not
 reported.
 
-**Mend:** `==`; parentheses around the assignment if it is meant.
+**Fix:** `==`; parentheses around the assignment if it is meant.
 """,
         "ISO C 6.5.16; CERT EXP45-C",
     ),
@@ -64,7 +64,7 @@ word: `memcpy(to, from, 4 * n)` hands over a size of one word where `memcpy` tak
 that a function returns only one word arrives. The finding names the arguments whose widths differ. The emulator calls
 the function as its definition says.
 
-**Mend:** include the header that declares it.
+**Fix:** include the header that declares it.
 """,
         "ISO C 6.5.2.2 (C99 removed it); CERT DCL31-C",
     ),
@@ -76,7 +76,7 @@ the function as its definition says.
 The compiler believes the declaration that it sees, and the linker compares names alone: arguments are passed in the
 wrong registers, and a result is read from the wrong one. The emulator takes the definition.
 
-**Mend:** one header, included where the name is used and where it is defined.
+**Fix:** one header, included where the name is used and where it is defined.
 """,
         "ISO C 6.2.7 p2; CERT DCL40-C",
     ),
@@ -88,7 +88,7 @@ wrong registers, and a result is read from the wrong one. The emulator takes the
 C wants a cast there; this chip's compiler warns and goes on. Sizes of the two targets may differ: a `float *` that
 reads through an `int *` reads half a number.
 
-**Mend:** the right type; a cast where it is meant.
+**Fix:** the right type; a cast where it is meant.
 """,
         "ISO C 6.5.16.1 p1",
     ),
@@ -100,7 +100,7 @@ reads through an `int *` reads half a number.
 A macro that is defined a second time with another text, two tokens that `##` does not make into one, a `#line`, a
 `#warning`: the program is translated as the chip's compiler would, and the message says what was done.
 
-**Mend:** `#undef` before a second definition; the header that defines it, once.
+**Fix:** `#undef` before a second definition; the header that defines it, once.
 """,
         "ISO C 6.10.3 p2, 6.10.3.3",
     ),
@@ -113,7 +113,7 @@ A macro that is defined a second time with another text, two tokens that `##` do
 or the DMA reaches. The emulator has one kind of RAM, and code costs the same wherever it lies. Nothing else of the
 program changes.
 
-**Mend:** nothing.
+**Fix:** nothing.
 """,
         "SPRU514, pragma directives",
     ),
@@ -125,7 +125,7 @@ program changes.
 At file scope `asm("...")` holds directives: sections, symbols, alignment. They act on the linker, which is not
 modelled. Assembler within a function is modelled for single instructions without operands, and refused otherwise.
 
-**Mend:** nothing, unless the program needs the symbol that it defines.
+**Fix:** nothing, unless the program needs the symbol that it defines.
 """,
         "SPRU514, the asm statement",
     ),

@@ -20,7 +20,7 @@ value, loops that turn at least once and switches with every constant of their e
 
 The dynamic rule `uninitialised` proves it when the way is taken; this one names it before.
 
-**Mend:** a start value at the declaration, or an `else`.
+**Fix:** a start value at the declaration, or an `else`.
 """,
         "ISO C 6.7.8 p10",
     ),
@@ -32,7 +32,7 @@ The dynamic rule `uninitialised` proves it when the way is taken; this one names
 The caller gets whatever the register held that a value would have been in: on this chip AL, ACC or R0H, so often a
 remnant of the last computation that looks right.
 
-**Mend:** a `return` at the end, for the case that "cannot happen" too.
+**Fix:** a `return` at the end, for the case that "cannot happen" too.
 """,
         "ISO C 6.9.1 p12",
     ),
@@ -46,7 +46,7 @@ line has any of 65536 values.
 
 A switch that names every constant of one enumeration is taken as complete.
 
-**Mend:** a `default` with a safe value.
+**Fix:** a `default` with a safe value.
 """,
         "ISO C 6.8.4.2",
     ),
@@ -65,7 +65,7 @@ constant that limits the variable is (`if (x > 300) x = 300;`, and nobody looks 
 Of an object of the file, too: it is set and set again, with nothing between that could look at it. Of a structure or an
 array that is a local, or a copy that was passed: nothing reads any part of it behind the last store.
 
-**Mend:** use the value, or take the statement away.
+**Fix:** use the value, or take the statement away.
 """,
         "ISO C 6.5.16; CERT MSC13-C",
     ),
@@ -78,7 +78,7 @@ array that is a local, or a copy that was passed: nothing reads any part of it b
 is made only where the next case sets the same object, member or field before anybody can have seen the first value.
 Cases that fall through and add to each other are not reported.
 
-**Mend:** `break`.
+**Fix:** `break`.
 """,
         "ISO C 6.8.4.2; CERT MSC17-C",
     ),
@@ -93,7 +93,7 @@ that. A quotient of the two is always 1.
 Found in the text, where nothing between the copy and the difference can have changed one of them. Volatile objects are
 silent.
 
-**Mend:** subtract first, then store.
+**Fix:** subtract first, then store.
 """,
         "ISO C 6.8 p4: full expressions in their order",
     ),
@@ -113,7 +113,7 @@ A pointer that has been gone through is not NULL any more: the test comes too la
 
 `while (1)` and conditions made of constants only (switches of the build) are not reported.
 
-**Mend:** write what was meant; check the type of the variable against the constant.
+**Fix:** write what was meant; check the type of the variable against the constant.
 """,
         "ISO C 6.5.8 with the widths of CC table 6-1",
     ),
@@ -124,7 +124,7 @@ A pointer that has been gone through is not NULL any more: the test comes too la
         """
 It stands behind a `return`, a `break` or a loop without end, or it is a case that another one takes first.
 
-**Mend:** move it before, or take it away. A lone `return` at the end of `main` is not reported.
+**Fix:** move it before, or take it away. A lone `return` at the end of `main` is not reported.
 """,
         "ISO C 6.8; CERT MSC12-C",
     ),
@@ -136,7 +136,7 @@ It stands behind a `return`, a `break` or a loop without end, or it is a case th
 Harmless where it belongs to a library; telling where it is an initialisation or a step that somebody forgot. Reported
 only for an image that begins at `main`, or whose entries are known.
 
-**Mend:** call it, or leave it out of the image.
+**Fix:** call it, or leave it out of the image.
 """,
     ),
     _rule(
@@ -147,7 +147,7 @@ only for an image that begins at `main`, or whose entries are known.
 A limit or a timeout that the function takes and ignores. Functions that are called through a pointer (tasks,
 interrupt services, callbacks) have the parameters that the caller passes, and are not reported.
 
-**Mend:** use it, or change the prototype.
+**Fix:** use it, or change the prototype.
 """,
     ),
     _rule(
@@ -158,7 +158,7 @@ interrupt services, callbacks) have the parameters that the caller passes, and a
 It takes memory. Often it is the twin of an object that is used under another name, for instance the wheel speed that
 was meant to be controlled.
 
-**Mend:** take it away, or use it.
+**Fix:** take it away, or use it.
 """,
     ),
     _rule(
@@ -169,7 +169,7 @@ was meant to be controlled.
 Within the function the name means the local. An assignment that was meant for the shared object is lost at the
 return.
 
-**Mend:** give one of them another name.
+**Fix:** give one of them another name.
 """,
         "ISO C 6.2.1 p4",
     ),
@@ -183,7 +183,7 @@ bits. A hexadecimal pattern of the same width and -1 are taken as meant.
 
 On a host 50000 fits.
 
-**Mend:** a type that holds the constant, or a cast if the loss is meant.
+**Fix:** a type that holds the constant, or a cast if the loss is meant.
 """,
         "ISO C 6.3.1.3, 6.3.1.4",
     ),
@@ -198,7 +198,7 @@ that is called like the object, the element beside it.
 Not reported: parameters (`arg = arg;` says that it is not used, unless an object of the file has the same name),
 volatile objects, `*p = *p;`, and an object that the other branch of the `if` changes.
 
-**Mend:** the name that was meant, or take the statement away.
+**Fix:** the name that was meant, or take the statement away.
 """,
         "ISO C 6.5.16.1; CERT MSC12-C",
     ),
@@ -210,7 +210,7 @@ volatile objects, `*p = *p;`, and an object that the other branch of the `if` ch
 `1 / 2 * m * v * v` is 0: the division comes first and has integers. The finding is made when a remainder is lost and
 the quotient then becomes a float, and when the quotient of two constants is 0.
 
-**Mend:** `1.0 / 2`, or `0.5`.
+**Fix:** `1.0 / 2`, or `0.5`.
 """,
         "ISO C 6.5.5 p6",
     ),
@@ -227,7 +227,7 @@ Reported only where the compiler is free to do it: not where the loop calls a fu
 not where it writes through a pointer. In files without a `main` every function that others can call counts as another
 thread.
 
-**Mend:** `volatile` at the object (`volatile[uint16]` in C-shaped Python), at each declaration of it; or wait on a
+**Fix:** `volatile` at the object (`volatile[uint16]` in C-shaped Python), at each declaration of it; or wait on a
 semaphore.
 """,
         "ISO C 5.1.2.3 p3, 6.7.3 p6; CC, the volatile keyword",
@@ -240,7 +240,7 @@ semaphore.
 In C `flags & MASK == MASK` compares first: `MASK == MASK` is 1, so only bit 0 of the flags is tested. Two comparisons
 combined by `&` or `|` are fine and not reported.
 
-**Mend:** parentheses around the mask: `(flags & MASK) == MASK`.
+**Fix:** parentheses around the mask: `(flags & MASK) == MASK`.
 """,
         "ISO C 6.5.8 to 6.5.12 (precedence); CERT EXP00-C",
     ),
@@ -252,7 +252,7 @@ combined by `&` or `|` are fine and not reported.
 After a computation two floats are rarely equal to the last bit, and this chip's divider gives other last bits than a
 host's. A comparison with 0 (a guard before a division, a value not yet set) is not reported.
 
-**Mend:** compare the distance with a tolerance.
+**Fix:** compare the distance with a tolerance.
 """,
         "FPU supplement; CERT FLP02-C",
     ),
