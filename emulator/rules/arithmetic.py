@@ -15,12 +15,14 @@ RULES: Final[tuple[Rule, ...]] = (
         Severity.ERROR,
         "A signed result does not fit its type.",
         """
-An `int` has 16 bits: -32768 to 32767. A sum of a hundred 12-bit samples, a product of two ordinary numbers, the
-negative of -32768 do not fit. The hardware wraps (overflow mode is off); the compiler may assume that it never
-happens.
+A sum or a product has the wrong sign, or is far too small.
 
-On a host `int` has 32 bits, and neither the test nor the sanitizer there sees anything. A bit shifted into the sign
-bit (`1 << 15`, every mask for bit 15) loses nothing and is reported only if the result is widened.
+An `int` has 16 bits here: -32768 to 32767. A sum of a hundred 12-bit samples, a product of two ordinary numbers, or
+the negative of -32768 does not fit. The hardware wraps (overflow mode is off). The compiler may assume that an
+overflow never happens. On a PC `int` has 32 bits, so neither the test nor the sanitizer sees anything.
+
+A bit that is shifted into the sign bit (`1 << 15`, as in every mask for bit 15) loses nothing. It is reported only if
+the result is widened.
 
 **Fix:** compute in `long` (cast an *operand*, not the result), or divide before you add.
 """,
@@ -31,13 +33,16 @@ bit (`1 << 15`, every mask for bit 15) loses nothing and is reported only if the
         Severity.ERROR,
         "A 16-bit result lost its upper bits before it was widened.",
         """
-`long area = a * b;` multiplies in 16 bits and widens the remains. With unsigned operands not even an overflow
-happens: `(adc - 2048) * 0.001` takes the difference in `unsigned int`, so 2000 gives 65488 and not -48. An `int` that
-meets an `unsigned int` becomes unsigned.
+A `long` or a `float` gets a value that was cut to 16 bits before.
 
-On a host the operation has 32 bits and is right. A difference of two unsigned variables that wraps to a small number
-is how elapsed counts are taken and is not reported; nor is a result that is cast to its own type, which says that the
-wrap is meant.
+`long area = a * b;` multiplies in 16 bits and widens the product afterwards. With unsigned operands this is not even
+an overflow: `(adc - 2048) * 0.001` computes the difference in `unsigned int`, so for `adc` = 2000 it is 65488 and not
+-48. If one operand is `int` and the other `unsigned int`, C computes in `unsigned int`. On a PC the operation has 32
+bits and is right.
+
+Two cases are not reported: a difference of two unsigned variables that wraps to a small number, because programs
+compute elapsed counts in that way; and a result that is cast to its own type, because the cast says that the wrap is
+intended.
 
 **Fix:** cast one operand first: `(long) a * b`, `((int) adc - 2048) * 0.001`.
 """,
@@ -48,12 +53,12 @@ wrap is meant.
         Severity.WARNING,
         "An integer division lost its remainder before the quotient became a float or was scaled.",
         """
-`float ratio = a / b;` with integers divides as integers: 3 / 4 is 0, then 0.0. So does `a / b * 100` for a
-percentage. The finding is made only when a remainder was really lost.
+A ratio or a percentage is 0, or always a whole number.
 
-Compilers are silent: it is valid C.
+With integers, `float ratio = a / b;` divides as integers: 3 / 4 is 0, and then 0.0. `a / b * 100` does the same. This
+is valid C, so compilers do not warn. The finding is made only when a remainder was really lost.
 
-**Fix:** make one operand a float: `(float) a / b`. If the whole number is meant, keep it in an integer.
+**Fix:** make one operand a float: `(float) a / b`. If you want the whole number, keep it in an integer.
 """,
         "ISO C 6.5.5 p6",
     ),
@@ -62,15 +67,17 @@ Compilers are silent: it is valid C.
         Severity.WARNING,
         "A number became an int without a cast, and its value changed.",
         """
-The right side has 32 bits and the object 16; C drops the upper half in silence. Or an unsigned number was added to a
-signed one: the sum is unsigned, and above 32767 the `int` that takes it is negative.
+An `int` holds another value than the program computed.
 
-A cast says that the value is known to fit or that only the lower half is wanted, and is not reported; but a product,
-and what it is divided by or shifted down to (`(int) ((long) a * b >> 15)`), is meant to fit, and is.
+Either a 32-bit value was assigned to a 16-bit object, and C dropped the upper half without a message. Or an unsigned
+and a signed number were added: the sum is unsigned, and above 32767 the `int` that takes it becomes negative. On a PC
+both sides have 32 bits.
 
-On a host both sides have 32 bits.
+A cast says that the value fits or that only the lower half is wanted, so it is not reported. The exception is a
+product, also one that is divided or shifted down (`(int) ((long) a * b >> 15)`): it is meant to fit, so its loss is
+reported despite the cast.
 
-**Fix:** make the object `long`, or bring the value into range before the assignment.
+**Fix:** make the object `long`, or limit the value before the assignment.
 """,
         "ISO C 6.3.1.3 p3",
     ),
@@ -79,22 +86,24 @@ On a host both sides have 32 bits.
         Severity.WARNING,
         "An unsigned result wrapped and was then divided, shifted down or compared.",
         """
-`b + (a - b) / 2` with `a < b`: the difference is near 65536, and so is half of it near 32768. `now - before > 5` is
-true when the reading has gone *down* by one. Addition and subtraction alone would come out right modulo 65536; a
-division, a shift to the right or a comparison by order does not. A sum over samples that is divided further down is
-reported at the addition that wraps.
+An unsigned difference or sum wraps, and the program continues with a number near 65536.
 
-So is the step of a loop that wraps, and whose object the loop's test compares: a count that goes down by two misses 0.
-So is the step of an object that is limited above: what has gone below 0 becomes the limit.
-So is a long that becomes the difference of two numbers of 16 bits of which one has wrapped: stamps of 16 bits are
-subtracted in 16 bits, and the result is widened.
+In `b + (a - b) / 2` with `a < b` the difference is near 65536, and half of it is near 32768. `now - before > 5` is
+true when the value has gone *down* by one. Addition and subtraction alone give the right result modulo 65536. A
+division, a shift to the right or a comparison by order does not. These wraps are reported:
 
-A wrap of more than half the range is taken for the elapsed count of a free-running counter and is silent.
+* a result that is then divided, shifted down or compared by order;
+* a sum of samples that is divided later (at the addition that wraps);
+* the step of a loop whose test compares the object (a count that goes down by two misses 0);
+* the step of an object that is limited above (below 0 it wraps and becomes the limit);
+* a difference of two 16-bit numbers that goes into a `long`, if one of them has wrapped;
+* a sum or product of two constants, before the program runs: `400u * 195u` is 12464, because `unsigned int` has 16
+  bits.
 
-Of two constants it is seen in the source: `400u * 195u` is 12464, because `unsigned int` has 16 bits. A cast to its own
-type says that the wrap is meant.
+These wraps are not reported: a difference that wraps by more than half of the range, because it is the elapsed count
+of a free-running counter; and a result that is cast to its own type.
 
-**Fix:** subtract the smaller from the larger one, or compute in a signed type that is wide enough.
+**Fix:** subtract the smaller number from the larger one, or compute in a signed type that is wide enough.
 """,
         "ISO C 6.2.5 p9",
         how="dynamic/static",
@@ -125,12 +134,15 @@ at most half of the range ahead.
         Severity.ERROR,
         "A negative number was compared as an unsigned number.",
         """
-One side is unsigned, so the other is converted: -1 counts as 65535. An error code is "larger" than every size.
-`sizeof` is unsigned too.
+A negative number passes a test as if it were very large.
 
-Seen as it runs, when the value is negative; and in the source, when a minus or a negative constant stands there.
+One side of the comparison is unsigned, so C converts the other side too: -1 becomes 65535. An error code of -1 is then
+"larger" than every size. `sizeof` is unsigned, too.
 
-**Fix:** test for negative first, or make both sides signed.
+The finding is made while the program runs, when the value is negative. It is made before the program runs if the
+source has a minus or a negative constant there.
+
+**Fix:** test for negative values first, or make both sides signed.
 """,
         "ISO C 6.3.1.8",
         how="dynamic/static",
@@ -140,16 +152,19 @@ Seen as it runs, when the value is negative; and in the source, when a minus or 
         Severity.ERROR,
         "A negative number was taken as an unsigned one, and then limited, scaled or divided.",
         """
-`Uint16 duty = error * KP; if (duty > FULL) duty = FULL;` gives full power for every negative error: -1 is 65535, and
-65535 is limited to FULL. `(int32) SWING * (Uint16) position` scales it as 65535. An unsigned parameter does the same to
-what a caller hands over.
+Full power for a small negative error.
 
-Told where a negative number becomes unsigned: in an object or a parameter that is limited above (what is more than the
-limit becomes the limit); by a cast, if the result is widened and multiplied, divided, or becomes a float. Silent are
-additions and subtractions, which come out right, masks and shifts, a factor above 65535, and a number that is limited
-by being refused (`if (x >= N) return;` refuses negative ones too).
+In `Uint16 duty = error * KP; if (duty > FULL) duty = FULL;` an error of -1 becomes 65535, and the limit makes `FULL`
+of it. `(int32) SWING * (Uint16) position` multiplies by 65535. An unsigned parameter has the same effect on the
+caller's argument.
 
-**Fix:** limit below 0 first, and compute in a signed type that is wide enough.
+The finding is made where a negative number becomes unsigned, if the object or parameter is limited above, or if a cast
+makes it unsigned and the result is then widened and multiplied, divided, or converted to float.
+
+These are not reported: additions and subtractions, which give the right result; masks and shifts; a factor above
+65535; a test that rejects the number (`if (x >= N) return;`), because it rejects negative ones too.
+
+**Fix:** limit to 0 first, and compute in a signed type that is wide enough.
 """,
         "ISO C 6.3.1.3 p2",
     ),
@@ -158,14 +173,16 @@ by being refused (`if (x >= N) return;` refuses negative ones too).
         Severity.WARNING,
         "The code assumes that a character has eight bits.",
         """
-`char`, `signed char` and `unsigned char` have 16 bits here. A cast to `unsigned char` does not cut, a checksum does
-not wrap at 256, CRC-8 shifts its bits out of the octet and keeps them, `~b` sets the upper eight bits, 0xF6 in a
-`signed char` is 246 and not -10, `sizeof x * 8` is half of the bits.
+A checksum, a CRC or a byte from a sensor has a wrong value.
 
-On every host it is right, which is why such drivers arrive tested. The finding shows what eight bits would have
-given. A counter that is stepped by a constant and held against a limit is not reported: to it 16 bits are welcome.
+`char`, `signed char` and `unsigned char` have 16 bits here. So a cast to `unsigned char` cuts nothing. A checksum does
+not wrap at 256. CRC-8 keeps the bits that it shifts out of the byte. `~b` sets the upper eight bits. 0xF6 in a
+`signed char` is 246 and not -10. `sizeof x * 8` is half of the number of bits.
 
-**Fix:** mask with `& 0xFF`; extend the sign by hand (`if (t > 127) t -= 256;`).
+On a PC all of this is right, so such drivers pass their tests there. The finding shows what eight bits would have
+given. A counter that is incremented by a constant and compared with a limit is not reported: 16 bits do it no harm.
+
+**Fix:** mask with `& 0xFF`; extend the sign yourself (`if (t > 127) t -= 256;`).
 """,
         "CC table 6-1",
         how="dynamic/static",
@@ -175,10 +192,13 @@ given. A counter that is stepped by a constant and held against a limit is not r
         Severity.ERROR,
         "A float outside the range of the integer type was converted.",
         """
-C leaves the result undefined. What this chip gives depends on the library (`--float-to-int` chooses between
-saturation and the low bits); NaN gives some number, too. A duty cycle or a register is then set to it.
+A duty cycle or a register jumps to an extreme value.
 
-**Fix:** limit the float before the conversion. Look for the place where it left its range: `hil explain nan`.
+The program converts a float that is outside the range of the integer type. C does not define the result; on this chip
+it depends on the run-time library. The emulator saturates (`float_to_int="low16"` in Python gives the low bits
+instead). NaN gives some number, too.
+
+**Fix:** limit the float before the conversion. Find the place where the value left its range: `hil explain nan`.
 """,
         "ISO C 6.3.1.4 p1",
     ),
@@ -187,11 +207,14 @@ saturation and the low bits); NaN gives some number, too. A duty cycle or a regi
         Severity.WARNING,
         "A float argument lost much of its value when it was converted to an integer.",
         """
-The prototype wants an integer, and C cuts the fraction in silence: 2.9 volts become the code 2. The finding is made at
-the end of a run, and only where the greatest value lay between 1 and 10 and lost a tenth of itself: a float that was
-scaled to what the function takes is not reported, nor is one to which a half was added to round it.
+A function works with 2 where the program computed 2.9.
 
-**Fix:** scale it to the unit that the function takes; a cast if the whole part is meant.
+The parameter is an integer, and C drops the fraction of the argument without a message: 2.9 volts become the code 2.
+
+The finding is made at the end of a run, if the largest value was between 1 and 10 and lost at least a tenth of itself.
+A float that was scaled to the unit of the function is not reported, nor is one that is rounded by adding 0.5.
+
+**Fix:** scale the value to the unit of the function; write a cast if you want the whole part.
 """,
         "ISO C 6.5.2.2 p7, 6.3.1.4 p1",
     ),
@@ -200,10 +223,10 @@ scaled to what the function takes is not reported, nor is one to which a half wa
         Severity.WARNING,
         "An integer function takes the magnitude of a float.",
         """
-`abs` and `labs` take integers: -0.75 becomes 0 before they see it, and 40000.0 does not fit an `int` of 16 bits. C
-converts in silence, because the prototype says so.
+The magnitude of a float is 0, or a whole number.
 
-A cast says that the whole part is meant, and is not reported.
+`abs` and `labs` take integers. C converts the argument first, because the prototype says so: -0.75 becomes 0, and
+40000.0 does not fit a 16-bit `int`. A cast says that you want the whole part, and is not reported.
 
 **Fix:** `fabsf(x)`, or `fabs(x)`.
 """,
@@ -215,12 +238,15 @@ A cast says that the whole part is meant, and is not reported.
         Severity.ERROR,
         "A number was divided by zero.",
         """
-An integer division by zero does not trap here: the result is made of ones (so does the loop of the library leave it).
-A float division gives infinity, or NaN for 0/0; with the chip's own divider (`--divide nr`) the seed decides.
+A result is -1, 65535, infinity or NaN.
 
-A host stops the program for integers, so the case was never met there if it never happened there.
+An integer division by zero does not trap on this chip. The emulator gives all ones, as the loop of the library does; a
+remainder is the dividend. A float division gives infinity, or NaN for 0/0. With the divider of the chip
+(`hil run --divide nr`) the seed of the iteration decides.
 
-**Fix:** test the divisor; for a measured period, decide what "none yet" means.
+On a PC an integer division by zero ends the program at once. Here the program continues with the wrong number.
+
+**Fix:** test the divisor. For a measured period, decide what the program does before the first measurement.
 """,
         "ISO C 6.5.5 p5",
     ),
@@ -229,9 +255,13 @@ A host stops the program for integers, so the case was never met there if it nev
         Severity.ERROR,
         "A shift count is negative, or as large as the width of the type.",
         """
-`1 << 20` is a shift of a 16-bit `int`: undefined, and 0 at best. On a host it is 1048576.
+A shift gives another result than on a PC.
 
-**Fix:** shift an `unsigned long`: `1UL << n`; check the count.
+The shift count must be at least 0 and smaller than the width of the type. `1 << 20` shifts a 16-bit `int`, and C does
+not define the result; on a PC it is 1048576. The emulator gives 0. The shift instructions of the chip use only the
+lowest bits of the count.
+
+**Fix:** shift an `unsigned long`: `1UL << n`; test the count.
 """,
         "ISO C 6.5.7 p3",
     ),
@@ -240,11 +270,14 @@ A host stops the program for integers, so the case was never met there if it nev
         Severity.WARNING,
         "An operation on finite numbers gave a NaN or an infinity.",
         """
-The place of birth: a product beyond 3.4e38, a square root of a negative number. From here on it spreads through
-every sum, and no comparison with NaN is true. Floats are watched in an image that is linked with `watch`;
-`math.h` is watched always, and a division by zero has a rule of its own.
+A product above 3.4e38, or the square root of a negative number, gives an infinity or a NaN. From here on it spreads
+through every sum, and every comparison with NaN is false (`!=` is true).
 
-**Fix:** limit the operands; look at the first value in the finding.
+The finding is at the first operation that makes it from finite numbers. `hil check` watches all float operations of
+driver files; an image that you link in Python needs `watch=True`. The functions of `math.h` are always watched. A
+division by zero has its own rule.
+
+**Fix:** limit the operands; the finding shows their values.
 """,
         "IEEE 754 7.2, 7.4",
     ),
@@ -253,10 +286,13 @@ every sum, and no comparison with NaN is true. Floats are watched in an image th
         Severity.ERROR,
         "A NaN or an infinity reached a shared object or left the firmware.",
         """
-It arrived in a file-scope object or in an argument of a library or kernel function (a text that is sent, a sine). The
-first arrival at each place is reported. An integrator that has taken up a NaN never gets rid of it.
+A NaN or an infinity is stored in a file-scope object, or passed to a function of the library or the kernel (a text to
+send, a sine). Other parts of the program now work with it. An integrator that has added a NaN keeps it for ever.
 
-**Fix:** follow the value back: `nan`, `division-by-zero`, or an object that was never written (`--fill nan`).
+The first arrival at each place is reported.
+
+**Fix:** follow the value back to its origin: see `nan`, `division-by-zero`, or an object that was never written
+(`--fill nan`).
 """,
         "IEEE 754 6.2",
     ),

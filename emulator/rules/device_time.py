@@ -15,23 +15,27 @@ RULES: Final[tuple[Rule, ...]] = (
         Severity.WARNING,
         "A driver read one sample several times as if each read were new.",
         """
-A sensor gives a new value at its own rate. Reads between two samples give the same number again: a mean of fifty
-reads has the noise of one, a median of twelve is no median, a difference is zero and then twice too large.
+A mean of fifty readings is as noisy as one reading. A median of twelve does not filter. A difference is 0 and then
+twice too large.
 
-The place is the innermost call that made both reads: the loop or the task, not the transfer function.
+A sensor produces a new value at its own rate. If the driver reads more often, it gets the same sample again. The
+finding is at the innermost call that made both reads: the loop or the task, not the transfer function.
 
-When it is reported:
+Reported for the gyro:
 
-* gyro: three reads or more of one sample of an axis in a row, the first two within a quarter of a sample period ("50
-  reads gave 1 sample"); or, over 20 reads, more than a fifth of repeats that come within a quarter of a period of the
-  read before. A driver that runs at the data rate may take a sample twice now and then, because two clocks are never
-  equal: that is silent. So is one that waits for `STATUS_REG.ZYXDA` or DRDY.
-* sonar: three readings of the analog output, 1 ms or more apart, within one 49 ms cycle of the sensor, of one held
-  range. A burst of conversions counts as one reading: a mean of it takes out the converter's noise, no more. In a
-  ring of three sensors a range is held for 147 ms.
+* three or more reads of one sample of an axis in a row, the first two within a quarter of a sample period ("50 reads
+  gave 1 sample"); four or more if they are further apart;
+* in 20 reads, more than a fifth repeated samples, each within a quarter of a period of the read before.
 
-**Fix:** look at data ready, or read at the data rate (ODR, sensor cycle) and no faster; take as many *samples* as
-the filter needs.
+A driver that runs at the data rate may read a sample twice now and then, because two clocks are never equal. That is
+not reported. Neither is a driver that waits for `STATUS_REG.ZYXDA` or DRDY.
+
+Reported for the sonar: three readings of the analog output, 1 ms or more apart, of one range within one cycle of the
+sensor (49 ms). A burst of conversions counts as one reading, because its mean only reduces the noise of the ADC. In a
+ring of three sensors, a sensor holds a range for 147 ms.
+
+**Fix:** test the data-ready flag, or read at the data rate (ODR, sensor cycle) and no faster. Count *samples*, not
+reads.
 """,
         "L3G, STATUS_REG and output data rate; EZ, timing description",
     ),
@@ -40,11 +44,13 @@ the filter needs.
         Severity.WARNING,
         "A device is polled faster than its data rate.",
         """
-More than a fifth of 20 reads gave a sample that had been read before, spread over the period: the task is faster than
-the sensor. The finding gives both rates. Nothing new is learnt by it: bus and CPU time go, an integral over the reads
-counts each sample several times, and a filter has another cut-off than was meant.
+An integral counts some samples twice, a filter has another cut-off frequency than designed, and the reads waste bus
+and CPU time.
 
-**Fix:** set the output data rate above the task's, or release the task by data ready.
+The task is faster than the sensor: more than a fifth of 20 reads gave a sample that had already been read, and these
+reads are spread over the sample period. The finding gives both rates.
+
+**Fix:** set the output data rate above the rate of the task, or let data ready release the task.
 """,
         "L3G, output data rate (CTRL_REG1.DR)",
     ),
@@ -53,14 +59,13 @@ counts each sample several times, and a filter has another cut-off than was mean
         Severity.WARNING,
         "A device was read before its start-up was over.",
         """
-Before its first sample a part gives zeros, and while it settles, values that can be far off. The gyro: before the
-first sample, and for samples taken within 250 ms of leaving power-down (the sheet gives no figure; drivers of the
-part wait 300 ms). The sonar: until its first range has settled, that is about 350 ms after power-up, and in a ring
-later still for each sensor behind the first.
+The first values are zeros or far off, and an average over them stays as an offset in every later value.
 
-An offset that is averaged over such reads stays in every later value.
+The part was read before its start-up was over. For the gyro that is before the first sample, and for samples taken
+within 250 ms after power-down. (The data sheet gives no figure; drivers of the part wait 300 ms.) For the sonar it is
+until its first range has settled: about 350 ms after power-up, and later for each further sensor of a ring.
 
-**Fix:** wait once after start-up, or throw the first samples away.
+**Fix:** wait once after start-up, or discard the first samples.
 """,
         "L3G, operating modes; EZ, timing description",
     ),
@@ -69,13 +74,14 @@ An offset that is averaged over such reads stays in every later value.
         Severity.NOTE,
         "The analog output of a sonar was converted while it was changing.",
         """
-Between echo and 44.3 ms of its cycle the sensor moves its analog output to the new range. A conversion in between
-gives a distance that was never measured: from 21 to 255 inches it passes through all of them. Reported when the
-voltage is more than 2 inches from the range before and from the range to come, once a move.
+Now and then the sonar gives a distance that it never measured.
 
-A driver that reads at any time cannot avoid it, and needs a filter that throws a lone value away.
+Between the echo and 44.3 ms of its cycle, the sensor moves its analog output from the old to the new range. A
+conversion in between gives a value on the way: from 21 to 255 inches it passes through all distances. The finding is
+made if the voltage is more than 2 inches from the old and from the new range, once for each move. A driver that reads
+at arbitrary times cannot avoid it. It needs a filter that discards single outliers.
 
-**Fix:** read in the last 4.7 ms of the cycle (start the sensors yourself and wait 45 ms), or take the pulse width.
+**Fix:** read in the last 4.7 ms of the cycle (start the sensors yourself and wait 45 ms), or measure the pulse width.
 """,
         "EZ, timing description",
     ),
@@ -84,8 +90,10 @@ A driver that reads at any time cannot avoid it, and needs a filter that throws 
         Severity.ERROR,
         "The two bytes of one value were read from different samples.",
         """
-With `CTRL_REG4.BDU = 0` the outputs change at any time, also between low and high byte. Near a change of the high
-byte the value jumps by 256 digits: +3 and -2 give -253 or 258. It happens seldom, and never on the desk.
+Rarely, and seldom on the desk, a rate jumps by 256 digits.
+
+With `CTRL_REG4.BDU = 0` the gyro may update its outputs between the read of the low byte and the read of the high
+byte. When the high byte changes, the value is wrong by 256: +3 and -2 give -253 or 254.
 
 **Fix:** set `BDU` before the first read, and read both bytes of every axis that you start to read.
 """,
@@ -96,10 +104,11 @@ byte the value jumps by 256 digits: +3 and -2 give -253 or 258. It happens seldo
         Severity.NOTE,
         "The FIFO of the gyro is enabled but in bypass mode.",
         """
-`CTRL_REG5.FIFO_EN = 1` with `FIFO_CTRL_REG.FM = 000`: bypass is the mode in which the FIFO stays empty. The outputs
-give the newest sample only, as without `FIFO_EN`.
+The FIFO of the gyro stays empty, and the outputs give only the newest sample.
 
-**Fix:** choose a mode (FIFO, stream) and read by level, or leave `FIFO_EN` off.
+`CTRL_REG5.FIFO_EN` is 1, but `FIFO_CTRL_REG.FM` is 000: in bypass mode the FIFO stores nothing.
+
+**Fix:** select a mode (FIFO, stream) and read by level, or leave `FIFO_EN` off.
 """,
         "L3G, FIFO: bypass mode",
     ),

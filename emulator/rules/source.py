@@ -15,11 +15,13 @@ RULES: Final[tuple[Rule, ...]] = (
         Severity.WARNING,
         "One expression changes an object and uses it again, in no defined order.",
         """
-In `v[i] = i++` the subscript may be read before or after the step: a compiler may take either, and another level of
-optimisation may take the other. C calls it undefined. The emulator goes from left to right.
+The result depends on the compiler and on the optimisation level.
 
-`&&`, `||`, `?:` and the comma have an order, and so have the arguments of a call against the call itself: nothing is
-reported there.
+In `v[i] = i++` the compiler may read the subscript before or after the increment. C calls the result undefined. The
+emulator evaluates from left to right.
+
+`&&`, `||`, `?:` and the comma operator define an order, and C evaluates the arguments of a call before the call. There
+nothing is reported.
 
 **Fix:** two statements.
 """,
@@ -30,12 +32,14 @@ reported there.
         Severity.WARNING,
         "A statement computes a value that is not used.",
         """
-`state == IDLE;` compares, and changes nothing: one `=` was meant. So do `a + b;` and `i + 1` as the step of a loop.
+The statement changes nothing.
 
-Not reported: what is cast to `void`, `ready && start();`, which calls, and an operation other than a comparison that
-reads a register, because the read may be what is wanted.
+`state == IDLE;` compares; you probably wanted `=`. `a + b;` and `i + 1` as the step of a loop have no effect, either.
 
-**Fix:** the assignment that was meant, or take the statement away.
+These are not reported: an expression that is cast to `void`; `ready && start();`, because it calls; an operation other
+than a comparison that reads a register, because you may want the read.
+
+**Fix:** write the assignment that you mean, or remove the statement.
 """,
         "ISO C 6.8.3; CERT MSC12-C",
     ),
@@ -44,13 +48,15 @@ reads a register, because the read may be what is wanted.
         Severity.WARNING,
         "A condition assigns where it should compare.",
         """
-`if (mode = FAST)` sets the mode, and the branch is always taken, because FAST is not 0. A constant is reported in every
-condition. Another value is reported in an `if` whose branches do not look at what was assigned.
+The branch is always taken, and the program changes the object that it should test.
+
+`if (mode = FAST)` sets the mode. The condition is true because FAST is not 0. The assignment of a constant is reported
+in every condition. The assignment of another value is reported in an `if` whose branches do not use what was assigned.
 
 `while ((c = next()) != 0)`, `while (*to++ = *from++)`, `if ((p = find()))` and `if (p = find()) use(p);` are not
 reported.
 
-**Fix:** `==`; parentheses around the assignment if it is meant.
+**Fix:** `==`; or parentheses around the assignment if you want it.
 """,
         "ISO C 6.5.16; CERT EXP45-C",
     ),
@@ -59,12 +65,14 @@ reported.
         Severity.WARNING,
         "A function is called without a declaration.",
         """
-C89 then takes it for a function that returns `int`, and passes each argument as it is. On this chip an `int` has one
-word: `memcpy(to, from, 4 * n)` hands over a size of one word where `memcpy` takes two, and of a pointer or a `float`
-that a function returns only one word arrives. The finding names the arguments whose widths differ. The emulator calls
-the function as its definition says.
+The function gets wrong arguments, or its result is wrong.
 
-**Fix:** include the header that declares it.
+Without a declaration, C89 assumes a function that returns `int`, and passes each argument with its own type. An `int`
+has one word here. So `memcpy(to, from, 4 * n)` passes a length of one word where `memcpy` takes two words. If the
+function returns a pointer or a `float`, only one word of it arrives. The finding names the arguments whose widths
+differ. The emulator calls the function as its definition says.
+
+**Fix:** include the header that declares the function.
 """,
         "ISO C 6.5.2.2 (C99 removed it); CERT DCL31-C",
     ),
@@ -73,10 +81,12 @@ the function as its definition says.
         Severity.WARNING,
         "A declaration differs from the definition in another file.",
         """
-The compiler believes the declaration that it sees, and the linker compares names alone: arguments are passed in the
-wrong registers, and a result is read from the wrong one. The emulator takes the definition.
+The function gets its arguments from the wrong registers, or the caller takes the result from the wrong one.
 
-**Fix:** one header, included where the name is used and where it is defined.
+The compiler uses the declaration that it sees. The linker compares only the names, so it does not notice that the
+definition in the other file differs. The emulator uses the definition.
+
+**Fix:** one header. Include it where the name is used and where it is defined.
 """,
         "ISO C 6.2.7 p2; CERT DCL40-C",
     ),
@@ -85,10 +95,13 @@ wrong registers, and a result is read from the wrong one. The emulator takes the
         Severity.WARNING,
         "A pointer of another type, or a number, is used where a pointer is expected.",
         """
-C wants a cast there; this chip's compiler warns and goes on. Sizes of the two targets may differ: a `float *` that
-reads through an `int *` reads half a number.
+The program reads half a number, or a number of the wrong type.
 
-**Fix:** the right type; a cast where it is meant.
+A pointer of one type is used as a pointer of another type, or a number as a pointer. C requires a cast there; the
+compiler of this chip only warns. The sizes of the two target types may differ: through an `int *` you read half of a
+`float`.
+
+**Fix:** use the right type; write a cast if you want the conversion.
 """,
         "ISO C 6.5.16.1 p1",
     ),
@@ -97,10 +110,11 @@ reads through an `int *` reads half a number.
         Severity.NOTE,
         "The preprocessor accepted something that others may refuse, or met a #warning.",
         """
-A macro that is defined a second time with another text, two tokens that `##` does not make into one, a `#line`, a
-`#warning`: the program is translated as the chip's compiler would, and the message says what was done.
+The preprocessor accepted a construct that other compilers may reject: a macro that is defined again with another text,
+two tokens that `##` does not join to one token, or a `#line`. Or the program contains a `#warning`. The emulator
+translates the program as the chip's compiler does, and the message says how.
 
-**Fix:** `#undef` before a second definition; the header that defines it, once.
+**Fix:** `#undef` before a second definition, or one header that defines the macro once.
 """,
         "ISO C 6.10.3 p2, 6.10.3.3",
     ),
@@ -109,11 +123,11 @@ A macro that is defined a second time with another text, two tokens that `##` do
         Severity.NOTE,
         "A pragma places code or data. Placement is not modelled.",
         """
-`CODE_SECTION`, `DATA_SECTION` and their kin tell the linker where something lies: in fast RAM, in memory that the CLA
-or the DMA reaches. The emulator has one kind of RAM, and code costs the same wherever it lies. Nothing else of the
-program changes.
+`CODE_SECTION`, `DATA_SECTION` and similar pragmas tell the linker where to place code or data: in fast RAM, or in
+memory that the CLA or the DMA reaches. The emulator has one kind of RAM, and code takes the same time wherever it is.
+Everything else in the program works as on the chip.
 
-**Fix:** nothing.
+**Fix:** nothing to do.
 """,
         "SPRU514, pragma directives",
     ),
@@ -122,10 +136,11 @@ program changes.
         Severity.NOTE,
         "Assembler outside of functions is ignored.",
         """
-At file scope `asm("...")` holds directives: sections, symbols, alignment. They act on the linker, which is not
-modelled. Assembler within a function is modelled for single instructions without operands, and refused otherwise.
+At file scope, `asm("...")` contains directives for sections, symbols and alignment. They act on the linker, which the
+emulator does not model. Within a function, the emulator models single instructions without operands and rejects all
+others.
 
-**Fix:** nothing, unless the program needs the symbol that it defines.
+**Fix:** nothing to do, unless the program needs the symbol that the directive defines.
 """,
         "SPRU514, the asm statement",
     ),

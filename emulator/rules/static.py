@@ -15,12 +15,16 @@ RULES: Final[tuple[Rule, ...]] = (
         Severity.WARNING,
         "A local may be read before it is written.",
         """
-The finding says "is read" when no way at all writes it before, "can be read" when some ways do. Flags that guard a
-value, loops that turn at least once and switches with every constant of their enumeration are understood.
+A local can hold what an earlier call left on the stack.
 
-The dynamic rule `uninitialised` proves it when the way is taken; this one names it before.
+The finding says "is read" if no path writes the local before this read, and "can be read" if some paths do not. The
+check understands flags that guard a value, loops that run at least once, and switches with a case for every constant
+of the enumeration.
 
-**Fix:** a start value at the declaration, or an `else`.
+The dynamic rule `uninitialised` reports the same defect when the program takes the path. This rule reports it before
+the program runs.
+
+**Fix:** an initial value at the declaration, or an `else`.
 """,
         "ISO C 6.7.8 p10",
     ),
@@ -29,10 +33,12 @@ The dynamic rule `uninitialised` proves it when the way is taken; this one names
         Severity.WARNING,
         "A function can end without returning a value.",
         """
-The caller gets whatever the register held that a value would have been in: on this chip AL, ACC or R0H, so often a
-remnant of the last computation that looks right.
+The caller gets a random value that often looks right.
 
-**Fix:** a `return` at the end, for the case that "cannot happen" too.
+The function ends without `return`. The caller then takes what is in the result register (AL, ACC or R0H), usually a
+part of the last computation.
+
+**Fix:** a `return` at the end, also for the case that "cannot happen".
 """,
         "ISO C 6.9.1 p12",
     ),
@@ -41,10 +47,10 @@ remnant of the last computation that looks right.
         Severity.WARNING,
         "A switch without default leaves a variable without a value.",
         """
-Every case writes the variable, no default does, and it is read behind the switch. A mode that comes over a serial
-line has any of 65536 values.
+A variable has no value if the switch gets an unexpected number.
 
-A switch that names every constant of one enumeration is taken as complete.
+Every case writes the variable, there is no default, and the variable is read after the switch. A mode that comes over
+a serial line can have any of 65536 values. A switch that names every constant of one enumeration counts as complete.
 
 **Fix:** a `default` with a safe value.
 """,
@@ -55,17 +61,18 @@ A switch that names every constant of one enumeration is taken as complete.
         Severity.WARNING,
         "A value is computed and never used.",
         """
-Nothing reads the variable before it is written again or the function ends. Often the result of a filter that is
-thrown away, a state kept in a local that should have been a file-scope object, or a parameter that was meant to be a
-pointer.
+The program computes a value, and the value has no effect.
 
-Constants, steps like `p++`, and reads of registers or kernel functions (made for their effect) are not reported; a
-constant that limits the variable is (`if (x > 300) x = 300;`, and nobody looks at `x`).
+Nothing reads the variable before it is written again or before the function ends. Typical: the result of a filter that
+is discarded; a state in a local that should be a file-scope object; a parameter that should be a pointer.
 
-Of an object of the file, too: it is set and set again, with nothing between that could look at it. Of a structure or an
-array that is a local, or a copy that was passed: nothing reads any part of it behind the last store.
+The check also reports a file-scope object that is set twice when nothing in between can read it, and a local structure
+or array (or one that was passed by value) of which no part is read after the last store.
 
-**Fix:** use the value, or take the statement away.
+Constants, steps such as `p++`, and reads of registers or calls of kernel functions (made for their effect) are not
+reported. A constant that limits the variable is reported (`if (x > 300) x = 300;` when nothing reads `x`).
+
+**Fix:** use the value, or remove the statement.
 """,
         "ISO C 6.5.16; CERT MSC13-C",
     ),
@@ -74,8 +81,10 @@ array that is a local, or a copy that was passed: nothing reads any part of it b
         Severity.WARNING,
         "A case falls through, and the next case overwrites what it set.",
         """
-`case SLOW: speed = 100; case FAST: speed = 400; break;`: a `break` is missing, and SLOW is as fast as FAST. The finding
-is made only where the next case sets the same object, member or field before anybody can have seen the first value.
+Two cases of a switch do the same, although they set different values.
+
+In `case SLOW: speed = 100; case FAST: speed = 400; break;` a `break` is missing, so SLOW is as fast as FAST. The
+finding is made only if the next case sets the same object, member or field before anything can read the first value.
 Cases that fall through and add to each other are not reported.
 
 **Fix:** `break`.
@@ -87,11 +96,10 @@ Cases that fall through and add to each other are not reported.
         Severity.ERROR,
         "A difference is taken of an object and its own copy.",
         """
-`last = now; speed = now - last;` stores before it subtracts: the speed is always 0, and no value of the sensor changes
-that. A quotient of the two is always 1.
+A speed or another difference is always 0, whatever the sensor measures.
 
-Found in the text, where nothing between the copy and the difference can have changed one of them. Volatile objects are
-silent.
+`last = now; speed = now - last;` stores before it subtracts. A quotient of the two is always 1. The check reports it
+if nothing between the copy and the difference can change one of the two. Volatile objects are not reported.
 
 **Fix:** subtract first, then store.
 """,
@@ -102,18 +110,20 @@ silent.
         Severity.WARNING,
         "A condition is always true or always false.",
         """
-`25 < df < 90` compares 0 or 1 with 90; an unsigned number is never below 0; a 16-bit `int` is never above 40000; a
-field of four bits is never 16; `mode != 1 || mode != 2` is true for every mode; a local that begins at 0 and is only
-counted up is never below 0; a loop of ten turns counts no more than 10 of anything; behind a loop that nothing leaves
-its counter is what ended it. The finding gives the range that decides.
+A branch is never taken, or a loop never ends, because its condition always has the same result. The finding gives the
+range of values that decides. Examples:
 
-`while (n-- > 0)` counts once more when it ends: `n` is -1 then, or 65535, and never the 0 that says "no more tries".
+* `25 < df < 90` compares 0 or 1 with 90;
+* an unsigned number is never below 0, a 16-bit `int` is never above 40000, a field of four bits is never 16;
+* `mode != 1 || mode != 2` is true for every mode;
+* a local that starts at 0 and only counts up is never below 0; a loop with ten passes counts no more than 10;
+* after a loop, its counter has the value that ended the loop: `while (n-- > 0)` decrements once more when it ends, so
+  `n` is then -1 (or 65535) and never 0;
+* a pointer that was already used is not NULL: the test comes too late, or it should test another pointer.
 
-A pointer that has been gone through is not NULL any more: the test comes too late, or belongs to another pointer.
+`while (1)` and conditions of constants only (build switches) are not reported.
 
-`while (1)` and conditions made of constants only (switches of the build) are not reported.
-
-**Fix:** write what was meant; check the type of the variable against the constant.
+**Fix:** write the condition that you mean; check the type of the variable against the constant.
 """,
         "ISO C 6.5.8 with the widths of CC table 6-1",
     ),
@@ -122,9 +132,10 @@ A pointer that has been gone through is not NULL any more: the test comes too la
         Severity.WARNING,
         "This statement can never run.",
         """
-It stands behind a `return`, a `break` or a loop without end, or it is a case that another one takes first.
+The statement follows a `return`, a `break` or an endless loop, or it is a `case` whose value an earlier case already
+has. A lone `return` at the end of `main` is not reported.
 
-**Fix:** move it before, or take it away. A lone `return` at the end of `main` is not reported.
+**Fix:** move the statement to a place that runs, or remove it.
 """,
         "ISO C 6.8; CERT MSC12-C",
     ),
@@ -133,10 +144,12 @@ It stands behind a `return`, a `break` or a loop without end, or it is a case th
         Severity.NOTE,
         "A function is never called, and its address is never taken.",
         """
-Harmless where it belongs to a library; telling where it is an initialisation or a step that somebody forgot. Reported
-only for an image that begins at `main`, or whose entries are known.
+No statement calls the function, and none takes its address. In a library that is harmless. If it is an initialisation
+or a step of the program, somebody forgot the call.
 
-**Fix:** call it, or leave it out of the image.
+It is reported only for an image that begins at `main`, or whose entry functions are known.
+
+**Fix:** call the function, or remove it from the image.
 """,
     ),
     _rule(
@@ -144,10 +157,12 @@ only for an image that begins at `main`, or whose entries are known.
         Severity.NOTE,
         "A parameter is not used.",
         """
-A limit or a timeout that the function takes and ignores. Functions that are called through a pointer (tasks,
-interrupt services, callbacks) have the parameters that the caller passes, and are not reported.
+The function ignores an argument, for example a limit or a time-out. The caller believes that it has an effect.
 
-**Fix:** use it, or change the prototype.
+Functions that are called through a pointer (tasks, interrupt routines, callbacks) must have the parameters that the
+caller passes. They are not reported.
+
+**Fix:** use the parameter, or remove it from the prototype.
 """,
     ),
     _rule(
@@ -155,10 +170,10 @@ interrupt services, callbacks) have the parameters that the caller passes, and a
         Severity.NOTE,
         "An object is declared but never used.",
         """
-It takes memory. Often it is the twin of an object that is used under another name, for instance the wheel speed that
-was meant to be controlled.
+The object takes memory and nothing uses it. Often it is a second object for a value that is used under another name,
+for instance the wheel speed that should have been controlled.
 
-**Fix:** take it away, or use it.
+**Fix:** remove the object, or use it.
 """,
     ),
     _rule(
@@ -166,10 +181,11 @@ was meant to be controlled.
         Severity.NOTE,
         "A local or a parameter hides a file-scope object.",
         """
-Within the function the name means the local. An assignment that was meant for the shared object is lost at the
-return.
+An assignment to a shared object is lost when the function returns.
 
-**Fix:** give one of them another name.
+A local or a parameter has the name of a file-scope object. Within the function the name means the local one.
+
+**Fix:** rename one of them.
 """,
         "ISO C 6.2.1 p4",
     ),
@@ -178,12 +194,12 @@ return.
         Severity.WARNING,
         "A constant does not fit the type of the object.",
         """
-`int k = 0.75;` is 0; `int limit = 50000;` is -15536, because `int` has 16 bits; a field of a register takes only its
-bits. A hexadecimal pattern of the same width and -1 are taken as meant.
+An object has another value than the constant in the source.
 
-On a host 50000 fits.
+`int k = 0.75;` is 0. `int limit = 50000;` is -15536, because `int` has 16 bits; on a PC 50000 fits. A field of a
+register stores only its bits. A hexadecimal constant of the same width, and -1, are bit patterns and not reported.
 
-**Fix:** a type that holds the constant, or a cast if the loss is meant.
+**Fix:** a type that holds the constant, or a cast if you want the loss.
 """,
         "ISO C 6.3.1.3, 6.3.1.4",
     ),
@@ -192,13 +208,13 @@ On a host 50000 fits.
         Severity.WARNING,
         "An object is assigned to itself.",
         """
-Nothing happens. Mostly one of the two names was meant to be another one: a member of the other structure, the parameter
-that is called like the object, the element beside it.
+The statement has no effect. Usually one of the two names should be another one: a member of the other structure, the
+parameter with a similar name, the next element.
 
-Not reported: parameters (`arg = arg;` says that it is not used, unless an object of the file has the same name),
-volatile objects, `*p = *p;`, and an object that the other branch of the `if` changes.
+These are not reported: parameters (`arg = arg;` says that it is not used, unless a file-scope object has the same
+name), volatile objects, `*p = *p;`, and an object that the other branch of the `if` changes.
 
-**Fix:** the name that was meant, or take the statement away.
+**Fix:** write the name that you mean, or remove the statement.
 """,
         "ISO C 6.5.16.1; CERT MSC12-C",
     ),
@@ -207,8 +223,10 @@ volatile objects, `*p = *p;`, and an object that the other branch of the `if` ch
         Severity.WARNING,
         "A division of integer constants loses its fraction.",
         """
-`1 / 2 * m * v * v` is 0: the division comes first and has integers. The finding is made when a remainder is lost and
-the quotient then becomes a float, and when the quotient of two constants is 0.
+A formula is always 0, or loses its fraction.
+
+`1 / 2 * m * v * v` is 0: C divides first, and both operands are integers. The finding is made if the division loses a
+remainder and the quotient then becomes a float, or if the quotient of two constants is 0.
 
 **Fix:** `1.0 / 2`, or `0.5`.
 """,
@@ -219,15 +237,17 @@ the quotient then becomes a float, and when the quotient of two constants is 0.
         Severity.WARNING,
         "A loop polls an object that another thread writes, and the object is not volatile.",
         """
-Nothing in the loop writes the object, and for C only this loop runs. So the compiler may read it once, before the
-loop, and the loop never sees what the interrupt or the other task writes. Without optimisation it works, with `-o2` it
-hangs; an `asm(" NOP")` in the loop changes nothing.
+The program works without optimisation and hangs with `-o2`.
 
-Reported only where the compiler is free to do it: not where the loop calls a function whose body it does not know, and
-not where it writes through a pointer. In files without a `main` every function that others can call counts as another
-thread.
+The loop does not write the object, and for C only this loop runs. So the compiler may read the object once, before the
+loop, and the loop never sees what the interrupt or the other task writes. An `asm(" NOP")` in the loop changes
+nothing.
 
-**Fix:** `volatile` at the object (`volatile[uint16]` in C-shaped Python), at each declaration of it; or wait on a
+The check reports a loop only if the compiler may do this. A loop that calls a function with an unknown body, or that
+writes through a pointer, is not reported. In files without a `main`, every function that others can call counts as
+another thread.
+
+**Fix:** `volatile` at every declaration of the object (`volatile[uint16]` in C-shaped Python), or wait for a
 semaphore.
 """,
         "ISO C 5.1.2.3 p3, 6.7.3 p6; CC, the volatile keyword",
@@ -237,8 +257,10 @@ semaphore.
         Severity.WARNING,
         "The result of a comparison is an operand of a bitwise operator.",
         """
-In C `flags & MASK == MASK` compares first: `MASK == MASK` is 1, so only bit 0 of the flags is tested. Two comparisons
-combined by `&` or `|` are fine and not reported.
+A test of several flags looks only at bit 0.
+
+In C, `flags & MASK == MASK` compares first: `MASK == MASK` is 1, so `flags & 1` is left. Two comparisons that are
+combined by `&` or `|` are not reported.
 
 **Fix:** parentheses around the mask: `(flags & MASK) == MASK`.
 """,
@@ -249,8 +271,10 @@ combined by `&` or `|` are fine and not reported.
         Severity.NOTE,
         "Floats are compared for equality.",
         """
-After a computation two floats are rarely equal to the last bit, and this chip's divider gives other last bits than a
-host's. A comparison with 0 (a guard before a division, a value not yet set) is not reported.
+A comparison of two floats is false although they should be equal.
+
+Rounding makes the last bits of two computed floats differ, and the divider of this chip rounds differently from that
+of a PC. A comparison with 0 (a guard before a division, a value that is not set yet) is not reported.
 
 **Fix:** compare the distance with a tolerance.
 """,
