@@ -15,15 +15,17 @@ RULES: Final[tuple[Rule, ...]] = (
         Severity.ERROR,
         "A loop never ends: nothing that it computes can end it.",
         """
-The loop calls nothing and reads no register, so only its own computation could end it, and it has run for a fifth of a
-second of the chip's time. Typical: a counter that is never stepped, an unsigned number that must become less than 0, a
-search for a mark that is not there. A call outside of any task ends with an error, because on the chip it would not
-return; a task continues. A `main` that is written as an endless loop continues too, while the tool lets its time pass:
-such a program works in its interrupts.
+The program stops in a loop, and no task of lower priority runs any more. Interrupts still run.
 
-Interrupts still run, tasks of lower priority do not.
+The loop calls nothing and reads no register, so only its own computation could end it. It has run for a fifth of a
+second of the chip's time. Typical: a counter that is never changed, an unsigned number that must become less than 0, a
+search for a value that is not there.
 
-**Fix:** bound the loop by a count as well. The finding is at the head of the loop.
+The finding is at the head of the loop. Outside a task the call then ends with an error, because on the chip it would
+not return. A task continues. A `main` with an empty endless loop also continues, because such a program works in its
+interrupts.
+
+**Fix:** limit the number of passes.
 """,
         "CERT MSC21-C",
     ),
@@ -32,14 +34,15 @@ Interrupts still run, tasks of lower priority do not.
         Severity.ERROR,
         "A state machine can never leave a state.",
         """
-A state is a case of a switch over an object, or an `if` that compares one with a constant. All its ways out hang on one
-other object, mostly a count of passes that are left, and whatever value that has, a pass through the state sets it anew
-or steps it so that the test for the way out never comes true. A rest after a trip, a warm-up, an open lock then last
-for ever, and nothing fails.
+A pause, a warm-up or an open lock lasts for ever, and nothing reports a fault.
 
-Found in the text of a whole program, which says every value that the object can be given: the values are followed from
-each of them, pass by pass, until one leaves the state or they come round again. Silent where a way out hangs on
-anything else: a register, a stamp, what another function counts.
+A state is a case of a switch over an object, or an `if` that compares the object with a constant. All exits of the
+state test one other object, usually a counter of the remaining passes. Each pass through the state sets that object
+again, or changes it so that no exit condition becomes true, whatever its value is.
+
+The check needs the source of a whole program, because it must know every value that the object can get. It follows the
+object from each of these values, pass by pass, until the state is left or a value repeats. If an exit tests anything
+else (a register, a time stamp, a count of another function), nothing is reported.
 
 **Fix:** set the object where the state is entered, and only count it in the state.
 """,
@@ -51,13 +54,16 @@ anything else: a register, a stamp, what another function counts.
         Severity.ERROR,
         "A test for equality never becomes true: the steps skip the value.",
         """
-A ramp by 6 from 125 never is 2250; a count that begins at 5 never is 3 before it has gone round. The loop or the state
-that waits for it goes on: the duty grows beyond its period, the tries never end.
+A loop or a state never ends, because it tests for a value that the steps skip.
 
-Found in the text of a whole program: the object is given nothing but constants and steps of one size in one direction,
-the test for equality is what ends the loop, or what chooses between a further step and its end.
+A ramp from 125 in steps of 6 is never 2250. A count that begins at 5 and goes up is never 3 before it wraps. The duty
+cycle then grows beyond its period, or the retries never end.
 
-**Fix:** compare for order (`duty < wanted`), and set the goal exactly when it is passed.
+The check needs the source of a whole program. It reports a loop or a state if the object gets only constants and steps
+of one size in one direction, and if the test for equality ends the loop, or decides between a further step and its
+end.
+
+**Fix:** compare by order (`duty < wanted`), and set the exact value when the limit is passed.
 """,
         "CERT MSC21-C",
         how="static",
@@ -67,12 +73,14 @@ the test for equality is what ends the loop, or what chooses between a further s
         Severity.ERROR,
         "The age of a time stamp is computed with its operands swapped.",
         """
-The counter was taken from the stamp, `(unsigned int) (last - now)`, though the stamp is a copy of the counter and so
-never later. At age 0 the difference is 0, one count later it is 65535: a time-out compared with it is over at once, a
-test for "young enough" fails for ever.
+A time-out is over at once, or a test for "young enough" is false for ever.
 
-Found in the text of a whole program: the counter is an object that only an interrupt routine counts up, and every value
-of the stamp is the counter's, or earlier by a constant. A stamp that lies ahead (`end = now + LIMIT`) is silent.
+`(unsigned int) (last - now)` subtracts the counter from the stamp. But the stamp is a copy of the counter, so it is
+never later. At age 0 the difference is 0; one count later it is 65535.
+
+The check needs the source of a whole program. The counter must be an object that only an interrupt routine increments,
+and every value of the stamp must be the counter, or the counter minus a constant. A stamp in the future
+(`end = now + LIMIT`) is not reported.
 
 **Fix:** `(unsigned int) (now - last)`.
 """,
@@ -84,18 +92,21 @@ of the stamp is the counter's, or earlier by a constant. A stamp that lies ahead
         Severity.WARNING,
         "A value reached a switch that has neither a case for it nor a default.",
         """
-Either it is no constant of the enumeration: a remainder by one too many, a number that came over a line and was cast. A
-number below the first constant and all ones (0xFF, 0xFFFF) are taken for "none" and are not reported, nor are
-enumerations of flags.
+For one value the switch does nothing, or keeps an old result.
 
-Or it is a constant that was forgotten. Many switches leave constants out and mean it, so this is reported only where
-the list of cases is meant to be complete: every case sets the same object, and one of them sets it even to the value
-that it has before the switch.
+There are two forms:
 
-The finding is made when such a value comes. An object that only the missing case leaves without a value is not reported
-besides.
+* The value is no constant of the enumeration: a remainder that is one too large, or a number that came over a line and
+  was cast. Numbers below the first constant, and all ones (0xFF, 0xFFFF), often mean "none" and are not reported.
+  Enumerations of flags are not reported.
+* The value is a constant of the enumeration without a case. Many switches leave constants out on purpose. So this is
+  reported only if the list of cases seems meant to be complete: every case sets the same object, and one case sets it
+  to the value that it has before the switch.
 
-**Fix:** the missing case; a `default` with a safe value.
+The finding is made when such a value comes. If the missing case leaves an object without a value, that is not reported
+a second time.
+
+**Fix:** add the missing case, or a `default` with a safe value.
 """,
         "ISO C 6.8.4.2; CERT MSC01-C",
     ),

@@ -45,10 +45,13 @@ Host tools see nothing: the host has none of these threads and locks.
     _rule(
         "unmasked-long", Severity.NOTE,
         "main and an interrupt routine share a 32-bit scalar, and the interrupt is not masked.", """
-The C28x moves an aligned 32-bit word by one instruction (MOVL, MOV32), so the value is whole as long as the compiler
-uses it. A copy by words of 16 bits, a `long` that is masked by halves, or a port to another processor is not.
+`main` and an interrupt routine share a 32-bit value, and `main` does not mask the interrupt while it uses it.
 
-**Fix:** `DINT;` before the access and `EINT;` after it, or a copy that is read twice until both are equal.
+The C28x moves an aligned 32-bit word with one instruction (MOVL, MOV32), so the value is whole if the compiler uses
+that instruction. A copy by 16-bit words, a mask of one half, or another processor makes two accesses of it, and then
+`main` can get half of an old and half of a new value.
+
+**Fix:** `DINT;` before the access and `EINT;` after it, or read the value twice until both are equal.
 """, "CPU 5: MOVL; ISO C 7.14.1.1",
     ),
     _rule(
@@ -122,10 +125,13 @@ returned, and the task then waits for something else, enters the gate again, or 
     ),
     _rule(
         "gate-key", Severity.ERROR, "A gate was left with a wrong key.", """
-Nesting lives in the key alone: 0 for the enter that took the gate, 1 for a nested one. `leave` with 1 does nothing,
-so the gate stays taken for ever; `leave` with 0 from the inner one frees it while the outer one still counts on it.
+A task waits for ever for a gate, or a second task enters a gate that is still in use.
 
-**Fix:** keep each key in a local of its own and give back that one, inner first.
+The gate stores nothing about nesting. The key does: `enter` returns 0 if it took the gate, and 1 if the task already
+had it. `leave` with key 1 does nothing, so the gate stays taken if the outer `leave` gets a 1. `leave` with key 0 in
+the inner function frees the gate while the outer function still needs it.
+
+**Fix:** keep each key in its own local, and leave with that key, the inner one first.
 """, "BIOS, GateMutexPri_leave",
     ),
     _rule(
@@ -196,14 +202,17 @@ or takes the address of the posting function: then anything could post it.
     ),
     _rule(
         "post-lost", Severity.WARNING, "A binary semaphore was posted again before it was taken: posts were lost.", """
-`Semaphore_Mode_BINARY` keeps one release. A loop that posts it once for each sample, frame or byte loses all but one,
-when nobody takes them in between: the task that does one thing for each pend then is short of the others for ever.
+A task handles one sample, frame or byte, and the others wait for ever.
 
-Told where one statement posts the semaphore several times in one call while it is still posted, and no task that pends
-on it has a loop behind the pend, which would take everything that has come. A Clock that posts a binary semaphore each
-period loses releases by design, and is silent.
+A semaphore in mode `Semaphore_Mode_BINARY` keeps one release. If a loop posts it once for each item and no task takes
+it in between, all posts but one are lost. The task that handles one item for each pend then stays behind by these
+items.
 
-**Fix:** a counting semaphore; or one post, and a loop in the task that goes on until the queue is empty.
+It is reported if one statement posts the semaphore several times in one call while it is still posted, and no task
+that pends on it has a loop behind the pend that would handle everything. A Clock that posts a binary semaphore in each
+period loses releases on purpose and is not reported.
+
+**Fix:** a counting semaphore; or one post, and a loop in the task that continues until the queue is empty.
 """, "BIOS, Semaphore, Mode BINARY",
     ),
     _rule(
@@ -229,12 +238,14 @@ calls that for it, its function never runs, and neither does what the function w
     ),
     _rule(
         "blocking-in-interrupt", Severity.ERROR, "A Swi or Hwi called a blocking function.", """
-Clock functions are Swis. A Swi or Hwi has no task that could be put aside, so `Semaphore_pend` with a timeout (even
-if the count is not 0), `Event_pend`, `Mailbox_pend` and `Mailbox_post` with one, `GateMutexPri_enter`,
-`GateMutex_enter` and `Task_sleep` are not allowed there: the assertion ends the program, and with assertions off the
-wait happens to whatever task was interrupted.
+A Swi or Hwi calls a function that may wait. The kernel asserts and the program ends. With assertions off, the task
+that happened to be interrupted waits instead.
 
-**Fix:** post a semaphore and let a task wait; `Semaphore_pend(sem, BIOS_NO_WAIT)` may be called anywhere.
+A Swi or Hwi is not a task, so the kernel cannot suspend it. Clock functions are Swis. These calls are not allowed
+there: `Semaphore_pend` with a time-out (even if the count is not 0), `Event_pend`, `Mailbox_pend` and `Mailbox_post`
+with a time-out, `GateMutexPri_enter`, `GateMutex_enter`, `Task_sleep`.
+
+**Fix:** post a semaphore and let a task wait. `Semaphore_pend(sem, BIOS_NO_WAIT)` is allowed everywhere.
 """, "BIOS, Semaphore_A_badContext, GateMutexPri_A_badContext",
     ),
     _rule(
@@ -342,15 +353,17 @@ NULL; a message that the sender frees while the receiver still reads it.
         Severity.ERROR,
         "A free does not match an allocation of the heap.",
         """
-The block was given back before, came from another heap, was never allocated, or the pointer does not lead to its
-beginning. `Memory_free` is told a size too, in words, and the heap believes it: with a smaller one the rest is lost,
-with a larger one the heap gives somebody words that are still in use. Sizes that round to the same number of headers
-are the same to a HeapMem, and not reported.
+The heap hands out memory that is still in use, or loses memory.
 
-The heap asserts what it can see (`HeapMem_A_invalidFree`); the rest goes through and breaks something later, elsewhere.
+The block was already freed, came from another heap, was never allocated, or the pointer does not point to its
+beginning. `Memory_free` also takes a size in words, and the heap uses it without a check. With a smaller size the rest
+of the block is lost. With a larger size the heap later gives away words that are still in use. Sizes that round to the
+same number of headers are equal for a HeapMem, and are not reported.
 
-**Fix:** set the pointer to NULL where the block is given back; give the heap, the pointer and the size of the
-allocation.
+The heap asserts only what it can see (`HeapMem_A_invalidFree`). The other cases break something later, at another
+place.
+
+**Fix:** set the pointer to NULL where the block is freed. Pass the heap, the pointer and the size of the allocation.
 """,
         "ISO C 7.20.3.2; XDCtools xdc/runtime/Memory.xdc (free); CERT MEM34-C",
     ),
@@ -369,63 +382,75 @@ handle of it is left.
     ),
     _rule(
         "stack-overflow", Severity.ERROR, "A stack is too small.", """
-Stacks are counted in 16-bit words, grow upwards, and lie next to each other: what is beyond the end is the next
-task's stack. `Task_Params.stackSize` is words, not octets; a `float` local takes two, an array of 200 char takes 200,
-and an interrupt needs 48 words on top of whatever runs: what leaves less is too much, whether one comes then or not.
+A task changes the stack or the data of another task.
 
-The kernel looks at the last word (0x00BE while it is untouched) at every task switch and stops the program; an array
-that jumps over that word, or the value 190 in it, escapes it. Here the stack pointer itself is watched too.
+Stacks grow upwards, and they are next to each other, so behind the end is the stack of the next task.
+`Task_Params.stackSize` counts 16-bit words: a `float` local takes two, an array of 200 `char` takes 200. An interrupt
+needs 48 words on top of whatever runs. If fewer are left, that is reported, whether an interrupt comes at that moment
+or not.
+
+The kernel checks the last word (0x00BE as long as nothing has written it) at every task switch, and stops the program.
+It does not notice an array that skips this word, or the value 190 in it. The emulator watches the stack pointer too.
 
 **Fix:** a larger `stackSize`; large arrays at file scope.
 """, "BIOS, Task_E_stackOverflow; CC 7.2: stack",
     ),
     _rule(
         "varargs-surplus", Severity.WARNING, "The format does not use an argument that was passed.", """
-C evaluates it and drops it. A value that was meant to be seen is not, or a conversion was forgotten: the values
-behind it then stand in the wrong place.
+A value that you wanted to print is missing in the text.
 
-**Fix:** a conversion for it, or leave it out.
+There are more arguments than conversions. C evaluates the additional argument and ignores it. If you forgot a
+conversion in the middle, all values behind it are printed at the wrong place.
+
+**Fix:** add a conversion, or remove the argument.
 """, "ISO C 7.19.6.1",
         how="static",
     ),
     _rule(
         "varargs-missing", Severity.ERROR, "The format needs more arguments than were passed.", """
-`System_printf` and `System_sprintf` walk through the stack as the format tells them. What lies behind the last
-argument is whatever the caller's frame holds.
+The text contains random numbers.
 
-The C compiler does not know these functions as formats and says nothing.
+There are more conversions than arguments. `System_printf` and `System_sprintf` take one word or two from the stack for
+each conversion. Behind the last argument they take what the caller's stack frame contains. The C compiler does not
+know these functions as format functions, so it does not warn.
 
-**Fix:** one argument for each conversion; `%%` for a percent sign is printed here by way of an unknown conversion.
+**Fix:** one argument for each conversion. Write `%%` for a percent sign.
 """, "XDCtools, xdc/runtime/System.xdt",
         how="dynamic/static",
     ),
     _rule(
         "varargs-type", Severity.ERROR, "An argument has another type than the format expects.", """
-`%d` takes one word of 16 bits, `%ld` two, a pointer two, a `float` two. A `long` passed for `%d` shows its lower
-word and shifts every argument behind it by a word, an `int` passed for `%ld` takes the word behind it, a `float` for
-`%d` shows half of its bits, and a number read as a pointer prints whatever stands there.
+A number in the text is wrong, and so are all numbers behind it.
 
-On a host where `int` and `long` have the size of a register the same line works.
+`%d` takes one word of 16 bits; `%ld`, a pointer and a `float` take two. A `long` for `%d` prints its lower word and
+shifts every later argument by one word. An `int` for `%ld` takes the next word as its upper half. A `float` for `%d`
+prints half of its bits. A number that is read as a pointer prints whatever is at that address. On a PC, where `int`
+and `long` have the size of a register, the same line works.
 
-**Fix:** `%ld` with `long`, `%d` with `int`, and a cast where it is not obvious.
+**Fix:** `%ld` for `long`, `%d` for `int`, and a cast where the type is not obvious.
 """, "XDCtools, xdc/runtime/System.xdt; CC table 6-1",
         how="dynamic/static",
     ),
     _rule(
         "printf-format", Severity.ERROR, "The format has a conversion that System_printf does not support.", """
-`%X`, `%e`, `%g`, `%+d`, `%#x` are printed as their letter without taking an argument, so that all later arguments are
-paired wrongly. `%f` takes its argument and prints the letter `f` unless it is enabled in the configuration. `sprintf`
-of `stdio.h` has all of these; `%n`, `%a` and `ll` it does not have here.
+The text contains a letter instead of a number, and all later numbers are wrong.
 
-**Fix:** `%x` prints small letters; scale a float to an integer, or enable `%f` (`System.extendedFormats`).
+`System_printf` does not know `%X`, `%e`, `%g`, `%+d` and `%#x`. It prints the letter and takes no argument, so all
+later conversions get the wrong arguments. For `%f` it takes the argument, but prints the letter `f` unless `%f` is
+enabled in the configuration. `sprintf` of `stdio.h` supports all of these; `%n`, `%a` and `ll` are not supported
+there.
+
+**Fix:** `%x` (it prints small letters); scale a float to an integer, or enable `%f` (`System.extendedFormats`).
 """, "XDCtools, xdc/runtime/System.xdc",
     ),
     _rule(
         "printf-outbuf", Severity.ERROR, "A conversion is wider than the buffer of System_printf.", """
-Numbers are converted in a local array of 16 characters. A zero-padded width or a precision above that writes over
-what lies behind it on the stack of whoever prints.
+The call overwrites its own stack frame.
 
-**Fix:** pad in the buffer of the caller.
+`System_printf` converts each number in a local array of 16 characters. A zero-padded width or a precision above 16
+writes behind the array.
+
+**Fix:** pad the text in a buffer of your own.
 """, "XDCtools, xdc/runtime/System.c: OUTMAX",
     ),
 )  # fmt: skip

@@ -15,15 +15,16 @@ RULES: Final[tuple[Rule, ...]] = (
         Severity.ERROR,
         "An object was read before anything was written to it.",
         """
-A local, an element, a structure member or a buffer is used, and no statement has given it a value on the way here. A
-local holds what an earlier call left on the stack; a file-scope object without initialiser holds what RAM held at
-power-up, because the COFF start-up code clears nothing. A library function that scans a buffer (`strlen`, `atof`)
-reads it just the same.
+The program uses a value that no statement has written: a local, an element, a structure member, or a buffer.
 
-Compilers warn only of the plain cases, and on a host the memory is often zero by chance: `result += v[i]` then works
-for years. Link with two fills (`--fill zero`, `--fill nan`) to see what the value reaches.
+A local contains what an earlier call left on the stack. A file-scope object without initialiser contains what RAM held
+at power-up, because the COFF start-up code clears nothing. A library function that scans a buffer (`strlen`, `atof`)
+reads it in the same way.
 
-**Fix:** give the object its start value where it is declared. The finding names the element or the member.
+Compilers warn only of simple cases. On a PC the memory is often zero by chance, so `result += v[i]` works there for
+years. Link with two fills (`--fill zero`, `--fill nan`) to see what the value influences.
+
+**Fix:** initialise the object where it is declared. The finding names the element or the member.
 """,
         "ISO C 6.7.8 p10; CC, system initialisation under the COFF ABI",
     ),
@@ -32,15 +33,17 @@ for years. Link with two fills (`--fill zero`, `--fill nan`) to see what the val
         Severity.ERROR,
         "An array was accessed outside its bounds.",
         """
-No trap watches an index on this chip: the access goes to whatever lies there, and the finding says what that is. An
-unsigned index that goes below 0 becomes 65535 and reads 65535 elements further on, mostly where nothing is; a signed
-one hits the neighbour. Each subscript of a table with several dimensions is held against its own length, so an inner
-one that runs into the next row is seen although it stays within the object.
+The program reads a value that is not in the array, or overwrites another object.
 
-Objects are laid out in the order of their declaration, locals in the order of the function (the linker of a real
-project may choose otherwise: the neighbour named here is that of this layout).
+No hardware checks an index on this chip. The access goes to whatever is at the address, and the finding names it. An
+unsigned index that goes below 0 becomes 65535 and reads 65535 elements further on, mostly where there is no memory. A
+signed one reaches the object before. In an array of several dimensions each subscript is compared with its own length.
+So an inner subscript that reaches the next row is reported, although it stays within the object.
 
-**Fix:** correct the limit of the loop; begin at 1 where the element before is looked at.
+The emulator places objects in the order of their declaration, and locals in the order of the function. The linker of a
+real project may choose another order, so the neighbour may be another one on your chip.
+
+**Fix:** correct the limit of the loop; begin at 1 if the loop uses the element before.
 """,
         "ISO C 6.5.6 p8",
     ),
@@ -49,13 +52,12 @@ project may choose otherwise: the neighbour named here is that of this layout).
         Severity.ERROR,
         "An unsigned index wrapped and still selects an element.",
         """
-`(head - 1) % 10` at `head == 0` is `65535 % 10`, which is 5 and not 9: inside the array, and wrong. A product of two
-unsigned numbers beyond 65535 lies inside by luck in the same way. Modulo a power of two the wrap does no harm, and
-is not reported.
+The program uses the wrong element, and no bounds checker sees it, because the index is inside the array.
 
-No bounds checker sees it, for no bound is broken.
+For `head == 0`, `(head - 1) % 10` is `65535 % 10`, which is 5 and not 9. A product of two unsigned numbers above 65535
+can select a valid element in the same way. Modulo a power of two the wrap gives the right result and is not reported.
 
-**Fix:** add the length before the remainder, `(head + 9) % 10`; compute products of indices in `unsigned long`.
+**Fix:** add the length before the remainder: `(head + 9) % 10`. Compute products of indices in `unsigned long`.
 """,
         "ISO C 6.2.5 p9",
     ),
@@ -64,15 +66,17 @@ No bounds checker sees it, for no bound is broken.
         Severity.ERROR,
         "A pointer was used outside the object that it was made from.",
         """
-The pointer was made from one object and has left it: a scan that found no terminator, a length that belongs to
-another buffer, a `float` taken apart into four characters although it has two here (a `char` is a word of 16 bits).
-The finding names the object, the word, and what lies there instead. A text in a member ends there: one without a NUL is
-told where a function of the library reads on behind the member.
+The program reads or overwrites the object that follows the one it meant.
 
-A memory checker of a host guards the heap and, with luck, the gap behind an object. There is no gap here: the next
-object begins at the next word.
+The pointer was made from one object and now points outside it. Typical: a scan that found no terminator; a length that
+belongs to another buffer; a `float` that is split into four characters although it has two here (a `char` is a word of
+16 bits); a text in a structure member without a NUL. The finding names the object, the word, and what is there
+instead.
 
-**Fix:** test for the end as well as for the mark; pass the length along with the pointer.
+A memory checker on a PC guards the heap and the gaps between objects. There is no gap here: the next object begins at
+the next word.
+
+**Fix:** test for the end of the object as well as for the terminator; pass the length along with the pointer.
 """,
         "ISO C 6.5.6 p8",
     ),
@@ -81,14 +85,16 @@ object begins at the next word.
         Severity.ERROR,
         "A null pointer was read, written or called.",
         """
-Address 0 is M0 RAM on this chip, an ordinary cell: a write through NULL succeeds, and a read gives what the last such
-write left. All null pointers share it. The finding says what the cell holds as the type that was read, and which
-pointers and functions have gone through it so far: one spoils the value of the other.
+One part of the program changes a value that another part reads, without a visible connection.
 
-A host ends the program at once with a signal; here it goes on. A null pointer that is *called* runs whatever stands
-at 0.
+Address 0 is M0 RAM on this chip, an ordinary memory cell. A write through NULL succeeds, and a read gives what the
+last such write left. All null pointers share the cell. The finding says what the cell contains, and which pointers and
+functions have used it so far.
 
-**Fix:** let the pointer point to an object of its own before it is used; test what a search returns.
+A PC ends the program at once with a signal; here it continues. A call through a null pointer executes whatever is at
+address 0.
+
+**Fix:** let the pointer point to an object before you use it; test the result of a search.
 """,
         "ISO C 6.5.3.2 p4; HDR linker command files (M0 at 0)",
     ),
@@ -97,14 +103,17 @@ at 0.
         Severity.WARNING,
         "A function was called through a pointer of another type, and an argument or the result is missing.",
         """
-A cast makes any function fit any pointer, and the call uses the pointer's type. This chip's compiler passes the first
-arguments in registers, one set for each class of values: an `int` in AL, a `long` in ACC, a pointer in XAR4, a `float`
-in R0H. A function that takes more arguments than were passed, or a value of another class, reads a register with other
-content. So does a caller that takes a result from a function without one. The emulator gives 0.
+The function works with random arguments, or the caller gets a random result.
 
-Surplus arguments do no harm and are not reported.
+A cast makes any function fit any pointer, and the call uses the type of the pointer. This chip's compiler passes the
+first arguments in registers, one set for each class of values: an `int` in AL, a `long` in ACC, a pointer in XAR4, a
+`float` in R0H. If the function has more parameters than the caller passed, or one of another class, it reads a
+register with other content. The same happens to a caller that takes a result from a function without one. The emulator
+gives 0.
 
-**Fix:** a function of the type that the pointer has, without the cast.
+Additional arguments do no harm and are not reported.
+
+**Fix:** write the function with the type that the pointer has, and remove the cast.
 """,
         "ISO C 6.5.2.2 p9; CERT EXP37-C",
     ),
@@ -113,8 +122,11 @@ Surplus arguments do no harm and are not reported.
         Severity.ERROR,
         "A pointer to a local was used after its function had returned.",
         """
-The next call, or an interrupt, reuses the local's words on the stack. Until then the old value is still there, and
-everything seems to work. The finding names the object that now uses the words.
+A value is right at first and changes after another call.
+
+The pointer leads to a local of a function that has returned. The next call, or an interrupt, reuses its words on the
+stack. Until then the old value is still there, and everything seems to work. The finding names the object that now
+uses the words.
 
 Typical: a function that returns its own array; a driver that keeps the address of a caller's buffer and sends it
 later.
@@ -128,10 +140,10 @@ later.
         Severity.ERROR,
         "A constant was written through a pointer.",
         """
-String literals and constants stand in flash. The store executes and changes nothing: no trap, no flag.
+The program writes a text or a table, and the content does not change.
 
-On a host the page is protected and the program ends. A pointer that was cast to lose its `const` hides it from the
-compiler.
+String literals and constants are in flash. The CPU executes the store, and nothing changes: no trap, no flag. On a PC
+the page is protected and the program ends. A cast that removes `const` hides the defect from the compiler.
 
 **Fix:** copy the text into an array first: `char label[8] = "idle";`.
 """,
@@ -142,13 +154,13 @@ compiler.
         Severity.ERROR,
         "A 32-bit object was accessed at an odd address.",
         """
-The CPU ignores the lowest address bit of a 32-bit access: it takes the even word before and the odd one, half of it
-somebody else's. No trap. A `float` or `long` that is cast out of a stream of 16-bit words stands at an odd address
-in every second case.
+A `float` or a `long` that is read from a stream of words has a wrong value in every second case.
 
-A host reads any address, or traps; neither shows this.
+The CPU ignores the lowest address bit of a 32-bit access. At an odd address it takes the even word before and the odd
+word, so half of the value belongs to another object. There is no trap. A PC reads any address, or it traps; neither
+shows this defect.
 
-**Fix:** put the words together (`(unsigned long) w[i + 1] << 16 | w[i]`), or copy them with `memcpy` into an object.
+**Fix:** combine the words (`(unsigned long) w[i + 1] << 16 | w[i]`), or copy them with `memcpy` into an object.
 """,
         "CPU 2.2.5",
     ),
@@ -157,13 +169,13 @@ A host reads any address, or traps; neither shows this.
         Severity.ERROR,
         "A block length counts octets, but memory has words of 16 bits.",
         """
-`memcpy` and `memset` count the chip's addressable units, words of 16 bits. `memcpy(aux, v, 4 * n)` for n floats moves
-twice as much as there is: it reads beyond the source and writes over what follows the target. The finding names both
-numbers and the neighbour.
+A copy overwrites the object behind the target.
 
-On a host `4 * n` is right, so tests there pass; a memory checker never sees the chip's sizes.
+`memcpy` and `memset` count the addressable units of the chip, words of 16 bits. For n floats, `memcpy(aux, v, 4 * n)`
+copies twice as much as there is: it reads beyond the source and writes over what follows the target. The finding gives
+both numbers and the neighbour. On a PC `4 * n` is right, so tests there pass.
 
-**Fix:** write `n * sizeof(float)` or `sizeof v`; here `sizeof(float)` is 2.
+**Fix:** `n * sizeof(float)` or `sizeof v`; here `sizeof(float)` is 2.
 """,
         "CC table 6-1 (char 16 bits)",
     ),
@@ -172,9 +184,11 @@ On a host `4 * n` is right, so tests there pass; a memory checker never sees the
         Severity.ERROR,
         "A block copy or fill runs over the end of an object.",
         """
-The length is larger than what is left of the source or of the target. The words behind the target are overwritten,
-and the finding says whose they are. A member has an end of its own: a length that stands in the call and leaves the
-member is told before the program runs, and a text that is copied or printed into a member and is longer, as it runs.
+A copy or a fill overwrites the object or the member behind the target.
+
+The length is larger than the rest of the source or of the target. The finding names what is overwritten. Each
+structure member has its own end. A constant length that leaves the member is reported before the program runs. A text
+that is copied or printed into a member and is longer than it is reported while the program runs.
 
 **Fix:** take the length from the smaller of the two objects, with `sizeof`, in 16-bit words.
 """,
@@ -186,13 +200,15 @@ member is told before the program runs, and a text that is copied or printed int
         Severity.ERROR,
         "A block length is the size of the pointer, not of the block.",
         """
-`memset(p, 0, sizeof p)` takes two words, however long the block is: a pointer has 32 bits. An array that is a parameter
-is a pointer too, although it is written with brackets and a length. `sizeof p / sizeof *p` is no number of elements
-either, and `strncpy(p, text, sizeof p)` copies two characters.
+A block is cleared or copied only in its first two words.
 
-Blocks that hold pointers are not reported.
+`memset(p, 0, sizeof p)` takes the size of the pointer, which has 32 bits, not of the block. An array parameter is a
+pointer too, although you write it with brackets and a length. For the same reason `sizeof p / sizeof *p` is not the
+number of elements, and `strncpy(p, text, sizeof p)` copies two characters.
 
-**Fix:** `sizeof *p` for one object, and a length that is handed in for an array.
+Blocks that contain pointers are not reported.
+
+**Fix:** `sizeof *p` for one object; for an array, pass its length as an argument.
 """,
         "ISO C 6.5.3.4, 6.7.5.3 p7; CERT ARR01-C",
         how="static",
