@@ -45,6 +45,7 @@ def campaign(
     """Inject random faults into the corrected robot: it must not drive on data that it can know to be wrong."""
     with show.user_errors():
         from hil.files import replacing
+        from hil.reports.json_report import findings_of
         from hil.safety.campaign import campaign as run
         from hil.scenarios.running import SUFFIX
 
@@ -66,26 +67,36 @@ def campaign(
                 return not over.requested
 
             found = run(runs, seed=seed, jobs=jobs, faithful=faithful, told=told)
-        files = {}
-        for failed in found if keep is not None else ():
+        files: dict[int, Path] = {}
+        unwritten: list[OSError] = []
+        for failed in found.failed if keep is not None else ():
             assert keep is not None
-            files[failed.number] = keep / f"campaign-{seed}-{failed.number}{SUFFIX}"
-            with replacing(files[failed.number]) as new:
-                new.write_text(failed.text, encoding="utf-8")
-    if json_output:
-        show.print_json({
-            "runs": done, "seed": seed, "faithful": faithful, "failed": [
-                {"number": one.number, "broken": list(one.broken), "scenario": one.text} for one in found
-            ],
-        })  # fmt: skip
-    else:
-        for one in found:
-            where = f", {files[one.number]}" if one.number in files else ""
-            show.say(f"run {one.number}{where}: {'; '.join(one.broken)}")
-        show.say(f"{done - len(found)} of {done} runs held, seed {seed}")
+            file = keep / f"campaign-{seed}-{failed.number}{SUFFIX}"
+            try:
+                with replacing(file) as new:
+                    new.write_text(failed.text, encoding="utf-8")
+                files[failed.number] = file
+            except OSError as error:  # what failed is told all the same
+                unwritten.append(error)
+        if json_output:
+            show.print_json({
+                "runs": found.runs, "seed": seed, "faithful": faithful, "failed": [
+                    {"number": one.number, "broken": list(one.broken), "scenario": one.text} for one in found.failed
+                ],
+                "findings": findings_of(found.report),
+            })  # fmt: skip
+        else:
+            show.print_report(found.report)
+            for one in found.failed:
+                where = f", {files[one.number]}" if one.number in files else ""
+                show.say(f"run {one.number}{where}: {'; '.join(one.broken)}")
+            show.say(f"{found.runs - len(found.failed)} of {found.runs} runs held, seed {seed}")
+        if unwritten:
+            more = f" (and {len(unwritten) - 1} more)" if len(unwritten) > 1 else ""
+            raise ValueError(f"{unwritten[0].filename}: {unwritten[0].strerror}{more}")
     if over.requested:
         raise typer.Exit(EXIT_INTERRUPTED)
-    if found:
+    if found.failed:
         raise typer.Exit(show.EXIT_FAILED)
 
 

@@ -99,14 +99,15 @@ def _print(result: Result, terminal: Console) -> None:
         alike = sum(runs.streams.alike.values())
         show.say(
             f"runs: {runs.seconds:g} s after start-up: {alike} events alike in {len(runs.streams.alike)} streams, "
-            f"{runs.findings} findings alike, {_number(len(runs.differences))}"
-        )  # fmt: skip
+            f"{_number(len(runs.differences))}"
+        )
         if runs.differences:
             terminal.print(_table(runs.differences, "thread"))
         for which, known in (("first", runs.streams.skew.first), ("largest", runs.streams.skew.largest)):
             if known is not None:
                 apart, thread, place = known
                 show.say(f"cycles: {which} skew {apart:+d} ({us(apart):+.3f} us) in {thread}, {place}")
+    show.print_report(result.report)
     show.say(result.verdict)
 
 

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from emulator.c28x.findings import Finding
     from hil.board import Board
     from hil.machine import Machine, Setup
+    from hil.reports.model import Report
 
 EXIT_FAILED: Final = 1
 EXIT_BAD_INPUT: Final = 2
@@ -207,9 +208,15 @@ def open_machine(setup: Setup, *, coverage: Coverage | None = None, kind: type[B
 def print_findings(findings: Iterable[Finding]) -> None:
     """The findings of a run as every command shows them; nothing if there are none.  Raises ValueError."""
     from hil.reports.model import report_of
-    from hil.reports.terminal import MOST_SHOWN, print_report
 
-    print_report(report_of(findings), console(), most=MOST_SHOWN)
+    print_report(report_of(findings))
+
+
+def print_report(report: Report) -> None:
+    """A report as the end of a command shows it: the worst findings as a table; nothing if there are none."""
+    from hil.reports import terminal
+
+    terminal.print_report(report, console(), most=terminal.MOST_SHOWN)
 
 
 @contextmanager

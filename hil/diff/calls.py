@@ -8,19 +8,20 @@ once after the functions that initialise; then with every further argument list 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from emulator.c28x.findings import Finding
 from emulator.c28x.memory import Pointer
 from emulator.c28x.tree import Function
-from hil.diff.difference import OWN, PORT, Difference, place, unmatched
+from hil.diff.difference import BOTH, OWN, PORT, Difference, matched, place
 from hil.diff.recorder import FirmwareRecorder, RecordedEvent, value_text
 from hil.diff.streams import align
 from hil.drivers.judge import INITIALISES
 from hil.drivers.roles import Roles, roles
 from hil.drivers.values import NotGenerated, Parameter, Value, arguments, moderate, parameters
 from hil.image import Build, Image, is_static
+from hil.reports.policy import GENERATED
 from hil.testing.guard import guard
 from hil.testing.stops import STOPS, sentence
 
@@ -45,6 +46,13 @@ class Called:
     #: Why it was not called; empty if it was.
     reason: str = ""
     differences: list[Difference] = field(default_factory=list)
+    #: Findings of one side, each with which side that is (`PORT_ALONE`, `OWN_ALONE`).
+    findings: list[tuple[Finding, str]] = field(default_factory=list)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON, without the findings: they stand beside those of the runs."""
+        differences = [difference.as_dict() for difference in self.differences]
+        return {"calls": self.calls, "reason": self.reason, "differences": differences}
 
 
 @dataclass
@@ -169,12 +177,12 @@ class Caller:
             called.calls += 1
             seen, own_seen = (side.call(function.path, values) for side in sides)
             self._note(called, (function, other), sides, (seen, own_seen), text)
-            if called.differences or not (seen.ended and own_seen.ended):
+            if called.differences or called.findings or not (seen.ended and own_seen.ended):
                 for side in sides:
                     side.image.close()
                 sides = None
             unended += not (seen.ended and own_seen.ended)
-            if unended >= _PATIENCE or len(called.differences) >= _MOST:
+            if unended >= _PATIENCE or len(called.differences) + len(called.findings) >= _MOST:
                 break
         for side in sides or ():
             side.image.close()
@@ -206,6 +214,8 @@ class Caller:
         for name in sorted(a.objects.keys() & b.objects.keys()):
             if a.objects[name] != b.objects[name]:
                 tell(f"{name} afterwards", a.objects[name], b.objects[name])
-        for finding, mine in unmatched(a.findings, b.findings):
-            what = f"finding {finding.rule} {finding.object}".rstrip()
-            tell(what, "told" if mine else "not told", "not told" if mine else "told")
+        for finding, side in matched(a.findings, b.findings):
+            known = any((f.rule, f.object, by) == (finding.rule, finding.object, side) for f, by in called.findings)
+            if side != BOTH and not known:
+                generated = replace(finding, how=GENERATED, details=(*finding.details, text))
+                called.findings.append((generated, side))

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
+from emulator.c28x.findings import Finding
 from emulator.c28x.program import Program
 from firmware_model.c_files import own as own_files
 from firmware_model.calibration import CALIBRATION
 from firmware_model.image import MODULES
 from hil.diff.calls import Called, Caller
-from hil.diff.difference import Difference
+from hil.diff.difference import BOTH, Difference
 from hil.diff.runs import Runs, compare_runs
 from hil.diff.trees import Trees, compare_trees
 from hil.image import Build
 from hil.machine import Setup
+from hil.reports.json_report import findings_of
+from hil.reports.model import Report, report_of
 from hil.scenarios.scenario import Scenario
 
 #: Told what is done now, and how far it has come (0..1).
@@ -53,8 +56,27 @@ class Result:
     cycles: bool = False
 
     @property
+    def findings(self) -> list[tuple[Finding, str]]:
+        """The findings of the runs, and of the calls what one side alone shows; each with which side shows it."""
+        found = list(self.runs.findings) if self.runs is not None else []
+        known = {(finding.rule, finding.object, side) for finding, side in found}
+        of_calls = [each for called in self.calls.values() for each in called.findings]
+        return found + [each for each in of_calls if (each[0].rule, each[0].object, each[1]) not in known]
+
+    @property
+    def report(self) -> Report:
+        """The findings as every command reports them.  Raises ValueError for a wrong policy of the project."""
+        found = self.findings
+        return report_of([finding for finding, _ in found], "diff", [(side,) for _, side in found])
+
+    @property
+    def alone(self) -> list[Finding]:
+        """Findings that one side alone shows."""
+        return [finding for finding, side in self.findings if side != BOTH]
+
+    @property
     def observed(self) -> list[Difference]:
-        """Differences in what a program can observe."""
+        """Differences in what a program can observe, besides the findings of one side."""
         found = [d for called in self.calls.values() for d in called.differences]
         found += [d for d in self.trees.others if d.port and d.own]
         return found + (self.runs.differences if self.runs is not None else [])
@@ -79,13 +101,12 @@ class Result:
     @property
     def different(self) -> bool:
         """Whether a program can tell them apart, as far as was asked."""
-        return bool(self.observed or self.unproven or (self.cycles and self.skewed))
+        return bool(self.observed or self.alone or self.unproven or (self.cycles and self.skewed))
 
     @property
     def verdict(self) -> str:
         """The result in one sentence."""
-        if self.observed:
-            n = len(self.observed)
+        if n := len(self.observed) + len(self.alone):
             return f"different: {n} difference{'s' if n > 1 else ''} in what a program can observe"
         if self.unproven:
             return f"not shown to be equal: nothing has run {', '.join(self.unproven)}"
@@ -106,15 +127,15 @@ class Result:
                 "different": list(self.trees.functions),
                 "differences": [d.as_dict() for d in self.trees.differences],
             },
-            "calls": {path: asdict(called) for path, called in self.calls.items()},
+            "calls": {path: called.as_dict() for path, called in self.calls.items()},
             "runs": None if runs is None else {
                 "seconds": runs.seconds,
                 "events_alike": runs.streams.alike,
-                "findings_alike": runs.findings,
                 "differences": [d.as_dict() for d in runs.differences],
                 "first_skew": runs.streams.skew.first,
                 "largest_skew": runs.streams.skew.largest,
             },
+            "findings": findings_of(self.report),
         }  # fmt: skip
 
 

@@ -13,6 +13,10 @@ from emulator.c28x.tree import Where
 
 PORT: Final = "the port"
 OWN: Final = "the C"
+#: Which side shows a finding.
+BOTH: Final = "both"
+PORT_ALONE: Final = f"{PORT} alone"
+OWN_ALONE: Final = f"{OWN} alone"
 
 
 @dataclass(frozen=True)
@@ -53,17 +57,19 @@ def _function(finding: Finding) -> str:
     return finding.place.function if finding.place is not None else ""
 
 
-def unmatched(port: Iterable[Finding], own: Iterable[Finding]) -> list[tuple[Finding, bool]]:
-    """Findings that only one side has, each with whether that is the port.
+def matched(port: Iterable[Finding], own: Iterable[Finding]) -> list[tuple[Finding, str]]:
+    """All findings, each with which side shows it: `BOTH`, where it is as the C shows it, or one of them alone.
 
     Those of one rule about one object belong together; of the rest those of one rule in one function, because an object
     may be an expression, and C spells those differently.
     """
     ours, theirs = list(port), list(own)
+    both: list[tuple[Finding, str]] = []
     for about in (_object, _function):
         for finding in list(ours):
             other = next((f for f in theirs if f.rule == finding.rule and about(f) == about(finding)), None)
             if other is not None:
                 ours.remove(finding)
                 theirs.remove(other)
-    return [*((f, True) for f in ours), *((f, False) for f in theirs)]
+                both.append((other, BOTH))
+    return [*both, *((f, OWN_ALONE) for f in theirs), *((f, PORT_ALONE) for f in ours)]

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from hil.diff.difference import OWN, PORT, Difference, place_text, unmatched
+from emulator.c28x.findings import Finding
+from hil.diff.difference import OWN, PORT, Difference, matched
 from hil.diff.recorder import FirmwareRecorder, RunRecording
 from hil.diff.streams import Streams, compare_recordings
 from hil.scenarios.scenario import Scenario
@@ -18,8 +19,8 @@ class Runs:
     seconds: float
     streams: Streams
     differences: list[Difference] = field(default_factory=list)
-    #: Findings that both report.
-    findings: int = 0
+    #: The findings of both runs, each with which of them shows it (`BOTH`, `PORT_ALONE`, `OWN_ALONE`).
+    findings: list[tuple[Finding, str]] = field(default_factory=list)
     #: Names of the functions that both runs came through.
     functions: set[str] = field(default_factory=set)
 
@@ -44,14 +45,7 @@ def compare_runs(
     if ours.stopped != theirs.stopped:
         cause = f"{ours.stopped or 'runs on'} in {PORT}, {theirs.stopped or 'runs on'} in {OWN}"
         found.differences.append(Difference("the run", "", "", cause))
-    shown = list(ours.recording.findings), list(theirs.recording.findings)
-    alone = unmatched(*shown)
-    found.findings = len(shown[0]) - sum(mine for _, mine in alone)
-    for finding, mine in alone:
-        where = place_text(finding.place) if finding.place else ""
-        cause = f"only {PORT if mine else OWN} shows the finding {finding.rule}: {finding.message}"
-        what = finding.object or finding.rule
-        found.differences.append(Difference(what, where if mine else "", "" if mine else where, cause))
+    found.findings = matched(ours.recording.findings, theirs.recording.findings)
     return found
 
 

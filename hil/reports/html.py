@@ -49,7 +49,7 @@ def html(report: Report) -> str:
         source=lambda entry: excerpt(entry.finding.place.file, entry.finding.place.line) if entry.finding.place else (),
         task_of=_task,
         # Functions called on their own have each its own time; so have tests, each its own row.
-        timeline=Markup(timeline(report)) if report.run.virtual_s or any(e.tests for e in report.entries) else "",
+        timeline=Markup(timeline(report)) if report.run.virtual_s or any(e.by for e in report.entries) else "",
         trajectory=Markup(trajectory(report.drive)) if report.drive else "",
         outputs_shown=OUTPUTS_SHOWN,
     )

@@ -84,6 +84,7 @@ def _entry(entry: ReportEntry) -> dict[str, Any]:
         "state": entry.state or None,
         "accepted": entry.accepted or None,
         "reaches": _reach(entry.reach) if entry.reach else None,
+        **({"shown_by": list(entry.by)} if entry.by else {}),
     }
 
 

@@ -66,7 +66,7 @@ def _case(suite: ElementTree.Element, entry: ReportEntry, *, fails: bool) -> Non
         case.set("line", str(place.line))
     if fails:
         failure = ElementTree.SubElement(case, "failure", type=entry.severity.value, message=legal(finding.message))
-        by = [f"shown by {entry.shown_by}"] if entry.tests else []
+        by = [f"shown by {entry.shown_by}"] if entry.by else []
         failure.text = legal("\n".join((*map(readable, finding.details), *map(shown, finding.call_path), *by)))
     else:
         reason = f"{entry.severity.value}: below the threshold"

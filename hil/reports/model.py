@@ -111,8 +111,8 @@ class ReportEntry:
     reach: RunDifferences | None = None
     #: Why the source accepts it (`hil: allow`); empty: it does not.
     accepted: str = ""
-    #: In a session of tests: those that showed it, the first one first, whose time it has.
-    tests: tuple[str, ...] = ()
+    #: Where several ran (tests, runs of a campaign, port and C): who showed it, first the one whose time it has.
+    by: tuple[str, ...] = ()
 
     @property
     def standing(self) -> str:
@@ -121,9 +121,9 @@ class ReportEntry:
 
     @property
     def shown_by(self) -> str:
-        """The tests in a few words; empty outside of a session of tests."""
-        more = f" and {len(self.tests) - 1} more" if len(self.tests) > 1 else ""
-        return f"{self.tests[0]}{more}" if self.tests else ""
+        """`by` in a few words; empty where one ran."""
+        more = f" and {len(self.by) - 1} more" if len(self.by) > 1 else ""
+        return f"{self.by[0]}{more}" if self.by else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,13 +145,13 @@ class Report:
     @classmethod
     def of(
         cls, findings: Iterable[Finding], *, run: Run, policy: Policy | None = None, baseline: Baseline | None = None,
-        proof: Proof | None = None, drive: DrivenTrack | None = None, tests: Sequence[Sequence[str]] = (),
+        proof: Proof | None = None, drive: DrivenTrack | None = None, by: Sequence[Sequence[str]] = (),
         checked: Iterable[str] = (),
     ) -> Report:  # fmt: skip
         """A report of `findings` in their order.
 
         `policy` weighs them (default: every rule's own severity) and leaves out what it turns off; `baseline` tells new
-        ones from known ones; `proof` says what they reach; `tests` names for each finding the tests that showed it;
+        ones from known ones; `proof` says what they reach; `by` names for each finding who showed it;
         `checked` are the files of which it says what they allow in vain.  Raises ValueError for a wrong `hil: allow` in
         a file of a finding.
         """
@@ -160,7 +160,7 @@ class Report:
         present = known(listed)
         entries = []
         asked = []
-        for finding, as_known, named in zip(listed, present, tests or [()] * len(listed), strict=True):
+        for finding, as_known, named in zip(listed, present, by or [()] * len(listed), strict=True):
             severity = policy.weigh(finding)
             if severity is None:
                 continue
@@ -215,19 +215,27 @@ class Report:
         return tuple({entry.rule.id: entry.rule for entry in self.entries}.values())
 
 
-def report_of(findings: Iterable[Finding], name: str = "run") -> Report:
+def report_of(findings: Iterable[Finding], name: str = "run", by: Sequence[Sequence[str]] = ()) -> Report:
     """A report of what a run has found, weighed as the project of the current folder says.  Raises ValueError."""
-    return Report.of(findings, run=Run(name), policy=Policy.load(Path.cwd()))
+    return Report.of(findings, run=Run(name), policy=Policy.load(Path.cwd()), by=by)
 
 
 def merged(findings: Iterable[Finding]) -> list[Finding]:
     """What several runs have found, each defect once: as it was found first, and how often in all of them."""
-    found: dict[tuple[object, ...], Finding] = {}
-    for finding in findings:
+    return [finding for finding, _ in merged_by(("", finding) for finding in findings)]
+
+
+def merged_by(found: Iterable[tuple[str, Finding]]) -> list[tuple[Finding, tuple[str, ...]]]:
+    """The same of pairs (who showed it, finding), with all that showed a defect."""
+    known: dict[tuple[object, ...], tuple[Finding, dict[str, None]]] = {}
+    for who, finding in found:
         key = (finding.rule, finding.object, finding.place)
-        first = found.get(key)
-        found[key] = finding if first is None else replace(first, count=first.count + finding.count)
-    return list(found.values())
+        if key in known:
+            first, by = known[key]
+            known[key] = replace(first, count=first.count + finding.count), {**by, who: None}
+        else:
+            known[key] = finding, {who: None}
+    return [(finding, tuple(by)) for finding, by in known.values()]
 
 
 def rule_of(rule_id: str) -> Rule:

@@ -43,7 +43,7 @@ def timeline(report: Report) -> str:
 
 
 def _row(entry: ReportEntry) -> str:
-    return entry.tests[0].rpartition("/")[2] if entry.tests else entry.rule.id
+    return entry.by[0].rpartition("/")[2] if entry.by else entry.rule.id
 
 
 def trajectory(drive: DrivenTrack) -> str:

@@ -108,7 +108,7 @@ def _result(entry: ReportEntry, index: dict[str, int]) -> dict[str, Any]:
             "declaration": finding.declaration,
             "value": _value(finding.value),
             **({"reaches": entry.reach.summary} if entry.reach else {}),
-            **({"tests": list(entry.tests)} if entry.tests else {}),
+            **({"tests": list(entry.by)} if entry.by else {}),
         },
     }
     if finding.place is not None:
@@ -125,7 +125,7 @@ def _result(entry: ReportEntry, index: dict[str, int]) -> dict[str, Any]:
 
 
 def _shown_by(entry: ReportEntry) -> list[str]:
-    return [f"shown by {entry.shown_by}"] if entry.tests else []
+    return [f"shown by {entry.shown_by}"] if entry.by else []
 
 
 def _absent(known: Known, index: dict[str, int]) -> dict[str, Any]:

@@ -126,7 +126,7 @@ def _besides(entry: ReportEntry) -> Iterator[str]:
         yield "known" if entry.state == "unchanged" else entry.state
     if entry.reach:
         yield f"reaches: {entry.reach.summary}"
-    if entry.tests:
+    if entry.by:
         yield f"shown by {entry.shown_by}"
 
 

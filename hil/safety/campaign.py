@@ -20,7 +20,7 @@ import json
 import multiprocessing
 import signal
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, replace
 from math import degrees
@@ -28,7 +28,9 @@ from pathlib import Path
 from random import Random
 from typing import Any, Final
 
+from emulator.c28x.findings import Finding
 from hil.faults.all import FAULTS
+from hil.reports.model import Report, merged_by, report_of
 from hil.reports.policy import Policy
 from hil.scenarios import running
 from hil.scenarios.scenario import load_scenario
@@ -97,6 +99,23 @@ class Failed:
     number: int
     broken: tuple[str, ...]
     text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Campaign:
+    """What came of the runs: how many ended, which of them failed, and all findings, each with the runs that show it.
+
+    Findings are those of a robot that is not watched and whose source is not searched.
+    """
+
+    runs: int
+    failed: tuple[Failed, ...]
+    findings: tuple[tuple[Finding, tuple[str, ...]], ...]
+
+    @property
+    def report(self) -> Report:
+        """The findings as every command reports them.  Raises ValueError for a wrong policy of the project."""
+        return report_of([finding for finding, _ in self.findings], "campaign", [runs for _, runs in self.findings])
 
 
 Table = dict[str, Any]
@@ -251,18 +270,23 @@ def _toml(value: Any) -> str:
 
 def broken(table: Table) -> tuple[str, ...]:
     """What does not hold of a run, a sentence each."""
+    return _judged(table)[0]
+
+
+def _judged(table: Table) -> tuple[tuple[str, ...], tuple[Finding, ...]]:
+    """What does not hold of a run, and its findings."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / f"campaign{running.SUFFIX}"
         file.write_text(text_of(table), encoding="utf-8")
         scenario, _ = load_scenario(file, Policy())
-    # Findings are not asked for: an image that is not watched is faster.
+    # An image that is not watched is faster.
     plain = replace(scenario, setup=replace(scenario.setup, watch=False, static=False))
     outcome = running.run(plain)
     (leg,) = outcome.legs
     # That a fault changes nothing in a short run is no failure.
     wrong = [check for check in leg.checks if not check.ok and not check.name.startswith("the fault")]
     found = [f"{check.name}: {check.seen}" for check in wrong]
-    return (*([f"it stopped: {leg.stopped}"] if leg.stopped else []), *found)
+    return (*([f"it stopped: {leg.stopped}"] if leg.stopped else []), *found), leg.findings
 
 
 def shortest(table: Table) -> Table:
@@ -294,29 +318,36 @@ def _less(table: Table) -> Iterator[Table]:
         yield {**table, "seconds": round(table["seconds"] - 1.0, 1)}
 
 
-def _run(seed: int, number: int, faithful: bool) -> Failed | None:
+#: What a run came to: its number, how it failed if it did, its findings.
+_Ran = tuple[int, Failed | None, tuple[Finding, ...]]
+
+
+def _run(seed: int, number: int, faithful: bool) -> _Ran:
     table = drawn(seed, number, faithful=faithful)
-    if not broken(table):
-        return None
+    wrong, findings = _judged(table)
+    if not wrong:
+        return number, None, findings
     table = shortest(table)
-    return Failed(number, broken(table), text_of(table))
+    return number, Failed(number, broken(table), text_of(table)), findings
 
 
 def campaign(
     runs: int, *, seed: int = 1, jobs: int = 1, faithful: bool = False,
     told: Callable[[Failed | None], bool] = lambda failed: True,
-) -> Sequence[Failed]:  # fmt: skip
-    """So many runs, `jobs` at a time; those that failed by number.  `told` hears of each and says whether to go on."""
-    failed = []
-    for one in _each(runs, seed, jobs, faithful):
-        if one is not None:
-            failed.append(one)
-        if not told(one):
+) -> Campaign:  # fmt: skip
+    """So many runs, `jobs` at a time.  `told` hears of each as it ends, and says whether to go on."""
+    ended: list[_Ran] = []
+    for ran in _each(runs, seed, jobs, faithful):
+        ended.append(ran)
+        if not told(ran[1]):
             break
-    return sorted(failed, key=lambda one: one.number)
+    ended.sort(key=lambda ran: ran[0])
+    failed = tuple(failed for _, failed, _ in ended if failed is not None)
+    found = merged_by((f"run {number}", finding) for number, _, findings in ended for finding in findings)
+    return Campaign(len(ended), failed, tuple(found))
 
 
-def _each(runs: int, seed: int, jobs: int, faithful: bool) -> Iterator[Failed | None]:
+def _each(runs: int, seed: int, jobs: int, faithful: bool) -> Iterator[_Ran]:
     if jobs <= 1:
         for number in range(runs):
             yield _run(seed, number, faithful)
@@ -325,7 +356,7 @@ def _each(runs: int, seed: int, jobs: int, faithful: bool) -> Iterator[Failed | 
     with ProcessPoolExecutor(
         jobs, multiprocessing.get_context("spawn"), initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)
     ) as pool:
-        futures: list[Future[Failed | None]] = [pool.submit(_run, seed, n, faithful) for n in range(runs)]
+        futures: list[Future[_Ran]] = [pool.submit(_run, seed, n, faithful) for n in range(runs)]
         try:
             for future in as_completed(futures):
                 yield future.result()

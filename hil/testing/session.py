@@ -10,18 +10,17 @@ from typing import Any
 import pytest
 
 from emulator.c28x.coverage import Coverage
-from emulator.c28x.findings import Finding
 from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
 from emulator.rules import Severity
 from hil.reports.baseline import Baseline
 from hil.reports.html import write_html
 from hil.reports.lcov import write_lcov
-from hil.reports.model import Report, Run
+from hil.reports.model import Report, Run, merged_by
 from hil.reports.policy import Policy
 from hil.reports.sarif import write_sarif
 from hil.testing import settings
 from hil.testing.carrying import unpack
-from hil.testing.case import Case, Key, key_of
+from hil.testing.case import Case, Key
 from hil.testing.stash import SESSION
 
 
@@ -49,18 +48,10 @@ class ProjectSession:
 
         `carried`: the test that showed a finding, and the finding as `pack` made it.
         """
-        merged: dict[Key, Finding] = {}
-        tests: dict[Key, dict[str, None]] = {}
-        for test, data in carried:
-            finding = unpack(data)
-            key = key_of(finding)
-            known = merged.setdefault(key, finding)
-            tests.setdefault(key, {})[test] = None
-            if known is not finding:
-                known.count += finding.count
+        found = merged_by((test, unpack(data)) for test, data in carried)
         return Report.of(
-            merged.values(), run=Run("pytest", uncalibrated_factor=UNCALIBRATED_FACTOR), policy=self.policy,
-            baseline=self.baseline, tests=[tuple(named) for named in tests.values()],
+            [finding for finding, _ in found], run=Run("pytest", uncalibrated_factor=UNCALIBRATED_FACTOR),
+            policy=self.policy, baseline=self.baseline, by=[tests for _, tests in found],
         )  # fmt: skip
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from hil.cli import invoke
-from hil.safety.campaign import HELD, broken, campaign, drawn, expectations, shortest, text_of
+from hil.safety.campaign import HELD, Campaign, Failed, broken, campaign, drawn, expectations, shortest, text_of
 from hil.scenarios.running import run_file
 
 
@@ -63,14 +63,14 @@ def test_a_failure_becomes_shorter_and_stays_one() -> None:
 def test_the_same_runs_by_one_process_and_by_two() -> None:
     one, two = (campaign(2, seed=1, jobs=jobs, faithful=True) for jobs in (1, 2))
     assert one == two
-    assert one
+    assert one.failed
 
 
 @pytest.mark.slow
 def test_the_corrected_robot_holds_and_the_one_as_in_the_c_does_not() -> None:
     runs = int(os.environ.get("HIL_CAMPAIGN_RUNS", "16"))
-    assert not campaign(runs, seed=1)
-    assert campaign(4, seed=1, faithful=True)
+    assert not campaign(runs, seed=1).failed
+    assert campaign(4, seed=1, faithful=True).failed
 
 
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -78,10 +78,28 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     told = json.loads(capsys.readouterr().out)
     assert (told["runs"], told["failed"]) == (2, [])
     assert invoke(["campaign", "--runs", "1", "-j", "1", "--faithful", "--keep", str(tmp_path / "kept")]) == 1
-    assert "runs held, seed 1" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert "runs held, seed 1" in told
+    assert re.match(r"\d+ errors, \d+ warnings, \d+ notes?\n\s+severity +rule +what +where +first seen\s", told), told
+    assert "shown by run 0" in told
     files = sorted((tmp_path / "kept").iterdir())
     assert files
     assert invoke(["scenario", str(files[0])]) == 1
+
+
+def test_a_full_disk_does_not_keep_failures_from_being_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:  # fmt: skip
+    ran = Campaign(5, (Failed(1, ("it drives",), "a"), Failed(3, ("it stopped",), "b")), ())
+    monkeypatch.setattr("hil.safety.campaign.campaign", lambda *_arguments, **_options: ran)
+    folder = tmp_path / "kept"
+    # Two folders stand where the files would: no file can be written.
+    for number in (1, 3):
+        (folder / f"campaign-1-{number}.scenario.toml" / "inside").mkdir(parents=True)
+    assert invoke(["campaign", "--keep", str(folder)]) == 2
+    said = capsys.readouterr()
+    assert said.out == "run 1: it drives\nrun 3: it stopped\n3 of 5 runs held, seed 1\n"
+    assert re.fullmatch(rf"hil: error: {folder}/campaign-1-1.scenario.toml: .+ \(and 1 more\)\n", said.err)
 
 
 def test_a_folder_that_cannot_be_made_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
