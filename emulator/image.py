@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from emulator.c28x.cache import compiled
-from emulator.c28x.compile import Compiled, CompileOptions
+from emulator.c28x.compiled_program import Compiled, CompileOptions
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType, specified
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION

@@ -13,7 +13,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from emulator.c28x.compile import CompileOptions, compile_program
+from emulator.c28x.compile import compile_program
+from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import BlockType
 from emulator.c28x.findings import Finding

@@ -23,9 +23,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
 
-from emulator.c28x.compile import Compiled, CompileOptions, compile_program
+from emulator.c28x.compiled_program import Compiled, CompileOptions
 from emulator.c28x.ctypes import CType
-from emulator.c28x.emit.lines import CALLED
+from emulator.c28x.emit.written import CALLED
 from emulator.c28x.program import Program, digest, folders
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import EnumType, Module, Symbol
@@ -63,6 +63,8 @@ def compiled(
     def remembered(block: str, register: str) -> bool:
         answer = asked_for[block, register] = looked_at(block, register)
         return answer
+
+    from emulator.c28x.compile import compile_program  # most runs find their program, and need no translator
 
     program = Program(**asked)
     result = compile_program(program, options, remembered)

@@ -15,8 +15,7 @@ from types import FunctionType as PyFunction
 from typing import Any, Final, cast
 
 from emulator.c28x.arithmetic import f32
-from emulator.c28x.build import RAM_WORDS
-from emulator.c28x.compile import Compiled, CompiledFunction, CompileOptions, LinkError, compile_program
+from emulator.c28x.compiled_program import Compiled, CompiledFunction, LinkError
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import (
     BOOL,
@@ -33,10 +32,9 @@ from emulator.c28x.ctypes import (
     scalars,
 )  # fmt: skip
 from emulator.c28x.emit.names import object_name
-from emulator.c28x.emit.python import FIRST_NUMBER
+from emulator.c28x.emit.written import FIRST_NUMBER
 from emulator.c28x.intrinsics import InterruptMask, intrinsics
-from emulator.c28x.memory import NULL, Object, Pointer
-from emulator.c28x.program import Program
+from emulator.c28x.memory import NULL, RAM_WORDS, Object, Pointer
 from emulator.c28x.rts_iqmath import IQmath
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.sites import Place
@@ -59,7 +57,7 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.clock import NEVER
 
-__all__ = ["CompileOptions", "LinkError", "Linked", "link", "to_c"]
+__all__ = ["LinkError", "Linked", "to_c"]
 
 
 #: Words of RAM and flash on the chip (DS, memory maps): what an image's objects can take together.
@@ -333,19 +331,3 @@ def to_c(value: Any, ctype: CType) -> Any:
     if isinstance(ctype, PointerType | HandleType):
         return NULL if value is None else value
     return value
-
-
-def link(
-    program: Program, runtime: Runtime, options: CompileOptions, *, registers: Callable[[str, str], Any],
-    externs: Mapping[str, Callable[..., Any]], replaced: Mapping[str, Callable[..., Any]] | None = None,
-    coverage: Coverage | None = None,
-) -> Linked:  # fmt: skip
-    """Compile and link a program: `registers` gives what C calls `block.name`, `externs` implement the headers.
-
-    `replaced` stands for firmware functions or externs, by name; `coverage` is where the image counts.  Raises
-    SourceError and LinkError.
-    """
-    compiled = compile_program(program, options, lambda block, name: registers(block, name).looked_at)
-    return Linked(
-        compiled, runtime, registers=registers, externs=externs, replaced=replaced or {}, coverage=coverage
-    )

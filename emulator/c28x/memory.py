@@ -32,6 +32,8 @@ from emulator.c28x.tree import Declaration
 
 #: RAM of the F28377S by word address (HDR linker command files): M0/M1, LS0-5 with D0/D1, GS0-15.
 RAM: Final = ((0x0000, 0x0800), (0x8000, 0xC000), (0xC000, 0x1C000))
+#: Its words: nothing larger can be linked.
+RAM_WORDS: Final = sum(high - low for low, high in RAM)
 FLASH: Final = (0x80000, 0x100000)
 #: System control registers, the only ones above RAM; from the end of RAM on there is nothing else but flash.
 SYSTEM: Final = (0x5D000, 0x5D400)

@@ -2,7 +2,8 @@
 
 A module is read, never imported: its text is parsed, its imports are followed to other firmware modules and to headers
 (modules whose functions are `@extern`), and every name ends in a table of symbols.  Files are found by their paths, so
-that no `__init__.py` of anybody runs.
+that no `__init__.py` of anybody runs.  A reader is imported with the first file of its language: a program that is kept
+needs none.
 """
 
 from __future__ import annotations
@@ -16,7 +17,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from emulator.c28x.ctypes import INT, CType
-from emulator.c28x.readers.python import source as python
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import EnumType, Module, NoModule, SourceError
 from emulator.c28x.tree import Where
@@ -72,6 +72,8 @@ class Program:
             return known
         module = self.add(name, *_source(file or find_module(name)))
         if name in self.overlays and name not in self.instead:
+            from emulator.c28x.readers.python import source as python
+
             file_and_text = _source(find_module(self.overlays[name]))
             python.lay_over(module, *file_and_text, self.fixes, self.module)
         return module
@@ -81,6 +83,8 @@ class Program:
         if file.lower().endswith(".c"):
             module = self.modules[name] = self.c_files().read(name, file, text)
             return module
+        from emulator.c28x.readers.python import source as python
+
         module = python.new_module(name, file, text)
         self.modules[name] = module
         python.read(module, self.module)

@@ -10,13 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import lru_cache, wraps
-from types import MappingProxyType
+from types import FunctionType, MappingProxyType
 from typing import Any, Final
 
-from emulator.c28x.ctypes import CType, HandleType, PointerType, StructType
 from emulator.c28x.memory import NULL, Memory, Pointer
 from emulator.c28x.program import Program
-from emulator.c28x.tree import Function as Prototype
+from emulator.sysbios import headers as declarations
 from emulator.sysbios.core import Function, KernelCore, KernelError, KernelObject
 
 #: Finds the object that a value stands for, if it is one of its kind.
@@ -30,8 +29,6 @@ _OPTIONAL: Final = frozenset({
 })  # fmt: skip
 #: Before tasks run these return without a look at the gate (`GateMutexPri.c`: Task_self() is NULL).
 _NOT_BEFORE_TASKS: Final = frozenset({"GateMutexPri_enter", "GateMutexPri_leave"})
-#: The object behind a `Queue_Handle` can be seen in C; its type is a plain pointer.
-_QUEUE: Final = "Queue_Object"
 
 
 @lru_cache(maxsize=1)
@@ -42,27 +39,24 @@ def headers() -> Mapping[str, Any]:
 
 @lru_cache(maxsize=1)
 def prototypes() -> Mapping[str, tuple[tuple[int, str, bool], ...]]:
-    """C function -> its arguments that are handles: which, the type's name, whether it is a pointer to the handle."""
+    """C function -> its arguments that are handles: which, the type's name, whether it is a pointer to the handle.
+
+    The names of the types tell; `headers` would take as long as linking a kept program.
+    """
     found = {}
-    for name, symbol in headers().items():
-        if isinstance(symbol, Prototype):
-            parameters = [(i, *_handle(ctype)) for i, ctype in enumerate(symbol.ctype.parameters)]
-            handles = tuple((i, kind, behind) for i, kind, behind in parameters if kind)
+    for name, function in vars(declarations).items():
+        if isinstance(function, FunctionType):
+            types = [text for parameter, text in function.__annotations__.items() if parameter != "return"]
+            handles = tuple((i, *_handle(text)) for i, text in enumerate(types) if "_Handle" in text)
             if handles:
                 found[name] = handles
     return MappingProxyType(found)
 
 
-def _handle(ctype: CType) -> tuple[str, bool]:
-    """The name of a handle's type, "" for another; whether `ctype` is a pointer to it."""
-    match ctype:
-        case HandleType(name=name):
-            return name, False
-        case PointerType(target=StructType(name=name)) if name == _QUEUE:
-            return "Queue_Handle", False
-        case PointerType(target=HandleType() | PointerType() as inner):
-            return _handle(inner)[0], True
-    return "", False
+def _handle(text: str) -> tuple[str, bool]:
+    """The name of a handle's type, and whether `text` is a pointer to the handle."""
+    name = text.removeprefix("ptr[").removesuffix("]")
+    return name, name != text
 
 
 def _may_take_handles(function: Function) -> bool:
@@ -91,10 +85,7 @@ class Handles:
         self.finders = finders
 
     def guarded(self, name: str, function: Function) -> Function:
-        """A C function that looks at its handles before it does anything.
-
-        What they are is asked at its first call: reading the headers takes as long as linking a kept program.
-        """
+        """A C function that looks at its handles before it does anything."""
         if not _may_take_handles(function):
             return function
         #: The class of its only handle, if that comes first: then a look at the class is enough.

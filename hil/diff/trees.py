@@ -13,7 +13,7 @@ from difflib import SequenceMatcher
 from typing import Any, Final
 
 from emulator.c28x import tree
-from emulator.c28x.compile import Compiled, CompiledFunction
+from emulator.c28x.compiled_program import Compiled, CompiledFunction
 from emulator.c28x.ctypes import CType, scalars
 from emulator.c28x.sites import Site
 from emulator.c28x.tree import (

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import os
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -59,13 +60,23 @@ def _lines_of(file: str, version: tuple[int, ...]) -> tuple[str, ...]:
 
 
 @lru_cache(maxsize=256)
-def _statements(lines: tuple[str, ...]) -> tuple[ast.stmt, ...]:
-    """Every statement of Python's lines, outer ones before inner ones."""
+def _parsed(lines: tuple[str, ...]) -> ast.Module:
+    """Python's lines as a tree; an empty one if they are none."""
     try:
-        tree = ast.parse("\n".join(lines))
+        return ast.parse("\n".join(lines))
     except SyntaxError:
-        return ()
-    return tuple(node for node in ast.walk(tree) if isinstance(node, ast.stmt))
+        return ast.Module([], [])
+
+
+def _statements_at(node: ast.AST, number: int) -> Iterator[ast.stmt]:
+    """The statements below a node that line `number` belongs to, outer ones before inner ones."""
+    for inner in ast.iter_child_nodes(node):
+        if isinstance(inner, ast.stmt):
+            if inner.lineno <= number <= (inner.end_lineno or inner.lineno):
+                yield inner
+                yield from _statements_at(inner, number)
+        elif isinstance(inner, ast.excepthandler | ast.match_case):
+            yield from _statements_at(inner, number)
 
 
 def source_line(file: str, number: int) -> str:
@@ -90,10 +101,8 @@ def statement(file: str, number: int) -> str:
     """
     if not file.endswith(".py"):
         return " ".join(_COMMENT.sub(" ", source_line(file, number)).split())
-    at = [node for node in _statements(_lines(file)) if node.lineno <= number <= (node.end_lineno or node.lineno)]
-    if not at:
-        return source_line(file, number)
-    return ast.unparse(max(at, key=lambda node: node.lineno)).partition("\n")[0]
+    innermost = max(_statements_at(_parsed(_lines(file)), number), key=lambda node: node.lineno, default=None)
+    return source_line(file, number) if innermost is None else ast.unparse(innermost).partition("\n")[0]
 
 
 #: A comment of C that ends on its line, or goes on behind it; a literal before it is left alone.

@@ -5,9 +5,8 @@ from __future__ import annotations
 from random import Random
 from typing import Any
 
-from emulator.c28x.compile import CompileOptions
+from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.findings import Finding
-from emulator.c28x.link import link
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
@@ -15,6 +14,7 @@ from emulator.chip import Chip
 from emulator.clock import CYCLES_PER_MS
 from emulator.device_functions import DeviceFunctions
 from hil.robot.board import RobotBoard
+from tests.emulator.c28x.linking import link
 
 HEADER = '''"""drv.c: a specimen."""
 from emulator.c28x.language import *

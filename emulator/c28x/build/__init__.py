@@ -11,7 +11,7 @@ from emulator.c28x.build.constants import character, constant_value, floating, f
 from emulator.c28x.build.conversions import condition, convert, promoted, same_type
 from emulator.c28x.build.depth import shallow, shallow_place
 from emulator.c28x.build.effects import arguments, operands, settled, unsequenced, writes_itself
-from emulator.c28x.build.initialisers import RAM_WORDS, Braces, Item, array_of, is_constant, length_given, values
+from emulator.c28x.build.initialisers import Braces, Item, array_of, is_constant, length_given, values
 from emulator.c28x.build.operators import (
     BINARY,
     COMPARISONS,
@@ -67,7 +67,6 @@ __all__ = [
     "BINARY",
     "COMPARISONS",
     "PINT",
-    "RAM_WORDS",
     "Braces",
     "Builder",
     "IfBranch",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Final
 
 from emulator.c28x.build.constants import constant_value
 from emulator.c28x.build.conversions import convert
@@ -22,7 +21,7 @@ from emulator.c28x.ctypes import (
     is_arithmetic,
     is_word_backed,
 )  # fmt: skip
-from emulator.c28x.memory import RAM, to_words
+from emulator.c28x.memory import RAM_WORDS, to_words
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import (
     AddressOf,
@@ -39,9 +38,6 @@ from emulator.c28x.tree import (
     String,
     Where,
 )  # fmt: skip
-
-#: Words of RAM on the chip: nothing larger can be linked.
-RAM_WORDS: Final = sum(high - low for low, high in RAM)
 
 
 @dataclass

@@ -3,13 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import FunctionType
-from typing import Final
 
-from emulator.clock import Clock
-
-#: How time is charged: a compiled clock is fastest called, an interpreted one where its attributes are used in place.
-CALLED: Final = not isinstance(Clock.charge, FunctionType)
+from emulator.c28x.emit.written import CALLED
 
 
 @dataclass(slots=True)

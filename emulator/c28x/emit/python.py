@@ -23,6 +23,7 @@ from emulator.c28x.ctypes import (
 )  # fmt: skip
 from emulator.c28x.emit.lines import Begin, Charge, EmittedLine, Exit, Item, LineEntry, printed
 from emulator.c28x.emit.names import FunctionNames, escaped, local_name, object_name
+from emulator.c28x.emit.written import FIRST_NUMBER, EmittedFunction
 from emulator.c28x.passes.costs import CALL, TURN, Costs
 from emulator.c28x.passes.guards import (
     mathematical_bounds,
@@ -89,27 +90,8 @@ from emulator.c28x.tree_queries import (
     whole_target,
 )  # fmt: skip
 
-#: The numbers of places in a function's text begin here, so that they can be told from all others when it is linked:
-#: beyond what arithmetic of 64 bits gives, and beyond what Python itself folds (128 bits).
-FIRST_NUMBER: Final = 1 << 130
-
-
 #: So many cases of a switch stand one after the other.
 CHOICES: Final = 32
-
-
-@dataclass(frozen=True, slots=True)
-class EmittedFunction:
-    """A function as Python: its text, the source line of each line, its places by number, what it refers to.
-
-    `counted` are the statements that are counted, by counter; the first is the function itself.
-    """
-
-    text: str
-    lines: tuple[int, ...]
-    places: tuple[tuple[Place, Site | None], ...]
-    names: FunctionNames
-    counted: tuple[Where, ...] = ()
 
 
 @dataclass(slots=True)

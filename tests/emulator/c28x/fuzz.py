@@ -28,15 +28,15 @@ from pathlib import Path
 from types import FrameType, TracebackType
 from typing import Any, Final
 
-from emulator.c28x.compile import CompileOptions
+from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.findings import Findings
-from emulator.c28x.link import link
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.tree import Function
 from emulator.clock import Clock
 from emulator.cpu import Cpu
+from tests.emulator.c28x.linking import link
 
 HERE: Final = Path(__file__).parent
 REPOSITORY: Final = HERE.parents[2]

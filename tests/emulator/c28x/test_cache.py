@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from emulator.c28x import cache
-from emulator.c28x.compile import Compiled, CompileOptions, compile_program
+from emulator.c28x.compile import compile_program
+from emulator.c28x.compiled_program import Compiled, CompileOptions
 from emulator.c28x.ctypes import PointerType, StructType
 from emulator.c28x.program import Program
 
@@ -27,7 +28,7 @@ def made(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
         translated.append(next(iter(program.modules)))
         return compile_program(program, *arguments)
 
-    monkeypatch.setattr(cache, "compile_program", counted)
+    monkeypatch.setattr("emulator.c28x.compile.compile_program", counted)
     return translated
 
 

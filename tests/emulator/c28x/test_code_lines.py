@@ -7,10 +7,10 @@ from types import CodeType
 from hypothesis import given
 from hypothesis import strategies as st
 
-from emulator.c28x.compile import CompiledFunction
+from emulator.c28x.compiled_program import CompiledFunction
 from emulator.c28x.ctypes import VOID, FunctionType
 from emulator.c28x.emit.names import FunctionNames
-from emulator.c28x.emit.python import EmittedFunction
+from emulator.c28x.emit.written import EmittedFunction
 from emulator.c28x.tree import Function
 
 #: 20 lines with a loop, branches, a long run of code in one line and an inner function.

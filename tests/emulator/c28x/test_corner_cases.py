@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from greenlet import getcurrent, greenlet
 
-from emulator.c28x.link import link
 from emulator.c28x.runtime import IllegalCall
 from emulator.c28x.symbols import SourceError
+from tests.emulator.c28x.linking import link
 from tests.emulator.c28x.workshop import HEADER, Workshop
 
 CASES: list[tuple[str, str, tuple[Any, ...], Any]] = [

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from emulator.c28x.compile import CompileOptions
-from emulator.c28x.link import link
+from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.memory import Memory, Pointer
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
 from emulator.sysbios.core import KernelError
 from emulator.sysbios.watch import KernelWatch
+from tests.emulator.c28x.linking import link
 from tests.emulator.c28x.readers.c.workshop import NAME, read
 from tests.emulator.sysbios.bench import Bench
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from emulator.c28x.ctypes import CType, HandleType, PointerType, StructType
+from emulator.c28x.tree import Function
 from emulator.sysbios.handles import headers, prototypes
 from tests.emulator.sysbios.bench import FOREVER, Bench
 from tests.emulator.sysbios.c_program import HEAPS, CProgram, seen
@@ -80,6 +82,27 @@ def test_every_argument_that_is_a_handle_is_looked_at() -> None:
     named = {name for name in headers() if name.endswith("_Handle")}
     assert named == kinds
     assert {f"{kind.removesuffix('_Handle')}_delete" for kind in kinds - {"IHeap_Handle"}} <= set(prototypes())
+
+
+def _handle(ctype: CType, typedef: str = "") -> tuple[str, bool] | None:
+    """The name of a handle's type, and whether `ctype` is a pointer to the handle; None for another type."""
+    match ctype:
+        case HandleType(name=name):
+            return name, False
+        case PointerType(target=StructType(name="Queue_Object")):  # the one handle that C can look behind
+            return "Queue_Handle", False
+        case PointerType(target=inner):
+            behind = _handle(inner)
+            return behind and (behind[0], True)
+    return None
+
+
+def test_the_names_of_types_tell_the_handles_that_the_types_are() -> None:
+    declared = {
+        name: tuple((i, *handle) for i, ctype in enumerate(symbol.ctype.parameters) if (handle := _handle(ctype)))
+        for name, symbol in headers().items() if isinstance(symbol, Function)
+    }  # fmt: skip
+    assert prototypes() == {name: handles for name, handles in declared.items() if handles}
 
 
 def test_a_handle_through_the_argument_of_a_clock_is_the_object_again() -> None:

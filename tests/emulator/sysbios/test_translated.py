@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from emulator.c28x.compile import CompileOptions
-from emulator.c28x.link import link
+from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program
 from emulator.c28x.runtime import Runtime
+from tests.emulator.c28x.linking import link
 from tests.emulator.sysbios.bench import Bench
 
 SOURCE = '''"""robot.c: a task that a Clock releases."""

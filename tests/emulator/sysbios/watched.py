@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from emulator.c28x.compile import CompileOptions
+from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.findings import Finding, Findings
-from emulator.c28x.link import Linked, link
+from emulator.c28x.link import Linked
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
@@ -16,6 +16,7 @@ from emulator.chip import delay_us
 from emulator.rules.kernel import RULES
 from emulator.sysbios.watch import KernelWatch
 from hil.robot.board import RobotBoard
+from tests.emulator.c28x.linking import link
 from tests.emulator.sysbios.bench import MS, Bench
 
 HEADER = '''"""drv.c: a specimen."""

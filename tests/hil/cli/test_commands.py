@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -11,7 +12,10 @@ from hil.cli.commands import COMMANDS, NAMES
 
 #: What takes long to import, and what it is for.
 CHIP = ("emulator.peripherals", "emulator.devices", "emulator.sysbios", "emulator.registers.gpio", "hil.world")
-TRANSLATOR = ("emulator.c28x.program", "emulator.c28x.emit", "emulator.c28x.passes", "pycparser")
+TRANSLATOR = (
+    "emulator.c28x.program", "emulator.c28x.compile", "emulator.c28x.build", "emulator.c28x.emit.python",
+    "emulator.c28x.passes.flow", "emulator.c28x.readers.python.source", "emulator.c28x.readers.c.source", "pycparser",
+)  # fmt: skip
 ROBOT = ("firmware_model", "hil.bench", "hil.robot.board")
 PICTURES = ("numpy", "matplotlib")
 PAGES = ("nicegui", "textual", "jinja2")
@@ -41,6 +45,14 @@ def test_a_command_that_runs_the_robot_imports_chip_and_robot_but_no_pictures() 
     modules = imported("run", "--no-port", "--pace", "max", "--for", "0", "--json")
     assert modules >= {*CHIP, *ROBOT}
     assert not modules & {*PICTURES, *PAGES}
+
+
+def test_a_program_that_is_kept_needs_no_translator(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HIL_CACHE", str(tmp_path))
+    run = ("run", "--no-port", "--pace", "max", "--for", "0", "--json")
+    first, second = imported(*run), imported(*run)
+    assert {"emulator.c28x.compile", "emulator.c28x.readers.python.source"} <= first
+    assert second & set(TRANSLATOR) == {"emulator.c28x.program"}  # what finds modules, without a reader
 
 
 def test_only_the_command_that_is_chosen_is_imported() -> None:

@@ -28,6 +28,7 @@ from emulator.c28x.ctypes import (
     complete,
     specified,
 )  # fmt: skip
+from emulator.c28x.memory import RAM_WORDS
 from emulator.c28x.readers.c import headers
 from emulator.c28x.readers.c.no_object import Prototype, Unsized
 from emulator.c28x.symbols import Enumerator, EnumType, SourceError
@@ -157,12 +158,12 @@ class CTypeReader:
         length = self.number(node.dim, "the length of an array")
         if length < 1:
             raise SourceError.at(node.dim.coord, "an array needs at least one element")
-        if element.words * length > build.RAM_WORDS:
+        if element.words * length > RAM_WORDS:
             inner = node.type
             while not isinstance(inner, c_ast.TypeDecl):
                 inner = inner.type
             message = f"{inner.declname or 'this array'} does not fit into the memory: "
-            message += f"the chip has {build.RAM_WORDS} words of RAM"
+            message += f"the chip has {RAM_WORDS} words of RAM"
             raise SourceError.at(node.coord if length < 1 << 32 else node.dim.coord, message)
         return build.array_of(element, length, node.coord)
 

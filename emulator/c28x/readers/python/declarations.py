@@ -27,6 +27,7 @@ from emulator.c28x.ctypes import (
     UnionType,
     complete,
 )  # fmt: skip
+from emulator.c28x.memory import RAM_WORDS
 from emulator.c28x.readers.python import hints, written
 from emulator.c28x.readers.python.expressions import PythonExpressionReader
 from emulator.c28x.readers.python.statements import PythonStatementReader
@@ -236,8 +237,8 @@ class PythonDeclarationReader(PythonTypeReader):
         made = self.module.symbols[node.name]
         assert isinstance(made, StructType)
         complete(made, [(name, *member) for name, member in members.items()], volatile)
-        if made.words > build.RAM_WORDS:
-            message = f"{word} {node.name} has {made.words} words: the chip has {build.RAM_WORDS} words of RAM"
+        if made.words > RAM_WORDS:
+            message = f"{word} {node.name} has {made.words} words: the chip has {RAM_WORDS} words of RAM"
             raise self.error(node, message)
 
     def read_object(self, node: ast.AnnAssign) -> None:

@@ -6,14 +6,15 @@ from typing import Any
 
 import pytest
 
-from emulator.c28x.compile import CompileOptions
-from emulator.c28x.link import Linked, link
+from emulator.c28x.compiled_program import CompileOptions
+from emulator.c28x.link import Linked
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import EndlessPoll
 from emulator.c28x.symbols import SourceError
 from emulator.image import runtime_of
 from emulator.system import System
+from tests.emulator.c28x.linking import link
 
 HEAD = """#include "F28x_Project.h"
 volatile struct EPWM_REGS *pwm = &EPwm1Regs;

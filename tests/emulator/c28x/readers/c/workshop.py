@@ -9,10 +9,9 @@ from typing import Any
 
 import pytest
 
-from emulator.c28x.compile import CompileOptions
+from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Findings
-from emulator.c28x.link import link
 from emulator.c28x.memory import Memory
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
@@ -20,6 +19,7 @@ from emulator.c28x.runtime import Runtime
 from emulator.c28x.symbols import SourceError
 from emulator.clock import Clock
 from emulator.cpu import Cpu
+from tests.emulator.c28x.linking import link
 
 NAME = "drv.c"
 
