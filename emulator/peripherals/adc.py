@@ -500,7 +500,7 @@ class Adc:
                 self._findings.report(
                     "adc-flag-shared",
                     f"{name} was changed from {soc} to {is_now & SELECT} while SOC{soc} was converting: its end does "
-                    f"not set ADCINT{n + 1}, and who waits for that flag gets another conversion or none",
+                    f"not set ADCINT{n + 1}; code that waits for that flag reads another conversion's result, or hangs",
                     object=name, value=is_now & SELECT,
                 )  # fmt: skip
 
@@ -592,7 +592,7 @@ class Adc:
                 name = f"{self._regs.name}.ADCINTFLG.{flag}"
                 self._findings.report(
                     "flag-not-cleared",
-                    f"{name} is still set from before, so that a wait for it passes at once: {register.path} was read "
+                    f"{name} is still set from before, so a wait for it ends at once: {register.path} was read "
                     f"while SOC{n} {state}, and holds the result of an earlier conversion",
                     object=name, value=register.value,
                 )  # fmt: skip

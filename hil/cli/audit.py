@@ -30,6 +30,12 @@ EXAMPLES: Final = """
   hil audit --file GYRO.c --json
   hil audit --firmware my_robot   (your us.c, GYRO.c, ... of that folder)
   hil audit --compare
+
+[bold]Exit status[/bold]
+  0  every entry is demonstrated
+  1  an entry is not demonstrated
+  2  bad input
+  130  interrupted
 """
 
 
@@ -70,7 +76,7 @@ def audit(
 
     A detector's finding or a measured property must show the defect in the original firmware, and must not show it with
     the correction.  Entries about numbers of the text are only read.  With --all-but-one, the defect must show again
-    when only its own correction is missing.  Exit status 1 if an entry is not demonstrated, 130 after Ctrl-C.
+    when only its own correction is missing.
     """
     with show.user_errors():
         if markdown and (json_output or not compare):
@@ -121,7 +127,7 @@ def audit(
         raise typer.Exit(show.EXIT_FAILED)
 
 
-audit.__doc__ = (audit.__doc__ or "") + EXAMPLES
+audit.__doc__ = f"{audit.__doc__}\n\n{EXAMPLES}"
 
 
 def _chosen(ids: list[str], c_file: str | None) -> list[str]:

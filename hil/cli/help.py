@@ -11,17 +11,17 @@ MOST_UNGROUPED: Final = 8
 #: The groups in their order, and the parameters of all commands that belong to each.
 GROUPS: Final = {
     "Robot and world": (
-        "scenario", "world", "board", "option", "put", "realistic", "fix", "xbee", "thesis", "reference_deg",
+        "scenario", "world", "board", "option", "put", "realistic", "fix", "xbee", "reference_deg",
         "true_step", "faithful", "emulate", "ideal",
     ),
     "What happens": (
         "order", "fault", "feed", "calls", "silence", "phasings", "synthetic", "app", "python",
-        "to_console", "wait", "c_file", "compare", "all_but_one",
+        "to_console", "wait", "c_file", "compare", "all_but_one", "thesis", "protocol", "interrupts",
     ),
     "Time and chance": ("pace", "for_s", "seed", "jobs", "jitter", "kernel_scale", "float_division", "divide", "fill"),
-    "Firmware": ("firmware", "project", "include", "define", "abi", "interrupts"),
+    "Firmware": ("firmware", "project", "include", "define", "abi"),
     "Port": ("port", "link", "listen", "no_port", "deliver", "keep"),
-    "What fails": ("fail_on", "baseline", "update_baseline", "proof", "against", "proof_for_s", "cycles", "protocol"),
+    "What fails": ("fail_on", "baseline", "update_baseline", "proof", "against", "proof_for_s", "cycles"),
     "Output": (
         "json_output", "plot", "task", "page", "trace", "channel", "wire", "lcov", "html", "sarif", "junit", "details",
         "lines", "markdown", "only_list", "output", "folder", "write",

@@ -16,14 +16,21 @@ from hil.cli import show
 Firmware = Annotated[
     list[Path] | None,
     typer.Option(
+        "--firmware", metavar="DIR", help="Your C files with the robot's file names: folder or file; repeatable."
+    ),
+]
+#: Of commands with `--board`.
+FirmwareOrProgram = Annotated[
+    list[Path] | None,
+    typer.Option(
         "--firmware", metavar="DIR",
-        help="C files of the robot (file or folder, by name), or the program of --board; repeatable.",
+        help="Your C files with the robot's file names, or the program of --board: folder or file; repeatable.",
     ),
 ]
 Project = Annotated[
     Path | None,
     typer.Option("--project", metavar="FILE",
-        help="A Code Composer .cproject file (default: the one in the folder of --firmware)."),
+        help="A Code Composer .cproject file (default: the one beside the C files)."),
 ]
 Include = Annotated[
     list[Path] | None, typer.Option("-I", metavar="DIR", help="A folder of C headers; repeatable.")

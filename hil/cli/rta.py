@@ -27,6 +27,11 @@ EXAMPLES: Final = """
   hil rta tasks.toml --protocol ceiling --phasings 1000
   hil rta --thesis
   hil rta --firmware my_robot --plot worst.png --task TaskODO
+
+[bold]Exit status[/bold]
+  0  every deadline is met
+  1  a deadline is missed, or a response exceeds the computed worst case
+  2  bad input
 """
 #: Random phasings besides the critical instant, unless the user wants others.
 PHASINGS: Final = 20
@@ -75,18 +80,14 @@ def rta(
     option: Option = None,
     world: show.World = "corridor",
     seed: show.Seed = 1,
-    firmware: own_c.Firmware = None,
+    firmware: own_c.FirmwareOrProgram = None,
     float_division: own_c.FloatDivision = None,
     project: own_c.Project = None,
     include: own_c.Include = None,
     define: own_c.Define = None,
     json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
-    """Compute worst-case response times, and measure response times on the emulated kernel.
-
-    Exit status 1: a deadline is missed, or a response was seen that is longer than the one computed with the largest
-    times of the same runs.
-    """
+    """Compute worst-case response times, and measure response times on the emulated kernel."""
     with show.user_errors(), ExitStack() as stack:
         from hil.rta.analysis import Protocol
 

@@ -189,7 +189,7 @@ def run(
     lcov: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the line coverage of the firmware (lcov).")
     ] = None,
-    firmware: own_c.Firmware = None,
+    firmware: own_c.FirmwareOrProgram = None,
     project: own_c.Project = None,
     include: own_c.Include = None,
     define: own_c.Define = None,

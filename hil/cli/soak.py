@@ -24,6 +24,7 @@ EXAMPLES: Final = """
 [bold]Exit status[/bold]
   0  the run is complete
   2  bad input
+  130  interrupted
 
   The same options give the same digests.
 """

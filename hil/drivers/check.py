@@ -121,7 +121,7 @@ def _function(exercised: Exercised, found: Roles, ran: Ran | None) -> CalledFunc
     function = exercised.function
     reason = exercised.reason
     if ran is not None and (function is found.main or function in found.tasks):
-        reason = f"{reason}: run for {ran.virtual_s:g} s" + (f", then ended: {ran.cut}" if ran.cut else "")
+        reason = f"{reason}; the program ran for {ran.virtual_s:g} s" + (f", then ended: {ran.cut}" if ran.cut else "")
     notes = []
     if exercised.guessed:
         notes.append(f"the C does not tell how much {' and '.join(exercised.guessed)} may point to: a guess")

@@ -120,7 +120,7 @@ def roles(modules: Iterable[Module]) -> Roles:
                 found.unmade.append(function)
     found.tasks = [f for f in functions if found.entries.get(f.path) == "a task"]
     if found.main is not None:
-        found.entries[found.main.path] = "the program's own beginning"
+        found.entries[found.main.path] = "the program's entry point"
     return found
 
 

@@ -55,7 +55,7 @@ def _lines(report: Report) -> Iterator[str]:
         yield f"called, with how many argument lists: {', '.join(called)}"
     for one in report.run.functions:
         if one.note:
-            what = "" if one.called else "not called: "
+            what = "" if one.called else "not called with generated arguments: "
             yield f"{what}{one.name} ({relative_path(one.file)}:{one.line}): {one.note}"
 
 

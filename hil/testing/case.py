@@ -17,7 +17,7 @@ from emulator.rules import RULES
 from hil.reports.baseline import Baseline
 from hil.reports.model import Report, ReportEntry, Run
 from hil.reports.policy import Policy, nearest
-from hil.testing.text import entry_lines, headline
+from hil.testing.text import entry_lines
 
 #: From here on two identifiers are taken for one, mistyped (0 to 1, `difflib`).
 _ALIKE: Final = 0.75
@@ -126,24 +126,24 @@ class Case:
         return list(dict.fromkeys(".".join(f.object.split(".")[:2]) or f.message for f in used))
 
     def counted(self) -> list[ReportEntry]:
-        """What fails this test: unexpected, severe enough, and not in the baseline."""
+        """What fails this test: unexpected, severe enough, and not in the baseline; the worst first."""
         report = Report.of(self.unexpected(), run=Run(self.name), policy=self.policy, baseline=self.baseline)
-        return list(report.counted)
+        return sorted(report.counted, key=lambda entry: -entry.severity.rank)
 
     def verdict(self) -> str:
-        """Why the test has failed, first line a summary; empty if it has not."""
+        """Why the test has failed, what counts most first; empty if it has not.
+
+        The first line is what pytest's summary shows of it: the first finding, and of how many.
+        """
         try:
             entries, missing = self.counted(), self.missing()
         except ValueError as error:  # a wrong declaration in the firmware's comments
             return str(error)
-        lines = [line for entry in entries for line in ("", *entry_lines(entry))]
-        for expectation in missing:
-            lines += ["", f"{expectation}: did not come", *_instead(self.findings)]
-        if not lines:
-            return ""
-        reasons = [headline(entries)] if entries else []
-        reasons += [f"{expectation} did not come" for expectation in missing]
-        return "\n".join(["; ".join(reasons), *lines])
+        blocks = [entry_lines(entry) for entry in entries]
+        blocks += [[f"{expectation}: did not come", *_instead(self.findings)] for expectation in missing]
+        if len(entries) > 1:
+            blocks[0][0] += f" (1 of {len(entries)} findings)"
+        return "\n\n".join("\n".join(block) for block in blocks)
 
     def close(self) -> None:
         """The test is over: its static findings have been answered for."""

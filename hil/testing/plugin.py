@@ -274,12 +274,13 @@ class _Collector:
             pytest.exit(f"c2000-hil: {error}", returncode=pytest.ExitCode.USAGE_ERROR)
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        """Show the findings of all tests, what was used that is not modelled, and what was written."""
+        """Show the findings of several tests, what was used that is not modelled, and what was written."""
         if self._report is not None and self._report.entries:
             from hil.reports.terminal import summary
             from hil.testing.text import table
 
-            if self._report.counted:
+            # What one red test has found its failure has said already.
+            if self._report.counted and len({test for entry in self._report.entries for test in entry.by}) > 1:
                 terminalreporter.section("findings of c2000-hil")
                 width = terminalreporter._tw.fullwidth
                 terminalreporter.write_line(table(self._report, width, coloured=terminalreporter.hasmarkup))

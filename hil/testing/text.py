@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
 
 from rich.console import Console
 
@@ -12,12 +11,6 @@ from emulator.clock import ms
 from hil.reports.excerpt import location, shown, source_line
 from hil.reports.model import Report, ReportEntry
 from hil.reports.terminal import MOST_SHOWN, print_report
-
-
-def headline(entries: Sequence[ReportEntry]) -> str:
-    """All findings of a test in one line: how many, and the first one."""
-    more = f", and {len(entries) - 1} more" if len(entries) > 1 else ""
-    return f"finding {one_line(entries[0].finding)}{more}"
 
 
 def table(report: Report, width: int, *, coloured: bool) -> str:

@@ -333,7 +333,8 @@ class TestC:
         assert report(capsys, "m.c", "--for", "0.005")[1]["run"]["uncalibrated_factor"] == UNCALIBRATED_FACTOR
         _, data = report(capsys, "m.c", "--for", "0.02")
         assert found(data)["index", 7]["severity"] == "error"
-        assert data["run"]["functions"][0]["note"].startswith("it is the program's own beginning: run for 0.02")
+        told = data["run"]["functions"][0]["note"]
+        assert told.startswith("it is the program's entry point; the program ran for 0.02")
 
     def test_a_main_that_waits_for_its_interrupts_is_right(
         self, folder: Path, capsys: pytest.CaptureFixture[str]

@@ -42,6 +42,7 @@ def test_a_name_belongs_to_one_group_and_some_command_has_it() -> None:
 
 def test_examples_and_exit_status_stand_below_each_other_each_on_its_line(helped: str) -> None:
     lines = [line.strip() for line in helped.splitlines()]
+    assert not re.search(r"Examples +hil |Exit status +\d", helped)
     for heading in {"Examples", "Exit status"} & set(lines):
         listed = lines[lines.index(heading) + 1 :]
         listed = listed[: listed.index("")]

@@ -337,7 +337,7 @@ def test_b(firmware):
 def test_what_no_test_reads_is_foretold(project: pytest.Pytester) -> None:
     outcome = run(project, "def test_a(firmware):\n    firmware.drv.Half(4)\n")
     outcome.assert_outcomes(failed=1)
-    outcome.stdout.fnmatch_lines(["finding maybe-uninitialised: *"])
+    outcome.stdout.fnmatch_lines(["warning maybe-uninitialised: *"])
 
 
 def test_a_project_may_use_the_words_of_the_plugin_for_itself(project: pytest.Pytester) -> None:
