@@ -179,20 +179,23 @@ def progress(what: str, *, quiet: bool = False) -> Iterator[Callable[[float], No
 
 
 def print_json(data: Mapping[str, Any]) -> None:
-    """Exactly one JSON object on stdout.  Numbers that JSON does not know become null."""
-    print(json.dumps(_plain(data), indent=2, allow_nan=False), flush=True)
+    """Exactly one JSON object on stdout.
 
+    Numbers that JSON does not know become null.  Paths below the current directory are relative to it, whatever the
+    user typed.
+    """
+    from hil.reports.excerpt import from_here
 
-def _plain(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if isinstance(value, float) and (value != value or value in (float("inf"), float("-inf"))):
-        return None
-    if value is None or isinstance(value, bool | int | float | str):
-        return value
-    return str(value)
+    def plain(value: Any) -> Any:
+        if isinstance(value, Mapping):
+            return {str(key): plain(item) for key, item in value.items()}
+        if isinstance(value, list | tuple):
+            return [plain(item) for item in value]
+        if isinstance(value, float) and (value != value or value in (float("inf"), float("-inf"))):
+            return None
+        return value if value is None or isinstance(value, bool | int | float) else from_here(str(value))
+
+    print(json.dumps(plain(data), indent=2, allow_nan=False), flush=True)
 
 
 def open_machine(setup: Setup, *, coverage: Coverage | None = None, kind: type[Board] | None = None) -> Machine:

@@ -45,6 +45,12 @@ def relative_path(file: str) -> str:
         return path.as_posix()
 
 
+def from_here(text: str) -> str:
+    """A text in which paths below the current directory are relative to it."""
+    here = re.escape(f"{Path.cwd()}{os.sep}")
+    return re.sub(rf"(?<![^\s=:'\"(\[]){here}", "", text)
+
+
 def _lines(file: str) -> tuple[str, ...]:
     """The lines of a file as it is now; none if it cannot be read."""
     try:

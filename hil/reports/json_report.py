@@ -15,7 +15,7 @@ from emulator.c28x.sites import Place
 from emulator.rules import Rule, Severity
 from hil.files import replacing
 from hil.reports.differences import OutputDifference, Proof, RunDifferences
-from hil.reports.excerpt import readable, relative_path
+from hil.reports.excerpt import from_here, readable, relative_path
 from hil.reports.model import TARGET, Report, ReportEntry, versions
 
 #: Grows when a key goes away or changes its meaning; new keys do not change it.
@@ -127,4 +127,6 @@ def _plain(value: Any) -> Any:
         return [_plain(item) for item in value]
     if isinstance(value, Enum):
         return value.value
+    if isinstance(value, str):
+        return from_here(value)
     return None if isinstance(value, float) and not isfinite(value) else value
