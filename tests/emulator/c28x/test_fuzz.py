@@ -15,7 +15,7 @@ from tests.emulator.c28x import fuzz
 from tests.emulator.c28x.workshop import Workshop
 
 FIRST = int(os.environ.get("HIL_FIRST", "0"))
-CASES = int(os.environ.get("HIL_FUZZ", "2000"))
+CASES = int(os.environ.get("HIL_FUZZ", "1000"))
 #: Seeds of one test: small enough to be shared between the processes of a run.
 BATCH = 100
 
