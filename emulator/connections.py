@@ -85,6 +85,10 @@ class Connections:
         self._chip = chip
         self._linked = linked
         self._done = False
+        #: Whether `main` has come to its last loop, or to the start of the kernel: whoever runs it says so.
+        self.started_up = False
+        #: Interrupt routines that never run again, by the function's name.
+        self.silent: set[str] = set()
 
     def finish(self) -> None:
         """Tell what is configured and can bring nothing."""
@@ -154,8 +158,14 @@ class Connections:
         return field_of(self._chip.blocks[block].registers[name].value, self._mask(register, field))
 
     def _stuck(self, register: str, field: str, right: Callable[[int], bool]) -> bool:
-        """Whether a field has a value that is not right, and no statement could give it another."""
-        return not right(self._value(register, field)) and not self._could(register, right, field)
+        """Whether a field has a value that is not right, and no statement could give it another.
+
+        What the start-up gave it, and took away again, comes no more.
+        """
+        if right(self._value(register, field)):
+            return False
+        block, name = _split(register)
+        return not self._source.could(block, name, self._mask(register, field), right, again=self.started_up)
 
     def _tell(self, waits: Place | None, message: str, missing: Missing, object: str, *, whole: bool = False) -> None:
         """Tell that something waits (at a place of the source) for what never comes."""
@@ -184,10 +194,33 @@ class Connections:
                 place = self._wanting(register, "TRIGSEL")
                 if place is None:
                     continue
-                trigger, missing = self._no_trigger(self._value(register, "TRIGSEL"))
+                trigsel = self._value(register, "TRIGSEL")
+                trigger, missing = self._no_trigger(trigsel)
+                if missing and missing.field in ("SOCAEN", "SOCBEN") and self._unheard(trigsel):
+                    other = "SOCB" if trigger.startswith("SOCA") else "SOCA"
+                    why = f"{missing.why}, while its {other} occurs and starts nothing"
+                    missing = Missing(why, register, "TRIGSEL")
                 if missing:
                     waits = f"{register}.TRIGSEL waits for {trigger}, which never occurs"
                     self._tell(place, waits, missing, f"{register}.TRIGSEL")
+
+    def _unheard(self, trigsel: int) -> bool:
+        """Whether the other SOC of the ePWM of a TRIGSEL comes, and nobody listens to it: that one was meant."""
+        other = trigsel + 1 if (trigsel - FIRST_SOCA) % 2 == 0 else trigsel - 1
+        if self._no_trigger(other)[1] is not None or self._could_trigger_dma(other):
+            return False
+        return not any(
+            self._could(f"Adc{letter.lower()}Regs.ADCSOC{n}CTL", lambda word: word == other, "TRIGSEL")
+            for letter in ADC_PIE for n in range(16)
+        )
+
+    def _could_trigger_dma(self, trigsel: int) -> bool:
+        """Whether a channel of the DMA could listen to a trigger."""
+        number = DMA_TRIGSEL[trigsel]
+        return any(
+            self._could(f"DmaClaSrcSelRegs.DMACHSRCSEL{1 + n // 4}", lambda word: word == number, f"CH{n + 1}")
+            for n in range(DMA_CHANNELS)
+        )
 
     def _burst(self, block: str, first: int) -> None:
         """Bursts go round through the SOCs from `first` on: they should come back to it, and each be set up."""
@@ -297,6 +330,7 @@ class Connections:
                     continue
                 missing = self._no_source(group, n) or self._closed(group, n)
                 if missing:
+                    self.silent.add(str(chip.vectors.routine(group, n)))
                     waits = f"interrupt {group}.{n} is enabled but never occurs"
                     self._tell(place, waits, missing, f"{register}.{field}", whole=True)
 
@@ -554,20 +588,26 @@ class Connections:
     def _cpu_timers(self) -> None:
         """Routines of CPU timers 1 and 2, whose interrupts go to the CPU directly."""
         for n in (1, 2):
-            vector = 12 + n
+            vector, name = 12 + n, f"CpuTimer{n}Regs"
             routine = self._chip.vectors.cpu_routine(vector)
-            runs = not self._value(f"CpuTimer{n}Regs.TCR", "TSS")
-            place = self._source.last(f"CpuTimer{n}Regs", "TCR")
-            if routine is None or not runs or place is None or not self._value(f"CpuTimer{n}Regs.TCR", "TIE"):
+            place = self._source.last(name, "TCR")
+            if routine is None or place is None or not self._value(f"{name}.TCR", "TIE"):
                 continue
             bit = 1 << vector - 1
-            if not self._chip.cpu.ier & bit and not self._source.could("CPU", "IER", bit, bool):
+            enabled = bool(self._chip.cpu.ier & bit)
+            if self._value(f"{name}.TCR", "TSS"):
+                if enabled and self._stuck(f"{name}.TCR", "TSS", lambda stopped: not stopped):
+                    self.silent.add(routine)
+                    missing = Missing(f"{name}.TCR.TSS = 1: it does not run", f"{name}.TCR", "TSS")
+                    self._tell(place, f"{routine} waits for CPU timer {n}, which is stopped", missing, name)
+            elif not enabled and not self._source.could("CPU", "IER", bit, bool):
+                self.silent.add(routine)
                 # Where IER is given what it has, not where the timer is right.
                 ier = self._source.last("CPU", "IER")
                 self._chip.findings.report_at(
                     ier or place, "not-connected",
                     f"{routine} waits for CPU timer {n}, which runs: bit {vector - 1} of IER (M_INT{vector}) is 0",
-                    object=f"CpuTimer{n}Regs", how="dynamic", details=(f"wanted by {place}",) if ier else (),
+                    object=name, how="dynamic", details=(f"wanted by {place}",) if ier else (),
                 )  # fmt: skip
 
     def _trips(self) -> None:
@@ -698,7 +738,8 @@ class Connections:
             if used is None:
                 continue
             control = f"{block}.CAN_CTL"
-            if self._stuck(control, "Init", lambda init: not init):
+            # The controller sets Init itself when it goes off the bus.
+            if self._value(control, "Init") and not self._could(control, lambda init: not init, "Init"):
                 self._tell(
                     used, f"{block} sends and receives nothing", Missing(f"{control}.Init = 1", control, "Init"), block,
                     whole=True,

@@ -27,10 +27,12 @@ from emulator.c28x.tree import (
     RegisterAt,
     RegisterLoad,
     RegisterRef,
+    Return,
+    Stmt,
     Variable,
     Where,
 )
-from emulator.c28x.tree_queries import bare, parts, roots, statements, within
+from emulator.c28x.tree_queries import bare, blocks, last_loop, parts, roots, statements, within
 from emulator.chip import ECAP_INPUT, XINT_INPUT
 from emulator.peripherals.dma import CHANNELS, CHINTE, CONTINUOUS, ONESHOT, PERINTE, RUN
 
@@ -104,6 +106,8 @@ class RegisterWrites:
         own = {f.path: f for module in modules for f in module.functions}
         self.whole = any(f.name == "main" and f.body for f in own.values())
         reached = self._reached(modules, own)
+        #: The statements that every start-up runs, and nothing behind it.
+        self._over = self._of_start_up(own) - self._behind_start_up(modules, own)
         self._given: dict[Variable, list[Expr]] = {}
         self._free: set[Variable] = set()
         for f in reached:
@@ -141,6 +145,47 @@ class RegisterWrites:
                 if isinstance(part, FunctionRef):
                     waiting.append(part.function.path)
         return [f for f in own.values() if f.path in seen]
+
+    def _behind_start_up(self, modules: list[Module], own: dict[str, Function]) -> set[Place]:
+        """The statements, and calls, that can still run when `main` stands in its last loop, or has started the kernel.
+        """
+        main = next((f for f in own.values() if f.name == "main" and f.body), None)
+        if main is None:
+            return set()
+        kernel = any(isinstance(part, Call) and part.function.name == "BIOS_start" for part in within(main.body))
+        loop = None if kernel else last_loop(main)
+        bodies: list[tuple[Function, list[Stmt]]] = [(main, [loop])] if loop is not None else []
+        values = (value for module in modules for variable in module.variables for value in variable.initial or ())
+        nodes = [part for value in values for part in parts(value)]
+        nodes += [part for f in own.values() for part in within(f.body)]
+        waiting = [f.path for f in own.values() if f.interrupt]
+        waiting += [part.function.path for part in nodes if isinstance(part, FunctionRef)]
+        waiting += [part.function.path for _, body in bodies for part in within(body) if isinstance(part, Call)]
+        seen = {main.path}
+        while waiting:
+            path = waiting.pop()
+            if path not in seen and path in own:
+                seen.add(path)
+                waiting += own[path].calls
+                bodies.append((own[path], own[path].body))
+        return {place for f, body in bodies for s in statements(body) for place in _places(f, s)}
+
+    def _of_start_up(self, own: dict[str, Function]) -> set[Place]:
+        """The statements, and calls, that `main` comes to whatever happens, up to its last loop."""
+        found: set[Place] = set()
+        waiting = [f for f in own.values() if f.name == "main"]
+        seen: set[str] = set()
+        while waiting:
+            f = waiting.pop()
+            seen.add(f.path)
+            loop = last_loop(f) if f.name == "main" else None
+            for s in f.body:
+                if s is loop or any(isinstance(inner, Return) for block in blocks(s) for inner in statements(block)):
+                    break
+                found |= _places(f, s)
+                called = [part.function.path for root in roots(s) for part in parts(root) if isinstance(part, Call)]
+                waiting += [own[path] for path in called if path in own and path not in seen]
+        return found
 
     def _read_calls(self, f: Function) -> None:
         for s in statements(f.body):
@@ -217,12 +262,17 @@ class RegisterWrites:
         """The assignments by name to some bits of a register."""
         return [write for write in self.writes.get((block, register), ()) if write.mask & mask]
 
-    def could(self, block: str, register: str, mask: int, right: Callable[[int], bool]) -> bool:
-        """Whether some assignment could give the bits of `mask` (as a number of their own) a value that is right."""
+    def could(
+        self, block: str, register: str, mask: int, right: Callable[[int], bool], *, again: bool = False
+    ) -> bool:  # fmt: skip
+        """Whether some assignment could give the bits of `mask` (as a number of their own) a value that is right.
+
+        `again`: without those of every start-up, which is over.
+        """
         pointed = (write for write in self.pointed.get(register, ()) if write.mask & mask)
         return any(
             write.values is None or any(right(field_of(value, mask)) for value in write.values)
-            for write in (*self.of(block, register, mask), *pointed)
+            for write in (*self.of(block, register, mask), *pointed) if not again or write.place not in self._over
         )
 
     def giving(self, block: str, register: str, mask: int, word: int) -> Place | None:
@@ -244,6 +294,12 @@ class RegisterWrites:
 
 def _place(f: Function, where: Where) -> Place:
     return Place(where.file, where.line, f.name, f.c_file, where.column)
+
+
+def _places(f: Function, s: Stmt) -> set[Place]:
+    """Those of a statement and of the calls in it, without its inner blocks."""
+    nodes = [part for root in roots(s) for part in parts(root)]
+    return {_place(f, s.where)} | {_place(f, p.where) for p in nodes if isinstance(p, Call) and p.where.line}
 
 
 def field_of(word: int, mask: int) -> int:

@@ -53,6 +53,14 @@ class System(Chip):
             cost_scale=kernel_cost_scale, heap_words=heap_words, start_up=self._start_up,
         )  # fmt: skip
 
+        #: The look at what is connected to nothing, of an image that is watched.
+        self.connections: Connections | None = None
+
+    def _started_up(self) -> None:
+        """Behind BIOS_start nothing of `main` comes any more."""
+        if self.connections is not None and self.kernel.started:
+            self.connections.started_up = True
+
     # What the kernel needs of the chip
 
     def _start_up(self) -> None:
@@ -99,7 +107,9 @@ class System(Chip):
     def watch(self, linked: Linked) -> KernelWatch:
         """Watch what only shows between the tasks of an image that was linked with `watch`."""
         watch = KernelWatch(self.kernel, linked)
-        self.kernel.ending.connect(Connections(self, linked).finish)
+        self.connections = connections = Connections(self, linked)
+        self.kernel.ending.connect(self._started_up)
+        self.kernel.ending.connect(connections.finish)
         self.kernel.ending.connect(linked.runtime.finish)
         watch.vectors(self.vectors, self._pie_line)
         for letter in self.adc:

@@ -229,6 +229,14 @@ def without_end(loop: While) -> bool:
     return endless and not any(isinstance(s, Break | Return) for s in statements(loop.body))
 
 
+def last_loop(function: Function) -> While | None:
+    """The loop without a test that a function ends with, which a `main` never leaves; None if it ends otherwise."""
+    last = function.body[-1] if function.body else None
+    if isinstance(last, Return) and len(function.body) > 1:
+        last = function.body[-2]
+    return last if isinstance(last, While) and isinstance(last.test, Const) and last.test.value else None
+
+
 def renewed(variable: Variable) -> bool:
     """Whether a local begins anew, without a value, each time that its inner block is entered."""
     return variable.kind == "local" and variable.nested and not variable.in_memory and not variable.initialised

@@ -196,7 +196,8 @@ connections are checked:
 * Pins: the chip itself drives a pin, and the input qualification of the pin needs longer pulses.
 
 The check is made at the end of a run. It reports a setting only if no statement of the program could set it. A program
-that starts its timer on an order that did not come in this run is not reported.
+that starts its timer on an order that did not come in this run is not reported. The start-up runs once: a setting
+that it makes and takes back is missing.
 
 **Fix:** set the register that the finding names, or remove what waits for the event.
 """,
@@ -743,6 +744,10 @@ causes: a conversion that was never started, an interrupt flag that is not selec
 
 The idle loop of a program (`while (1) ;`) reads nothing and is not reported, because interrupts run in between. In an
 interrupt routine such a loop is reported, because nothing interrupts the routine.
+
+A program may wait for a button, a byte or an interrupt: `hil check` makes that a note. It stays an error if only
+interrupt routines could end the wait and none of them can run (see `not-connected`), and if a part on the I2C has sent
+no acknowledgment and the loop does not look at `NACK`.
 
 **Fix:** give each wait a limit (a count or a time) and handle the time-out. Check that the event is configured before
 the wait begins.

@@ -8,13 +8,17 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from emulator.c28x.findings import Finding
+from emulator.c28x.sites import Place
+from emulator.c28x.tree import Function
+from emulator.chip import I2C_PIE
 from emulator.clock import SYSCLK_HZ, seconds
 from emulator.devices.lv_maxsonar_ring import SonarRing
+from emulator.registers.i2c import I2CSTR
 from hil.drivers.budget import RUN, TimeBudget, computed
 from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
 from hil.drivers.stale import AgeWatch, watched
-from hil.drivers.waiting import meant_endless, waits_for_others, waits_for_tasks
+from hil.drivers.waiting import Nobody, in_last_loop, meant_endless, vain_loop, waits_for_others, waits_for_tasks
 from hil.image import Build, Image
 from hil.machine import FirmwareStopped, fault_of_ours
 from hil.testing.stops import STOPS, announced
@@ -93,12 +97,12 @@ def _begin(build: Build, roles: Roles) -> Image:
 
 def _go(
     image: Image, roles: Roles, until: Callable[[], int], budget: TimeBudget, progress: Callable[[float], None]
-) -> None:  # fmt: skip
-    """Run the program until `until()`, which may tell a later time when it comes."""
+) -> list[Place]:  # fmt: skip
+    """Run the program until `until()`, which may tell a later time when it comes; as `_bare`."""
     if roles.main is not None and not roles.begins_kernel:
-        _bare(image, roles.main.path, until, budget, progress)
-    else:
-        _kernel(image, roles, until, budget, progress)
+        return _bare(image, roles.main, until, budget, progress)
+    _kernel(image, roles, until, budget, progress)
+    return []
 
 
 def _run(
@@ -107,11 +111,12 @@ def _run(
     image = _begin(build, roles)
     budget = TimeBudget(RUN)
     stop: BaseException | None = None
+    stood: list[Place] = []
     end = image.board.clock.now + round(for_s * SYSCLK_HZ)
     if patient:
         image.allow_loops(2 * end + SYSCLK_HZ)
     try:
-        _go(image, roles, lambda: end, budget, progress)
+        stood = _go(image, roles, lambda: end, budget, progress)
     except STOPS as why:
         stop = why
     except Exception as why:
@@ -126,6 +131,13 @@ def _run(
                 f"{busy.task} polls what only tasks change, and no task runs before it ends", object=busy.object,
                 how="dynamic", task=busy.task,
             )  # fmt: skip
+    nobody = _nobody(image)
+    vain = vain_loop(stood, roles, nobody)
+    if vain is not None:
+        image.board.findings.report_at(
+            vain[0], "endless-poll", f"main waits for {vain[1]}, and no interrupt that could change it ever occurs",
+            object=vain[1], how="dynamic", task="main",
+        )  # fmt: skip
     for hung in image.board.findings.of("endless-poll"):
         if hung.task == "main" and hung.place is not None and not waits_for_others(hung, roles):
             image.board.watchdog.report_in_vain(hung.time_cycles - image.linked.runtime.poll_limit, hung.place)
@@ -139,7 +151,7 @@ def _run(
     weighed = tuple(
         replace(finding, how="generated")
         if alone
-        or (waits_for_others(finding, roles) and not waits_for_tasks(finding, roles))
+        or (waits_for_others(finding, roles, nobody) and not waits_for_tasks(finding, roles))
         or (not board_named and of_unused_part(finding, starts, selects))
         else finding
         for finding in found
@@ -151,13 +163,23 @@ def _run(
     return Ran(weighed, seconds(min(image.board.clock.now, end)), "" if said else str(stop), cut)
 
 
+def _nobody(image: Image) -> Nobody:
+    """Who ends no wait any more, at the end of a run."""
+    board = image.board
+    blocks = [f"I2c{letter.lower()}Regs" for letter in I2C_PIE]
+    refused = [block for block in blocks if board.register(block, "I2CSTR").value & I2CSTR.NACK.mask]
+    return Nobody(board.connections.silent if board.connections is not None else (), refused)
+
+
 def _bare(
-    image: Image, path: str, until: Callable[[], int], budget: TimeBudget, progress: Callable[[float], None]
-) -> None:  # fmt: skip
+    image: Image, main: Function, until: Callable[[], int], budget: TimeBudget, progress: Callable[[float], None]
+) -> list[Place]:  # fmt: skip
     """A `main` without a kernel: it has the chip to itself until its time is over, or what it may compute.
 
-    A poll that it does nothing but is waited for beyond that, until it ends or is found to be endless.
+    A poll that it does nothing but is waited for beyond that, until it ends or is found to be endless.  Gives where it
+    stood then, the innermost place first; nothing if it ended by itself.
     """
+    stood: list[Place] = []
     clock, position, places = image.board.clock, image.board.findings.position, image.board.findings.places
     end = until()
     step = max(1, min((end - clock.now) // 50, SYSCLK_HZ // 50))
@@ -173,13 +195,17 @@ def _bare(
         computed_before, executed_before = computed(image), executed
         polls = idle and places[position.innermost()].kind == "poll"
         if budget.over or clock.now >= (latest if polls else end):
+            stood.extend(places[at] for at, _ in position.frames())
+            if image.board.connections is not None:
+                image.board.connections.started_up = in_last_loop(stood, main)
             raise _Over
         progress(min(1.0, clock.now / end))
         clock.after(min(step, end - clock.now) if clock.now < end else step, look)
 
     look()
     with suppress(_Over):
-        image.call(path, ())
+        image.call(main.path, ())
+    return stood
 
 
 def _kernel(

@@ -3,23 +3,39 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any, Final
 
 from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
 from emulator.c28x.tree import (
+    Assign,
+    Break,
+    Call,
+    CallPointer,
+    CopyStruct,
     Function,
     FunctionRef,
     LValue,
     RegisterAt,
     RegisterLoad,
     RegisterRef,
+    Return,
     Stmt,
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import addressed, parts, polls, statements, within, without_end
+from emulator.c28x.tree_queries import (
+    addressed,
+    assigned_variables,
+    last_loop,
+    parts,
+    polls,
+    statements,
+    within,
+    without_end,
+)
 from hil.drivers.roles import Roles, called, reached
 
 #: Rules about loops without an end.
@@ -29,16 +45,33 @@ _OUTSIDE: Final = re.compile(
     r"(?i)^(gpio\w*\.gp\w*dat|sci\w*\.(scirx\w*|sciffrx)|eqep\w*\.|ecap\w*\.|can\w*\.|i2c\w*\.|mcbsp\w*\.|xint\w*\.|"
     r"adc\w*\.adcevt\w*|epwm\w*\.tz\w*)"
 )
+#: Fields of I2CSTR that a refusal sets.
+_OF_REFUSAL: Final = ("NACK", "ARDY")
 
 
-def waits_for_others(finding: Finding, roles: Roles) -> bool:
+@dataclass(frozen=True, slots=True)
+class Nobody:
+    """Who ends no wait any more, in a run that is over."""
+
+    #: Interrupt routines that never run again, by the function's name.
+    silent: Collection[str] = ()
+    #: Register blocks of the I2C whose part has refused what it was sent: they wait for the program.
+    refused: Collection[str] = ()
+
+
+NOBODY: Final = Nobody()
+
+
+def waits_for_others(finding: Finding, roles: Roles, nobody: Nobody = NOBODY) -> bool:
     """Whether a finding is a loop without an end that something outside of its function can bring to one.
 
     A loop that is written without an end is meant to have none: `for (;;)` of a function that never returns.
     """
     if finding.rule not in WAITING or finding.place is None:
         return False
-    return meant_endless(finding, roles) or loop_waits(finding.place, roles, main=finding.task == "main")
+    if meant_endless(finding, roles):
+        return True
+    return loop_waits(finding.place, roles, main=finding.task == "main", nobody=nobody)
 
 
 def meant_endless(finding: Finding, roles: Roles) -> bool:
@@ -50,17 +83,17 @@ def meant_endless(finding: Finding, roles: Roles) -> bool:
     return any(without_end(loop) for loop in loops)
 
 
-def loop_waits(place: Place, roles: Roles, *, main: bool = False) -> bool:
+def loop_waits(place: Place, roles: Roles, *, main: bool = False, nobody: Nobody = NOBODY) -> bool:
     """Whether a place stands in a loop that something outside of its function can bring to an end.
 
     While `main` waits, nothing runs but what somebody else enters.
     """
     by_path = {function.path: function for function in roles.functions}
-    meanwhile = set(_entered(roles, by_path)) if main else set(roles.functions)
+    meanwhile = set(_entered(roles, by_path, nobody.silent)) if main else set(roles.functions)
     for function in roles.functions:
         for loop in _loops_at(function, place):
             looked_at = list(_looked_at(loop, by_path))
-            if any(_outside(node) for node in looked_at):
+            if any(_outside(node, nobody.refused) for node in looked_at):
                 return True
             variables = {v for v in looked_at if isinstance(v, Variable) and v.kind == "global"}
             if any(variables & roles.writes[other.path] for other in meanwhile if main or other is not function):
@@ -68,6 +101,43 @@ def loop_waits(place: Place, roles: Roles, *, main: bool = False) -> bool:
             if main and any(variables & addressed(within(other.body)) for other in roles.functions):
                 return True
     return False
+
+
+def vain_loop(frames: Sequence[Place], roles: Roles, nobody: Nobody) -> tuple[Place, str] | None:
+    """Of a `main` that stands in a loop which only interrupt routines could end, none of which runs any more: where
+    the loop begins, and an object that it tests.
+    """
+    by_path = {function.path: function for function in roles.functions}
+    for place in frames if nobody.silent else ():
+        for loop in (loop for function in roles.functions for loop in _loops_at(function, place)):
+            tested = parts(loop.test)
+            objects = [part.root for part in tested if isinstance(part, LValue) and isinstance(part.root, Variable)]
+            if not objects or any(isinstance(part, RegisterLoad | Call | CallPointer) for part in tested):
+                continue
+            start = place._replace(line=loop.line, column=loop.where.column)
+            own = _written_within(loop, roles, by_path)
+            if own is None or own & set(objects) or any(variable.kind != "global" for variable in objects):
+                continue
+            if not loop_waits(start, roles, main=True, nobody=nobody):
+                return start, objects[0].name
+    return None
+
+
+def _written_within(loop: While, roles: Roles, by_path: dict[str, Function]) -> set[Variable] | None:
+    """The objects that a loop and what it calls write; None if it can be left, or if nobody knows."""
+    if any(isinstance(s, Break | Return) for s in statements(loop.body)):
+        return None
+    functions = {other.path: other for first in called([loop]) for other in reached(first, by_path)}
+    bodies: list[list[Stmt]] = [[loop], *(f.body for f in functions.values())]
+    for body in bodies:
+        if any(isinstance(part, CallPointer) for part in within(body)):
+            return None
+        for s in statements(body):
+            target = s.target if isinstance(s, Assign | CopyStruct) else None
+            if isinstance(target, LValue) and not isinstance(target.root, Variable):
+                return None
+    written = assigned_variables([loop])
+    return written.union(*(roles.writes.get(path, set()) for path in functions))
 
 
 def waits_for_tasks(finding: Finding, roles: Roles) -> bool:
@@ -94,11 +164,19 @@ def waits_for_tasks(finding: Finding, roles: Roles) -> bool:
     return False
 
 
-def _entered(roles: Roles, by_path: dict[str, Function]) -> Iterable[Function]:
+def in_last_loop(frames: Sequence[Place], main: Function) -> bool:
+    """Whether `main`, the last of `frames`, stands in the loop that it ends with."""
+    loop = last_loop(main)
+    if loop is None or not frames or frames[-1].function != main.name or frames[-1].file != main.where.file:
+        return False
+    return loop.line <= frames[-1].line <= _last_line(loop)
+
+
+def _entered(roles: Roles, by_path: dict[str, Function], silent: Collection[str]) -> Iterable[Function]:
     """What runs without `main` calling it: entries, functions whose address is taken, and what they call."""
     taken = {node.function.path for f in roles.functions for node in within(f.body) if isinstance(node, FunctionRef)}
     for path in taken | set(roles.entries):
-        if path in by_path and by_path[path] is not roles.main:
+        if path in by_path and by_path[path] is not roles.main and by_path[path].name not in silent:
             yield from (function for function in reached(by_path[path], by_path) if function.path in by_path)
 
 
@@ -116,8 +194,11 @@ def looks_outside(function: Function, by_path: dict[str, Function]) -> bool:
     return any(_outside(node) for other in reached(function, by_path) for node in _registers(within(other.body)))
 
 
-def _outside(node: Any) -> bool:
-    return isinstance(node, RegisterRef | RegisterAt) and _OUTSIDE.match(_name(node)) is not None
+def _outside(node: Any, refused: Collection[str] = ()) -> bool:
+    if not isinstance(node, RegisterRef | RegisterAt) or _OUTSIDE.match(_name(node)) is None:
+        return False
+    refusal = not isinstance(node, RegisterRef) or node.field is None or node.field.name in _OF_REFUSAL
+    return refusal or node.block not in refused
 
 
 def _loops_at(function: Function, place: Place) -> list[While]:

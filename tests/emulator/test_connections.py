@@ -181,6 +181,49 @@ def test_a_right_program_is_told_nothing(tmp_path: Path, later: str) -> None:
     assert not told(tmp_path, text)
 
 
+TAKEN_AWAY = "CpuTimer0Regs.TCR.all = 0x4020;\n    CpuTimer0Regs.TCR.bit.TIE = 0;"
+
+
+@pytest.mark.parametrize(("loop", "before", "told_it"), [
+    ("Count = 0;", "", True),
+    ("if (Order) CpuTimer0Regs.TCR.bit.TIE = 1;", "", False),
+    # The run ends before that statement: it may yet come.
+    ("Count = 0;", "DELAY_US(100000);", False),
+])  # fmt: skip
+def test_what_the_start_up_gives_and_takes_away_again_is_missing(
+    tmp_path: Path, loop: str, before: str, told_it: bool
+) -> None:
+    text = RIGHT.replace("CpuTimer0Regs.TCR.all = 0x4020;", TAKEN_AWAY + before).replace("Count = 0;", loop)
+    lines = text.splitlines()
+    findings = [f for f in told(tmp_path, text) if "CpuTimer0Regs.TCR.TIE = 0" in f.message]
+    assert [lines[f.place.line - 1].split("DELAY")[0].strip() for f in findings if f.place is not None] == [
+        "CpuTimer0Regs.TCR.bit.TIE = 0;"
+    ] * told_it  # fmt: skip
+
+
+@pytest.mark.parametrize(("trigger", "at"), [
+    # SOCA comes and starts nothing: the trigger is the mistake.
+    (6, "TRIGSEL = 6"),
+    # ePWM2 gives no SOC at all, and another one was meant or is missing: its ETSEL was never set.
+    (8, "TRIGSEL = 8"),
+])  # fmt: skip
+def test_the_soc_of_an_epwm_that_nobody_enables(tmp_path: Path, trigger: int, at: str) -> None:
+    text = RIGHT.replace("TRIGSEL = 5", f"TRIGSEL = {trigger}")
+    lines = text.splitlines()
+    (finding,) = told(tmp_path, text)
+    assert finding.place is not None
+    assert at in lines[finding.place.line - 1]
+    assert ("SOCA occurs and starts nothing" in finding.message) == (trigger == 6)
+
+
+def test_the_soc_is_missing_where_the_other_one_is_heard(tmp_path: Path) -> None:
+    text = RIGHT.replace("TRIGSEL = 5;", "TRIGSEL = 5; AdcaRegs.ADCSOC1CTL.bit.TRIGSEL = 6;")
+    lines = text.splitlines()
+    (finding,) = told(tmp_path, text)
+    assert finding.place is not None
+    assert "ETSEL" in lines[finding.place.line - 1]
+
+
 @pytest.mark.parametrize(("priority", "size", "socs", "why"), [
     (14, 2, (14, 15), ""), (12, 2, (12, 13, 14, 15), ""),
     # Three SOCs and bursts of two: the second burst begins at SOC15.

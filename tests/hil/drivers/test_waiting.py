@@ -110,3 +110,62 @@ def test_a_wait_that_somebody_else_can_end_is_right(tmp_path: Path, ends: str) -
     later = "static void Later(volatile Uint16 *flag)\n{\n    *flag = Now_Ms > 20000;\n}\ninterrupt void Tick"
     text = program(wait=HANG, tick=f"Serve();\n    {ends}").replace("interrupt void Tick", later)
     assert not told(tmp_path, text)
+
+
+@pytest.mark.parametrize(("was", "hangs"), [
+    ("", False),  # the tick ends it, late as it may be
+    ("    StartCpuTimer0();\n", True),
+    ("    PieCtrlRegs.PIEIER1.bit.INTx7 = 1;\n", False),  # nobody says that the tick was meant to come
+])  # fmt: skip
+@pytest.mark.parametrize("wait", [
+    "while (Now_Ms < 20000)\n            DELAY_US(50);", "while (Now_Ms == 0)\n            ;",
+])  # fmt: skip
+def test_a_wait_for_an_interrupt_that_never_occurs_never_ends(
+    tmp_path: Path, wait: str, was: str, hangs: bool
+) -> None:
+    text = program(wait=wait).replace(was, "")
+    findings = [f for f in told(tmp_path, text) if f.rule != "watchdog-reset"]
+    assert [f.rule for f in findings] == ["endless-poll"] * hangs
+    assert all(f.place is not None and "while (Now_Ms" in text.splitlines()[f.place.line - 1] for f in findings)
+
+
+#: A message to a part that is not there; `main` waits for its end.
+REFUSED = """#include "F28x_Project.h"
+volatile Uint16 Refusals;
+void main(void)
+{
+    InitSysCtrl();
+    EALLOW;
+    CpuSysRegs.PCLKCR9.bit.I2C_A = 1;
+    GpioCtrlRegs.GPAGMUX1.bit.GPIO0 = 1;
+    GpioCtrlRegs.GPAMUX1.bit.GPIO0 = 2;
+    GpioCtrlRegs.GPAGMUX1.bit.GPIO1 = 1;
+    GpioCtrlRegs.GPAMUX1.bit.GPIO1 = 2;
+    GpioCtrlRegs.GPAPUD.bit.GPIO0 = 0;
+    GpioCtrlRegs.GPAPUD.bit.GPIO1 = 0;
+    EDIS;
+    I2caRegs.I2CPSC.bit.IPSC = 19;
+    I2caRegs.I2CCLKL = 45;
+    I2caRegs.I2CCLKH = 45;
+    I2caRegs.I2CSAR.bit.SAR = 0x50;
+    I2caRegs.I2CMDR.bit.IRS = 1;
+    I2caRegs.I2CCNT = 1;
+    I2caRegs.I2CDXR.bit.DATA = 7;
+    I2caRegs.I2CMDR.all = 0x6E20;
+    while (TEST)
+        ;
+    for (;;) {
+        Refusals++;
+        DELAY_US(100);
+    }
+}
+"""
+
+
+@pytest.mark.parametrize(("test", "hangs"), [
+    ("!I2caRegs.I2CSTR.bit.SCD", True),
+    ("!I2caRegs.I2CSTR.bit.SCD && !I2caRegs.I2CSTR.bit.NACK", False),
+])  # fmt: skip
+def test_a_wait_behind_a_refusal_that_nobody_looks_at_never_ends(tmp_path: Path, test: str, hangs: bool) -> None:
+    findings = told(tmp_path, REFUSED.replace("TEST", test))
+    assert [f.rule for f in findings] == ["endless-poll"] * hangs
