@@ -1,25 +1,27 @@
 """Makes the compiled build that `emulator/compiled.py` finds, by mypyc (part of mypy) and the C compiler.
 
-Compiled is what the emulator spends its time in.  Not compiled is what must be Python to work: firmware, headers and
-the translator (it reads sources), where the firmware stands (`emulator/c28x/sites.py`: interpreted code writes it at
-every statement), findings, register descriptions (classes made at run time).
+Compiled is what the emulator spends its time in (`PATTERNS`); `STAYS` says of everything else why it stays Python, and
+`interpreted` which functions those are.
 """
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import json
 import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from emulator.c28x.symbols import Module
 from emulator.compiled import ROOT, STORE, digest
-from hil.extras import hint
+from hil.extras import has, hint
 
 PATTERNS: Final = (
     "emulator/clock.py",
@@ -39,6 +41,37 @@ PATTERNS: Final = (
     "hil/world/*.py",
 )
 INTERPRETED: Final = ("__init__.py", "emulator/sysbios/headers.py", "hil/world/maps.py")
+#: Why a source that is not listed stays Python.
+STAYS: Final = {
+    "translates firmware, and what it makes is kept": (
+        "emulator/c28x/build/*.py", "emulator/c28x/emit/*.py", "emulator/c28x/passes/*.py",
+        "emulator/c28x/readers/**/*.py", "emulator/c28x/cache.py", "emulator/c28x/compile.py",
+        "emulator/c28x/compiled_program.py", "emulator/c28x/ctypes.py", "emulator/c28x/declarations.py",
+        "emulator/c28x/float_division.py", "emulator/c28x/language.py", "emulator/c28x/program.py",
+        "emulator/c28x/rts.py", "emulator/c28x/symbols.py", "emulator/c28x/tree.py", "emulator/c28x/tree_queries.py",
+        "emulator/sysbios/headers.py",
+    ),
+    "works while a chip is made, or where its program starts and ends": (
+        "emulator/**/__init__.py", "emulator/blocks.py", "emulator/chip.py", "emulator/compiled.py",
+        "emulator/connections.py", "emulator/device_*.py", "emulator/image.py", "emulator/pin_functions.py",
+        "emulator/register_writes.py", "emulator/system.py", "emulator/c28x/link.py", "hil/world/__init__.py",
+        "hil/world/maps.py",
+    ),
+    "describes registers: their classes are made at run time": ("emulator/registers/*.py",),
+    "works when something is found, or counted": (
+        "emulator/rules/*.py", "emulator/c28x/coverage.py", "emulator/c28x/findings.py",
+    ),
+    "what firmware calls beside the chip: the library of C, checks that fail, frames of CAN; not compiled so far": (
+        "emulator/c28x/called_as.py", "emulator/c28x/intrinsics.py", "emulator/c28x/iq_arithmetic.py",
+        "emulator/c28x/objects.py", "emulator/c28x/rts_*.py", "emulator/c28x/runtime.py", "emulator/c28x/varargs.py",
+        "emulator/can_bus.py",
+    ),
+    "says where the firmware stands: interpreted code writes it at every statement": ("emulator/c28x/sites.py",),
+}  # fmt: skip
+#: Why all firmware does.
+FIRMWARE_STAYS: Final = "firmware: Python made from its source when it is linked, to be edited, stepped and counted"
+#: What every error of a build ends with.
+STILL: Final = "without a compiled build everything runs in plain Python, at less than half the pace"
 #: Whatever a compiled module may have taken a constant or a type from.
 SOURCES: Final = ("emulator/**/*.py", "hil/world/*.py")
 #: The library in which the modules really are.
@@ -46,7 +79,20 @@ GROUP: Final = "c2000_hil"
 
 
 class BuildError(ValueError):
-    """The build could not be made, and why, in one line."""
+    """The build could not be made: why, and what works without it, in one line."""
+
+    def __init__(self, why: str) -> None:
+        super().__init__(f"{why}; {STILL}")
+
+
+@dataclass(frozen=True, slots=True)
+class Interpreted:
+    """Functions of a source that a compiled build leaves to the interpreter, and why."""
+
+    #: Relative to `ROOT` where it lies there.
+    file: str
+    functions: tuple[str, ...]
+    reason: str
 
 
 def _matching(root: Path, *patterns: str) -> list[str]:
@@ -58,12 +104,40 @@ def listed(root: Path = ROOT) -> list[str]:
     return [name for name in _matching(root, *PATTERNS) if not name.endswith(INTERPRETED)]
 
 
+def interpreted(firmware: Iterable[Module], root: Path = ROOT) -> list[Interpreted]:
+    """What stays interpreted of the emulator, the world and the modules of a firmware, by source."""
+    compiled = set(listed(root))
+    reasons = {name: why for why, patterns in STAYS.items() for name in _matching(root, *patterns)}
+    core = [
+        Interpreted(name, tuple(functions_of(root / name)), reasons[name])
+        for name in _matching(root, *SOURCES) if name not in compiled
+    ]  # fmt: skip
+    own = [
+        Interpreted(_from(root, module.file), tuple(f.name for f in module.functions), FIRMWARE_STAYS)
+        for module in firmware
+    ]
+    return [each for each in (*core, *own) if each.functions]
+
+
+def functions_of(source: Path) -> Iterator[str]:
+    """The functions of a Python source, methods as `Class.name`; those within functions belong to them."""
+    waiting: list[tuple[str, ast.AST]] = [("", ast.parse(source.read_bytes()))]
+    for within, node in waiting:
+        for inner in ast.iter_child_nodes(node):
+            if isinstance(inner, ast.ClassDef):
+                waiting.append((f"{within}{inner.name}.", inner))
+            elif isinstance(inner, ast.FunctionDef):
+                yield within + inner.name
+
+
+def _from(root: Path, file: str) -> str:
+    return Path(file).relative_to(root).as_posix() if Path(file).is_relative_to(root) else file
+
+
 def translate(root: Path, target: Path) -> list[Any]:
     """C for the listed modules, in `target`, as extensions that setuptools can build."""
-    try:
-        from mypyc.build import mypycify
-    except ImportError:
-        raise BuildError(hint("mypyc")) from None
+    from mypyc.build import mypycify
+
     options = ["--config-file=", "--ignore-missing-imports", f"--cache-dir={target / 'mypy'}"]
     try:
         with _in_folder(root), contextlib.redirect_stdout(sys.stderr):
@@ -86,6 +160,7 @@ def build(root: Path = ROOT, store: Path = STORE, progress: Callable[[float], No
     store.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="build-", dir=store.parent) as folder:
         work, made = Path(folder), Path(folder) / "made"
+        _try_tools(work)
         extensions = translate(root, work)
         if any(digest(root / name) != known for name, known in sources.items()):
             raise BuildError("a source changed during the build: once more, please")
@@ -109,13 +184,22 @@ def clean(store: Path = STORE) -> bool:
     return True
 
 
+def _try_tools(work: Path) -> None:
+    """Raise BuildError unless all that a build takes is there: said before the minute that the translation needs."""
+    for package in ("mypyc", "setuptools"):
+        if not has(package):
+            raise BuildError(hint(package))
+    from setuptools import Extension
+
+    source = work / "probe.c"
+    source.write_text("#include <Python.h>\nPyMODINIT_FUNC PyInit_probe(void) { return NULL; }\n", "ascii")
+    _compile([Extension("probe", [str(source)])], work, work / "probe", lambda fraction: None)
+
+
 def _compile(extensions: list[Any], work: Path, made: Path, progress: Callable[[float], None]) -> None:
-    try:
-        from setuptools import Distribution
-        from setuptools.command.build_ext import build_ext
-        from setuptools.errors import BaseError
-    except ImportError:
-        raise BuildError(hint("setuptools")) from None
+    from setuptools import Distribution
+    from setuptools.command.build_ext import build_ext
+    from setuptools.errors import BaseError, CCompilerError
 
     class SideBySide(build_ext):
         def build_extensions(self) -> None:
@@ -127,7 +211,7 @@ def _compile(extensions: list[Any], work: Path, made: Path, progress: Callable[[
     try:
         with _in_folder(work):
             command.run()
-    except BaseError as error:
+    except (BaseError, CCompilerError) as error:  # the second is no kind of the first
         raise BuildError(f"the C compiler failed: {error}") from None
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Annotated
 
 import typer
@@ -10,11 +11,15 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from emulator.compiled import STORE
 from hil import build as builder
 from hil.cli import show
-from hil.cli.show import user_errors
+from hil.cli.show import UserError, user_errors
 
 
 def build(
     clean: Annotated[bool, typer.Option("--clean", help="Remove the compiled build. Plain Python runs again.")] = False,
+    why: Annotated[
+        bool, typer.Option("--why", help="Build nothing: list the functions that stay interpreted, and why.")
+    ] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="With --why: print one JSON object on stdout.")] = False,
 ) -> None:
     """Compile the emulator: the same results, two to three times as fast.  It needs a C compiler and a minute or two.
 
@@ -24,12 +29,37 @@ def build(
     [bold]Examples[/bold]
       hil build
       hil build --clean
+      hil build --why | grep Read_Distance
     """
+    if clean and why:
+        raise UserError("--clean removes a build, --why builds none: give one of them")
+    if json_output and not why:
+        raise UserError("--json goes with --why")
     with user_errors():
-        if clean:
+        if why:
+            _why(json_output=json_output)
+        elif clean:
             print("removed" if builder.clean() else "there was no compiled build")
         else:
             print(f"{_build()} modules compiled into {STORE}")
+
+
+def _why(*, json_output: bool) -> None:
+    """What stays interpreted: a heading for each reason, a line for each source."""
+    from firmware_model.image import link
+    from hil.robot.board import RobotBoard
+
+    stays = builder.interpreted(link(RobotBoard()).linked.program.modules.values())
+    compiled = sum(len([*builder.functions_of(builder.ROOT / name)]) for name in builder.listed())
+    if json_output:
+        show.print_json({"compiled": compiled, "interpreted": [asdict(each) for each in stays]})
+        return
+    for reason in (*builder.STAYS, builder.FIRMWARE_STAYS):
+        print(f"{reason}:")
+        for each in (each for each in stays if each.reason == reason):
+            print(f"  {each.file}: {', '.join(each.functions)}")
+        print()
+    print(f"{sum(len(each.functions) for each in stays)} functions stay interpreted, {compiled} are compiled")
 
 
 def _build() -> int:

@@ -14,8 +14,10 @@ from types import SimpleNamespace
 import pytest
 
 from emulator import compiled
+from firmware_model.image import link
 from hil import build
 from hil.cli import invoke
+from hil.robot.board import RobotBoard
 
 MODULE = "emulator.clock"
 
@@ -113,12 +115,73 @@ def test_a_stale_build_is_said_in_one_line(monkeypatch: pytest.MonkeyPatch, caps
 def test_without_a_compiler_the_command_says_what_is_missing(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setitem(sys.modules, "mypyc.build", None)
+    monkeypatch.setitem(sys.modules, "mypyc", None)
     assert invoke(["build"]) == 2
     err = capsys.readouterr().err
     assert err.startswith("hil: error: ")
-    assert "pip install" in err
+    assert "pip install 'c2000-hil[speed]'" in err
+    assert build.STILL in err
     assert err.count("\n") == 1
+
+
+def test_without_a_c_compiler_nothing_is_translated_and_the_build_before_stays(
+    tree: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("mypyc", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
+    pytest.importorskip("setuptools", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
+    if sys.platform == "win32":
+        pytest.skip("Visual C++ is found without CC")
+    monkeypatch.setenv("CC", str(tree / "no-such-compiler"))
+    monkeypatch.setattr(build, "translate", lambda root, target: pytest.fail("it was translated"))
+    with pytest.raises(build.BuildError, match="no-such-compiler") as told:
+        build.build(tree, store_of(tree))
+    assert str(told.value).endswith(build.STILL)
+    assert "\n" not in str(told.value)
+    assert compiled.look(store_of(tree), tree)[0] == "fresh"
+    assert [each.name for each in store_of(tree).parent.iterdir()] == [store_of(tree).name]
+
+
+def test_why_lists_every_function_that_is_not_compiled_each_with_its_reason(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert invoke(["build", "--why", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    stays = {each["file"]: each for each in told["interpreted"]}
+    assert all(each["functions"] and each["reason"] for each in stays.values())
+    # Of the core: what is not compiled, and nothing else; of the firmware: what the image has.
+    core = {p.relative_to(compiled.ROOT).as_posix() for p in (compiled.ROOT / "emulator").rglob("*.py")}
+    core |= {f"hil/world/{p.name}" for p in (compiled.ROOT / "hil" / "world").glob("*.py")}
+    left = {file for file in core - set(build.listed()) if [*build.functions_of(compiled.ROOT / file)]}
+    assert left == {file for file in stays if file in core}
+    image = link(RobotBoard())
+    for path in image.linked.functions:
+        module, _, name = path.rpartition(".")
+        assert [file for file, each in stays.items() if name in each["functions"] and Path(file).stem == module], path
+    assert told["compiled"] == sum(len([*build.functions_of(compiled.ROOT / name)]) for name in build.listed())
+
+    assert invoke(["build", "--why"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    (line,) = (line for line in lines if line.startswith("  firmware_model/us.py: "))
+    assert "Read_Distance" in line
+    assert lines[lines.index(line) - 1] == f"{build.FIRMWARE_STAYS}:"
+
+
+def test_each_reason_is_that_of_a_source() -> None:
+    for reason, patterns in build.STAYS.items():
+        for pattern in patterns:
+            assert set(build._matching(build.ROOT, pattern)) - set(build.listed()), (reason, pattern)
+
+
+def test_what_goes_together_with_why(capsys: pytest.CaptureFixture[str]) -> None:
+    for wrong in (["--why", "--clean"], ["--json"]):
+        assert invoke(["build", *wrong]) == 2
+        assert "--why" in capsys.readouterr().err
+
+
+def test_functions_are_found_by_name_methods_with_their_class(tmp_path: Path) -> None:
+    source = tmp_path / "one.py"
+    source.write_text("def f():\n  def g(): ...\nclass A:\n  def m(self): ...\n  class B:\n    def n(self): ...\n")
+    assert [*build.functions_of(source)] == ["f", "A.m", "A.B.n"]
 
 
 def test_the_command_explains_itself(capsys: pytest.CaptureFixture[str]) -> None:
