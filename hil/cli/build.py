@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from emulator.compiled import STORE
+from emulator.compiled import ROOT, STORE
 from hil import build as builder
 from hil.cli import show
 from hil.cli.show import UserError, user_errors
@@ -50,7 +50,7 @@ def _why(*, json_output: bool) -> None:
     from hil.robot.board import RobotBoard
 
     stays = builder.interpreted(link(RobotBoard()).linked.program.modules.values())
-    compiled = sum(len([*builder.functions_of(builder.ROOT / name)]) for name in builder.listed())
+    compiled = len([name for source in builder.listed() for name in builder.functions_of(ROOT / source)])
     if json_output:
         show.print_json({"compiled": compiled, "interpreted": [asdict(each) for each in stays]})
         return
