@@ -855,7 +855,7 @@ class Connections:
         if any(write.values is None and write.place[:2] == path[0][:2] for write in writes):
             findings.report_at(
                 path[0], "compare-above-period",
-                f"{register} = {beyond.value}: TBPRD is {beyond.period}, and the output changes no more at it",
+                f"{register} = {beyond.value}: TBPRD is {beyond.period}, so the output does not change at it",
                 object=register, how="dynamic", value=beyond.value, call_path=path, task=task,
             )  # fmt: skip
 

@@ -976,7 +976,7 @@ class Runtime:
         """A NaN or an infinity as the result of a float operation: the first is reported where it is made."""
         if isfinite(a) and isfinite(b):
             site = self.spots[number]
-            self.hit(site, "nan", f"{site.name} makes {result!r} of {a!r} and {b!r}", result)
+            self.hit(site, "nan", f"{site.name} gives {result!r} for {a!r} and {b!r}", result)
         return result
 
     def float_out(self, value: float, number: int) -> float:

@@ -106,7 +106,7 @@ class LostEvents:
             after = us(self._clock.now - flag.started)
             self._findings.report_at(
                 place, "event-lost",
-                f"{path} is cleared behind the start of what it announces: the interrupt had set it already, nobody "
-                f"had looked, and {after:.0f} us behind the start it is waited for", object=path,
+                f"{path} is cleared after the transfer was started: the interrupt had already set it, nothing had read "
+                f"it, and main waits for it {after:.0f} us after the start", object=path,
                 declaration=str(obj.declaration), how="dynamic",
             )  # fmt: skip

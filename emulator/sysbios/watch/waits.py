@@ -87,7 +87,7 @@ class Waits:
                     name = self._names.of(gate)
                     self._findings.report(
                         "gate-across-wait",
-                        f"{thread} holds {name} across {waits}: {other} has stood at it for {ms(stood):.0f} ms",
+                        f"{thread} holds {name} during {waits}: {other} was blocked at it for {ms(stood):.0f} ms",
                         object=name, value=round(ms(stood), 3),
                         details=(f"{other} waits in {self._spots.text(self._gates.spot(other))}",),
                     )  # fmt: skip
@@ -104,8 +104,8 @@ class Waits:
                 name = self._names.of(mailbox)
                 self._findings.report(
                     "timeout-ignored",
-                    f"{name} gave no message in {timeout} ticks, and this statement does not look at it: what follows "
-                    "takes the last message once more", object=name,
+                    f"{name} gave no message in {timeout} ticks, and this statement does not test the result: what "
+                    "follows uses the last message again", object=name,
                 )  # fmt: skip
 
     def _not_looked_at(self) -> set[tuple[str, int]]:

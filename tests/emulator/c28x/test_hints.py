@@ -172,9 +172,9 @@ def test_a_statement_of_several_lines_names_what_to_write(
         ("async def h() -> void: ...", (1, 1), "a task of SYS/BIOS"),
         ("@property\ndef h() -> void: ...", (1, 2), "only @extern and @interrupt"),
         ("def h() -> array[int16, 3]: ...", (1, 12), "return a pointer, or a structure"),
-        ("for i in v:\n    pass", (1, 1), "only declarations stand there"),
-        ("if __name__ == '__main__':\n    pass", (1, 1), "only declarations stand there"),
-        ("n += 1", (1, 1), "only declarations stand there"),
+        ("for i in v:\n    pass", (1, 1), "only declarations are allowed there"),
+        ("if __name__ == '__main__':\n    pass", (1, 1), "only declarations are allowed there"),
+        ("n += 1", (1, 1), "only declarations are allowed there"),
         ("#define AA 3\ndef h() -> int16:\n    return AA", (3, 12), "write AA = value"),
     ],
 )

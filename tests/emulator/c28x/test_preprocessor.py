@@ -39,7 +39,7 @@ def test_within_a_longer_condition_a_decided_part_vanishes() -> None:
 
 
 def test_anywhere_else_it_is_an_error() -> None:
-    with pytest.raises(ValueError, match="stands in a condition"):
+    with pytest.raises(ValueError, match="allowed in a condition only"):
         preprocess(ast.parse('x = FIXED("A") + 1'), frozenset())
 
 

@@ -119,7 +119,7 @@ class CDeclarationReader:
                 case c_ast.FuncCall():
                     self.assembler(node)
                 case _:
-                    raise SourceError.at(node.coord, "only declarations stand outside of functions")
+                    raise SourceError.at(node.coord, "only declarations are allowed outside of functions")
         for tag, ctype in self.tags.items():
             kind = "enum" if isinstance(ctype, EnumType) else ctype.name.split()[0]
             if kind in ("enum", "struct", "union"):

@@ -431,7 +431,7 @@ class CExpressionReader:
                 value = self.value(node)
                 if isinstance(node, c_ast.BinaryOp) and _idle(node.op, value):
                     text = written(node)
-                    self.b.remark(where, "idle-statement", f"{text} is computed, and nothing is done with it", text)
+                    self.b.remark(where, "idle-statement", f"{text} is computed and not used", text)
                 build.evaluate(b, value)
 
     def assembler(self, node: c_ast.FuncCall) -> None:

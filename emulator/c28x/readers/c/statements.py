@@ -82,11 +82,11 @@ class CStatementReader:
                 self.return_(node)
             case c_ast.Break():
                 if not self.breakable:
-                    raise SourceError.at(where, "break stands in no loop and no switch")
+                    raise SourceError.at(where, "break is outside of a loop or a switch")
                 b.emit(Break(where) if self.breakable[-1] == "loop" else LeaveSwitch(where))
             case c_ast.Continue():
                 if "loop" not in self.breakable:
-                    raise SourceError.at(where, "continue stands in no loop")
+                    raise SourceError.at(where, "continue is outside of a loop")
                 b.emit(Continue(where))
             case c_ast.Goto():
                 raise SourceError.at(where, "goto is not modelled: write a loop, a function or an if")
@@ -94,7 +94,7 @@ class CStatementReader:
                 raise SourceError.at(where, f"the label {node.name} is for goto, which is not modelled")
             case c_ast.Case() | c_ast.Default():
                 word = "case" if isinstance(node, c_ast.Case) else "default"
-                raise SourceError.at(where, f"{word} stands in no switch, or within a block of one: not modelled")
+                raise SourceError.at(where, f"{word} is outside of a switch, or in a block within one: not modelled")
             case c_ast.StaticAssert():
                 self.static_assert(node)
             case _:
@@ -296,7 +296,7 @@ class CStatementReader:
         with b.block(where, loop=True) as before:
             while items and not isinstance(items[0], c_ast.Case | c_ast.Default):
                 if not isinstance(items[0], c_ast.Decl) or items[0].init is not None:
-                    raise SourceError.at(items[0].coord, "what stands before the first case of a switch never runs")
+                    raise SourceError.at(items[0].coord, "statements before the first case of a switch never run")
                 self.statement(items[0])
                 items = items[1:]
             cases = self.cases(items, subject)
@@ -319,17 +319,17 @@ class CStatementReader:
                     raise SourceError.at(item.expr.coord, f"'{written(item.expr)}' is not an integer constant")
                 value = ctype.wrap(value)
                 if value in seen:
-                    raise SourceError.at(item.expr.coord, f"case {value} stands twice in this switch")
+                    raise SourceError.at(item.expr.coord, f"case {value} occurs twice in this switch")
                 seen.add(value)
                 labels = labels if labels is None else [*labels, value]
             elif isinstance(item, c_ast.Default):
                 defaults += 1
                 if defaults > 1:
-                    raise SourceError.at(item.coord, "default stands twice in this switch")
+                    raise SourceError.at(item.coord, "default occurs twice in this switch")
                 labels = None
             else:
                 if not groups:
-                    raise SourceError.at(item.coord, "what stands before the first case of a switch never runs")
+                    raise SourceError.at(item.coord, "statements before the first case of a switch never run")
                 groups[-1][1].append(item)
                 continue
             if item.stmts:

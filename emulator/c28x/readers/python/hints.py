@@ -93,7 +93,7 @@ _CONSTRUCTS: Final = {
     "NamedExpr": "the assignment as a statement",
 }  # fmt: skip
 #: What stands at file scope besides declarations.
-_AT_FILE_SCOPE: Final = "only declarations stand there: write it into a function"
+_AT_FILE_SCOPE: Final = "only declarations are allowed there: write it into a function"
 
 _OPERATORS: Final = {
     "FloorDiv": "/, which truncates integers", "Pow": "x * x, or pow of emulator.c28x.rts", "MatMult": "a loop",

@@ -102,7 +102,7 @@ class _CorrectionFolder(ast.NodeTransformer):
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
         if _is_fixed(node):
-            raise ValueError('FIXED("ID") stands in a condition, alone or with not, and, or', node)
+            raise ValueError('FIXED("ID") is allowed in a condition only, alone or with not, and, or', node)
         return self.generic_visit(node)
 
     def generic_visit(self, node: ast.AST) -> ast.AST:
