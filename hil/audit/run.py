@@ -11,10 +11,8 @@ earlier entries wanted too, linked and booted (`templates`).  Elsewhere each lin
 
 from __future__ import annotations
 
-import multiprocessing
 from collections import deque
 from collections.abc import Callable, Generator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
 from dataclasses import dataclass
@@ -30,6 +28,7 @@ from hil.audit.rig import Rig, Variant
 from hil.audit.templates import Templates
 from hil.collector import uncollected
 from hil.reports.json_report import finding_of
+from hil.workers import workers
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,18 +159,14 @@ def _audit_spawned(
     names: Sequence[str], processes: int, show: Callable[[str], DemonstrationOutcome]
 ) -> Generator[DemonstrationOutcome, None, None]:
     """Each entry in one of a pool of processes that begin with nothing."""
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(processes, mp_context=context) as pool:
+    with workers(processes) as pool:
         futures = {name: pool.submit(show, name) for name in names}
-        try:
-            for name, future in futures.items():
-                try:
-                    outcome = future.result()
-                except BrokenProcessPool as died:
-                    outcome = _died(name, died)
-                yield outcome
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
+        for name, future in futures.items():
+            try:
+                outcome = future.result()
+            except BrokenProcessPool as died:
+                outcome = _died(name, died)
+            yield outcome
 
 
 def _died(name: str, why: Exception) -> DemonstrationOutcome:

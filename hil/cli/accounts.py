@@ -15,7 +15,7 @@ from hil.client.plot import MOVING, save
 from hil.machine import START_UP, Machine, RobotMachine, Setup
 from hil.reports.json_report import findings_of
 from hil.reports.model import report_of, rule_of
-from hil.robot.moving_picture import save_moving
+from hil.robot.moving_picture import FEW, save_moving
 from hil.robot.picture import drive_of
 from hil.session import Session
 
@@ -177,10 +177,14 @@ def _lines_of_board(summary: dict[str, Any]) -> list[str]:
     return told
 
 
-def plot(path: Path, session: Session, robot: RobotMachine, setup: Setup) -> None:
-    """True path, odometry and point cloud of a robot in the world's frame."""
+def plot(path: Path, session: Session, robot: RobotMachine, setup: Setup, *, hurried: bool) -> str:
+    """Draw true path, odometry and point cloud of a robot in the world's frame; `hurried`: within a second of CPU.
+
+    Returns one line about it.
+    """
     frames = [(seen.time_s, seen.frame) for seen in session.frames]
     if path.suffix.lower() == MOVING:
-        save_moving(path, robot, frames, setup.world)
-        return
+        whole = save_moving(path, robot, frames, setup.world, hurried=hurried)
+        return f"plot {path}" + ("" if whole else f": only {FEW} pictures after Ctrl-C; --for SECONDS draws all")
     save(drive_of(robot, frames, f"{setup.world}, {session.elapsed_virtual_s:.1f} s, seed {setup.seed}"), path)
+    return f"plot {path}"

@@ -56,15 +56,14 @@ def campaign(
             TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed:.0f} of {task.total:.0f} runs"),
             console=terminal, transient=True, disable=json_output or not terminal.is_terminal,
         )  # fmt: skip
-        over, done, wrong = show.StopRequest(), 0, 0
-        with bar, show.ended_by_signals(over):
+        done = wrong = 0
+        with bar:
             task = bar.add_task("all held", total=runs)
 
-            def told(failed: Failed | None) -> bool:
+            def told(failed: Failed | None) -> None:
                 nonlocal done, wrong
                 done, wrong = done + 1, wrong + (failed is not None)
                 bar.update(task, completed=done, description=f"{wrong} failed" if wrong else "all held")
-                return not over.requested
 
             found = run(runs, seed=seed, jobs=jobs, faithful=faithful, told=told)
         files: dict[int, Path] = {}
@@ -94,7 +93,7 @@ def campaign(
         if unwritten:
             more = f" (and {len(unwritten) - 1} more)" if len(unwritten) > 1 else ""
             raise ValueError(f"{unwritten[0].filename}: {unwritten[0].strerror}{more}")
-    if over.requested:
+    if found.runs < runs:
         raise typer.Exit(EXIT_INTERRUPTED)
     if found.failed:
         raise typer.Exit(show.EXIT_FAILED)

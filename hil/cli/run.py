@@ -357,9 +357,9 @@ def run(
             _print_summary(summary, session)
             display.tell_decided(ended=True)
         if plot is not None and isinstance(machine, RobotMachine):
-            accounts.plot(plot, session, machine, setup)
+            told = accounts.plot(plot, session, machine, setup, hurried=stop.requested)
             if not json_output:
-                show.say(f"plot {plot}")
+                show.say(told)
         if isinstance(stopped, PortError):
             raise stopped
         if stopped is not None:

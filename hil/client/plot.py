@@ -52,9 +52,10 @@ def place(points: Iterable[Point], x_m: float, y_m: float, heading_rad: float) -
 
 def check_plot_file(path: Path, suffixes: Sequence[str] = SUFFIXES) -> None:
     """Raise ValueError, before anything runs, if a picture could not be written there; ModuleNotFoundError without
-    Matplotlib.
+    Matplotlib.  It is imported here: after Ctrl-C there is a second for the picture, and half of it would go.
     """
     want("matplotlib")
+    import hil.client.figure  # noqa: F401
     if path.suffix.lower() not in suffixes:
         raise ValueError(f"{path}: a picture's name ends in {', '.join(suffixes)}")
     check_target(path)

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 SPEED: Final = 8.0
 RATE_HZ: Final = 10
 LAST_MS: Final = 1500
+#: What is drawn in half a second of CPU.
+FEW: Final = 30
 #: Flat colours need no more.
 _COLOURS: Final = 32
 _WIDTH_IN, _DPI = 7.0, 100
@@ -31,15 +33,21 @@ _MARGIN_M: Final = 0.3
 _LEAST_M: Final = 1.0
 
 
-def save_moving(path: Path, robot: RobotMachine, frames: Sequence[tuple[float, OdometryFrame]], title: str) -> None:
-    """Write the drive up to now as a GIF; `frames` are what it has sent, each with the virtual time at its end."""
+def save_moving(
+    path: Path, robot: RobotMachine, frames: Sequence[tuple[float, OdometryFrame]], title: str, *, hurried: bool = False
+) -> bool:
+    """Write the drive up to now as a GIF; `frames` are what it has sent, each with the virtual time at its end.
+
+    `hurried`: with no more than `FEW` pictures.  Returns whether all are there.
+    """
     want("matplotlib")
     from PIL.Image import Dither
 
     drawn = _Scene(robot, frames, title)
     true_path = robot.true_path()
     first_s, last_s = true_path[0].time_s, true_path[-1].time_s
-    count = max(2, round((last_s - first_s) / SPEED * RATE_HZ))
+    wanted = max(2, round((last_s - first_s) / SPEED * RATE_HZ))
+    count = min(wanted, FEW) if hurried else wanted
     pictures = [drawn.at(first_s + (last_s - first_s) * number / (count - 1)) for number in range(count)]
     # One palette for all: the last picture has every colour.
     palette = pictures[-1].quantize(_COLOURS)
@@ -49,6 +57,7 @@ def save_moving(path: Path, robot: RobotMachine, frames: Sequence[tuple[float, O
         shown[0].save(
             new, format="GIF", save_all=True, append_images=shown[1:], duration=durations, loop=0, optimize=True
         )
+    return count == wanted
 
 
 class _Scene:

@@ -17,11 +17,10 @@ Left out: a flipped bit of memory, which may do anything; a gyro that tells anot
 from __future__ import annotations
 
 import json
-import multiprocessing
-import signal
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Generator, Iterator, Mapping
+from concurrent.futures import Future, as_completed
+from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 from math import degrees
 from pathlib import Path
@@ -34,6 +33,7 @@ from hil.reports.model import Report, merged_by, report_of
 from hil.reports.policy import Policy
 from hil.scenarios import running
 from hil.scenarios.scenario import load_scenario
+from hil.workers import workers
 from hil.world.geometry import within
 from hil.world.maps import START_CLEARANCE_M, WorldMap, builtin_maps, load_map
 
@@ -333,33 +333,26 @@ def _run(seed: int, number: int, faithful: bool) -> _Ran:
 
 def campaign(
     runs: int, *, seed: int = 1, jobs: int = 1, faithful: bool = False,
-    told: Callable[[Failed | None], bool] = lambda failed: True,
+    told: Callable[[Failed | None], object] = lambda failed: None,
 ) -> Campaign:  # fmt: skip
-    """So many runs, `jobs` at a time.  `told` hears of each as it ends, and says whether to go on."""
+    """So many runs, `jobs` at a time; after Ctrl-C those that have ended.  `told` hears of each as it ends."""
     ended: list[_Ran] = []
-    for ran in _each(runs, seed, jobs, faithful):
-        ended.append(ran)
-        if not told(ran[1]):
-            break
+    with suppress(KeyboardInterrupt), closing(_each(runs, seed, jobs, faithful)) as each:
+        for ran in each:
+            ended.append(ran)
+            told(ran[1])
     ended.sort(key=lambda ran: ran[0])
     failed = tuple(failed for _, failed, _ in ended if failed is not None)
     found = merged_by((f"run {number}", finding) for number, _, findings in ended for finding in findings)
     return Campaign(len(ended), failed, tuple(found))
 
 
-def _each(runs: int, seed: int, jobs: int, faithful: bool) -> Iterator[_Ran]:
+def _each(runs: int, seed: int, jobs: int, faithful: bool) -> Generator[_Ran, None, None]:
     if jobs <= 1:
         for number in range(runs):
             yield _run(seed, number, faithful)
         return
-    # Ctrl-C reaches all processes of a terminal; this one ends the others.
-    with ProcessPoolExecutor(
-        jobs, multiprocessing.get_context("spawn"), initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)
-    ) as pool:
+    with workers(jobs) as pool:
         futures: list[Future[_Ran]] = [pool.submit(_run, seed, n, faithful) for n in range(runs)]
-        try:
-            for future in as_completed(futures):
-                yield future.result()
-        finally:
-            for future in futures:
-                future.cancel()
+        for future in as_completed(futures):
+            yield future.result()

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import json
-import multiprocessing
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import Future
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +19,7 @@ from hil.reports.policy import Policy
 from hil.scenarios.expectation import Check, Watching
 from hil.scenarios.scenario import Scenario, load_scenario
 from hil.scenarios.script import ScriptFailed
+from hil.workers import workers
 
 if TYPE_CHECKING:
     from hil.bench import Bench
@@ -182,14 +182,9 @@ def run_files(
             told(index)
             yield outcome
         return
-    # Spawned, not forked: the same on every system, and nothing of this process is in the runs.
-    with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
+    with workers(jobs) as pool:
         futures: list[Future[ScenarioOutcome]] = [pool.submit(run_file, path) for path in paths]
         for index, future in enumerate(futures):
             future.add_done_callback(lambda _future, index=index: told(index))  # type: ignore[misc]
-        try:
-            for future in futures:
-                yield future.result()
-        finally:
-            for future in futures:
-                future.cancel()
+        for future in futures:
+            yield future.result()

@@ -21,7 +21,10 @@ COMMANDS = (
     ("run", "--no-port", "--firmware", "never"),
     ("run", "--no-port", "--pace", "max", "--for", "1000", "--wire", "log"),
     ("check", "--for", "30", "--html", "report.html"), ("check", "never/main_Robot.c", "--for", "1000"), ("audit",),
-    ("tasks", "--for", "60"), ("rta", "--phasings", "50"), ("campaign", "--runs", "50"), ("soak", "--for", "3600"),
+    ("tasks", "--for", "60"), ("rta", "--phasings", "50"), ("soak", "--for", "3600"),
+    ("campaign", "--runs", "50"), ("campaign", "--runs", "50", "--faithful", "--jobs", "1"),
+    ("scenario", "--shipped", "--jobs", "2"), ("run", "--no-port", "--pace", "max", "--page", "run.html"),
+    ("run", "--no-port", "--pace", "max", "--order", "mission", "--plot", "run.gif"),
     ("faults", "--table"), ("scenario", "--shipped"), ("tune",), ("compare-filters",), ("calibrate",), ("explain",),
     ("run", "--view", "--view-port", "0", "--no-open"),
 )  # fmt: skip
