@@ -100,7 +100,7 @@ first compare value.
     _rule(
         "register-value",
         Severity.ERROR,
-        "A number was computed that its field of a register does not hold.",
+        "A computed number does not fit its field of a register.",
         """
 The program computes a number for a field, and the field stores only the lower bits. -4 in `CMPA` becomes 65532, which
 the counter never reaches. 4100 in the twelve bits of `DACVALS` becomes 4, the other end of the output range.
@@ -223,7 +223,7 @@ written just before the longer period that it is meant for.
     _rule(
         "trip-open",
         Severity.WARNING,
-        "A trip puts an output into high impedance, and no statement chose that.",
+        "A trip puts an output into high impedance, and no statement selects that.",
         """
 `TZCTL.TZA` and `TZB` select what a trip does with an output. Their reset value 0 is high impedance: the chip does not
 drive the pin. A gate driver or a transistor then keeps its charge, unless the board pulls the line. A driver that
@@ -372,7 +372,7 @@ sources in the last SOCs.
     _rule(
         "adc-limit-signed",
         Severity.ERROR,
-        "A limit of a post-processing block compares a negative result, which this silicon does wrong.",
+        "A post-processing block compares a negative result with a limit, which this silicon does wrong.",
         """
 An interrupt of a limit comes in the emulator and not on the chip, or the other way round.
 

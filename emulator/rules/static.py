@@ -94,7 +94,7 @@ Cases that fall through and add to each other are not reported.
     _rule(
         "own-copy",
         Severity.ERROR,
-        "A difference is taken of an object and its own copy.",
+        "The program subtracts an object from its own copy.",
         """
 A speed or another difference is always 0, whatever the sensor measures.
 

@@ -84,7 +84,7 @@ PAGES: Final[Mapping[str, DocPage]] = MappingProxyType({
     "procedures": DocPage(ROBOT, "hil", "procedures/README.md", "calibration and other procedures of the thesis, run"),
     "diff": DocPage(ROBOT, "hil", "diff/README.md", "the port and one's own C of the same functions, compared"),
     "safety": DocPage(ROBOT, "hil", "safety/README.md", "what the corrected robot does when something breaks"),
-    "language": DocPage(LOOK_UP, "hil", "docs/language.md", "how firmware is written: C, and C in Python's clothes"),
+    "language": DocPage(LOOK_UP, "hil", "docs/language.md", "how to write firmware: C, and C-shaped Python"),
     "rules": DocPage(LOOK_UP, "emulator", "rules/README.md", "what a finding can name, and how to add a detector"),
     "modelled": DocPage(LOOK_UP, "hil", "docs/modelled.py", "what of peripherals, parts, kernel and world is modelled, and what is not"),
     "audit": DocPage(LOOK_UP, "hil", "audit/README.md", "the known defects of the robot's firmware, and how each is proven"),
