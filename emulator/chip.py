@@ -24,6 +24,7 @@ from emulator.peripherals.cmpss import Cmpss
 from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.peripherals.dac import Dac
 from emulator.peripherals.dma import Dma
+from emulator.peripherals.dma_doubts import Region
 from emulator.peripherals.ecap import ECap
 from emulator.peripherals.epwm import EPwm
 from emulator.peripherals.epwm_xbar import TRIPS, EPwmXbar
@@ -412,10 +413,15 @@ class Chip:
         return Dma(
             self.clock, self.cpu, self._block("DmaRegs", DmaRegs), self._block("DmaClaSrcSelRegs", DmaClaSrcSelRegs),
             self._interrupts("DmaRegs"),
-            read=self._bus_read, write=self._bus_write, is_object=lambda address: self.memory.find(address) is not None,
+            read=self._bus_read, write=self._bus_write, region=self._region,
             bridges=lambda: self.blocks["CpuSysRegs"].registers["SECMSEL"].value,
             listen=self._dma_listens, stands=self._level_stands, known=DMA_SOURCES,
         )  # fmt: skip
+
+    def _region(self, address: int) -> Region | None:
+        """The object at an address, for the DMA."""
+        found = self.memory.find(address)
+        return None if found is None else Region(found.base, found.words, found.declaration.path)
 
     def _bus_read(self, address: int, words: int) -> int:
         """What the DMA reads: a register of 32 bits in one access."""

@@ -103,6 +103,7 @@ class Connections:
         self._latches()
         self._captures()
         self._channels()
+        self._sections()
         self._groups()
         self._qualifiers()
         self._cpu_timers()
@@ -503,6 +504,20 @@ class Connections:
                 missing = Missing(why, mode, "CONTINUOUS")
                 message = f"channel {n} of the DMA stopped after a transfer, and the program waits for ever"
                 self._tell(place, message, missing, mode)
+
+    def _sections(self) -> None:
+        """Buffers of the DMA without a section, in a program that gives another one a section."""
+        placed = {f"{m.name}.{name}" for m in self._linked.program.modules.values() for name in m.placed}
+        used = self._chip.dma.objects
+        for name, cause in used.items() if placed & used.keys() else ():
+            path = self._chip.findings.path(*cause[:2]) if cause is not None else ()
+            if name not in placed and path:
+                other = min(placed & used.keys())
+                self._chip.findings.report_at(
+                    path[0], "dma-section",
+                    f"the DMA uses {name}, which no #pragma DATA_SECTION places, as one does with {other}",
+                    object=name, how="dynamic", call_path=path,
+                )  # fmt: skip
 
     def _groups(self) -> None:
         """Groups of the PIE that wait for an acknowledge that no statement gives."""

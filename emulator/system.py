@@ -106,7 +106,7 @@ class System(Chip):
 
     def watch(self, linked: Linked) -> KernelWatch:
         """Watch what only shows between the tasks of an image that was linked with `watch`."""
-        watch = KernelWatch(self.kernel, linked)
+        watch = KernelWatch(self.kernel, linked, transfers=self.dma.moving)
         self.connections = connections = Connections(self, linked)
         self.kernel.ending.connect(self._started_up)
         self.kernel.ending.connect(connections.finish)

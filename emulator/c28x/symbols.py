@@ -146,6 +146,8 @@ class Module:
     #: What reads the initialiser of a file-scope object: a value per scalar.
     initialisers: dict[Variable, Callable[[], list[Expr]]] = field(default_factory=dict)
     remarks: list[Remark] = field(default_factory=list)
+    #: Objects that a `#pragma DATA_SECTION` of C places.
+    placed: set[str] = field(default_factory=set)
     #: Functions and objects that an overlay replaces or adds -> the overlay, whose file and lines they have.
     units: dict[str, Module] = field(default_factory=dict)
     #: Those that an overlay adds.

@@ -25,9 +25,10 @@ from collections.abc import Callable, Container, Sequence
 from functools import partial
 from typing import Final
 
-from emulator.c28x.findings import Cause
+from emulator.c28x.findings import Cause, Findings
 from emulator.clock import Clock, Event, event_callback, event_time
 from emulator.cpu import Cpu
+from emulator.peripherals.dma_doubts import CAUSES, Region, TransferDoubts
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
 from emulator.registers.dma import DmaClaSrcSelRegs, DmaRegs
@@ -98,9 +99,12 @@ def signed16(word: int) -> int:
 class _Channel:
     """One channel: its registers by name, and the word that is on its way."""
 
-    __slots__ = ("cause", "interrupt", "n", "name", "registers", "stopping", "word")
+    __slots__ = ("cause", "doubts", "interrupt", "n", "name", "registers", "stopping", "word")
 
-    def __init__(self, n: int, regs: DmaRegs, interrupt: Callable[[], None]) -> None:
+    def __init__(
+        self, n: int, regs: DmaRegs, interrupt: Callable[[], None], findings: Findings,
+        region: Callable[[int], Region | None],
+    ) -> None:  # fmt: skip
         self.n, self.name, self.interrupt = n, f"CH{n}", interrupt
         prefix = f"{self.name}."
         self.registers: dict[str, Cell] = {
@@ -112,6 +116,7 @@ class _Channel:
         self.stopping = False
         #: What switched the channel on.
         self.cause: Cause | None = None
+        self.doubts = TransferDoubts(f"{regs.name}.{self.name}", self.registers, findings, region)
 
     def value(self, name: str) -> int:
         """The stored word of a register."""
@@ -127,7 +132,7 @@ class Dma:
     """DMA behaviour over its registers.
 
     `read(address, words)` and `write(address, words, value)` are the bus, where a register of 32 bits is one access;
-    `is_object(address)` is whether the linker has put an object there; `bridges()` is SECMSEL.  `interrupts` are the
+    `region(address)` is the object that the linker has put there; `bridges()` is SECMSEL.  `interrupts` are the
     six pulses to the PIE.  `listen(sources)` is called with the numbers of all triggers that some channel waits for
     whenever they change: from then on `trigger` (events) or `level` (levels, with `stands(source)`) bring them.
     `known` are the triggers that there are.
@@ -135,7 +140,8 @@ class Dma:
 
     def __init__(
         self, clock: Clock, cpu: Cpu, regs: DmaRegs, select: DmaClaSrcSelRegs, interrupts: Sequence[Callable[[], None]],
-        *, read: Callable[[int, int], int], write: Callable[[int, int, int], None], is_object: Callable[[int], bool],
+        *, read: Callable[[int, int], int], write: Callable[[int, int, int], None],
+        region: Callable[[int], Region | None],
         bridges: Callable[[], int], listen: Callable[[frozenset[int]], None], stands: Callable[[int], bool],
         known: Container[int],
     ) -> None:  # fmt: skip
@@ -143,10 +149,14 @@ class Dma:
         if len(interrupts) != CHANNELS:
             raise ValueError(f"{regs.name}: {len(interrupts)} interrupts: want the 6 pulses of the channels")
         self._clock, self._cpu, self._regs, self._select = clock, cpu, regs, select
-        self._bus_read, self._bus_write, self._is_object = read, write, is_object
+        self._bus_read, self._bus_write, self._region = read, write, region
         self._bridges, self._listen, self._stands, self._known = bridges, listen, stands, known
         self._names = source_names()
-        self._channels = tuple(_Channel(n, regs, pulse) for n, pulse in enumerate(interrupts, 1))
+        self._channels = tuple(
+            _Channel(n, regs, pulse, cpu.findings, region) for n, pulse in enumerate(interrupts, 1)
+        )  # fmt: skip
+        #: Channels that move words now which nothing but the program has asked for.
+        self.moving: list[TransferDoubts] = []
         #: Trigger -> the channels that wait for it.
         self._heard: dict[int, list[_Channel]] = {}
         self._status, self._priority = regs.registers["PRIORITYSTAT"], regs.registers["PRIORITYCTRL1"]
@@ -155,6 +165,8 @@ class Dma:
         for channel in self._channels:
             regs.bind(f"{channel.name}.MODE", write=partial(self._write_MODE, channel))
             regs.bind(f"{channel.name}.CONTROL", write=partial(self._write_CONTROL, channel))
+            for name in CAUSES:
+                regs.bind(f"{channel.name}.{name}", write=partial(channel.doubts.write, name))
         for n in (1, 2):
             select.bind(f"DMACHSRCSEL{n}", write=partial(self._write_DMACHSRCSEL, n))
         self._event: Event | None = None
@@ -173,8 +185,9 @@ class Dma:
         #: The channel that was served last in this round; 0: a round begins.
         self._last = 0
         self._round_ends = False
+        self.moving.clear()
         for channel in self._channels:
-            channel.stopping, channel.cause = False, None
+            channel.stopping, channel.cause, channel.doubts.moving = False, None, None
         self._configure()
 
     def set_clock(self, on: bool) -> None:
@@ -190,6 +203,11 @@ class Dma:
             cycles, step = self._frozen
             self._frozen = None
             self._event = self._clock.after(cycles, step)
+
+    @property
+    def objects(self) -> dict[str, Cause | None]:
+        """The objects that transfers began in, each with the statement that gave its address."""
+        return {name: cause for channel in self._channels for name, cause in channel.doubts.used.items()}
 
     # --- triggers ----------------------------------------------------------------------------------------------------
 
@@ -298,6 +316,9 @@ class Dma:
                     registers[f"{side}_{address}_ACTIVE"].value = value(f"{side}_{address}_SHADOW")
             if value("MODE") & (CHINTE | CHINTMODE) == CHINTE:
                 channel.interrupt()
+        channel.doubts.begins(2 if value("MODE") & DATASIZE else 1, alone=not self._source(channel))
+        if channel.doubts.moving and channel.doubts not in self.moving:
+            self.moving.append(channel.doubts)
 
     def _state(self) -> None:
         """PRIORITYSTAT: who has the bus, and from whom channel 1 took it."""
@@ -393,6 +414,9 @@ class Dma:
 
     def _release(self) -> None:
         """The bus is free."""
+        if self._active is not None and self._active.doubts.moving:
+            self._active.doubts.moving = None
+            self.moving.remove(self._active.doubts)
         self._active = None
         if self._round_ends and self._held is None:
             self._round_ends, self._last = False, 0
@@ -406,7 +430,10 @@ class Dma:
         findings.cause = channel.cause
         try:
             why = self._unreachable(address)
-            if why:
+            if channel.doubts.beyond(side, address):
+                if why:
+                    return 0
+            elif why:
                 path = f"{self._regs.name}.{channel.name}.{side}_ADDR_ACTIVE"
                 findings.report("dma-address", f"{path} = {address:#x}: {why}", object=path, value=address)
                 return 0
@@ -419,7 +446,7 @@ class Dma:
 
     def _unreachable(self, address: int) -> str:
         """Why the DMA does not come to an address; empty: it does."""
-        if self._is_object(address) or any(low <= address < high for low, high in REACHED):
+        if self._region(address) is not None or any(low <= address < high for low, high in REACHED):
             return ""
         for low, high, field, shift in BRIDGES:
             if low <= address < high:
@@ -441,6 +468,7 @@ class Dma:
 
     def _write_MODE(self, channel: _Channel, word: int, lanes: int = ALL) -> None:
         channel.registers["MODE"].store(word, lanes)
+        channel.doubts.configured()
         self._configure()
         self._look(channel)
 
@@ -479,7 +507,7 @@ class Dma:
             control.value &= ~RUNSTS
             self._stop(channel)
         elif word & RUN:
-            self._run(channel, control)
+            self._run(channel, control, alone=not word & PERINTFRC)
         if word & PERINTFRC:
             if channel.value("MODE") & PERINTE:
                 control.value |= PERINTFLG
@@ -499,7 +527,12 @@ class Dma:
         elif channel is self._held:
             self._held = None
 
-    def _run(self, channel: _Channel, control: Cell) -> None:
+    def _run(self, channel: _Channel, control: Cell, *, alone: bool) -> None:
+        """RUN is set, `alone` without a trigger in the same write."""
+        states = RUNSTS | TRANSFERSTS | BURSTSTS | PERINTFLG
+        stands = control.value & states == RUNSTS | TRANSFERSTS
+        if alone and stands and not self._source(channel) and not channel.value("MODE") & ONESHOT:
+            channel.doubts.started_again(channel.value("TRANSFER_COUNT") + 1)
         if control.value & BURSTSTS:
             channel.stopping = False
         channel.cause = self._cpu.findings.mark()

@@ -454,6 +454,76 @@ write there is lost.
         "TRM, DMA and system control: SECMSEL; DS, memory map",
     ),
     _rule(
+        "dma-section",
+        Severity.WARNING,
+        "A buffer of the DMA has no section of its own, while another one has.",
+        """
+The DMA reaches the global shared RAM (`RAMGS0` to `RAMGS15`), and not the local RAM, where a linker's command file
+usually puts objects without a section. Then the channel moves zeros, without an error.
+
+Where objects lie is not modelled. The program places one buffer of the DMA by `#pragma DATA_SECTION`, so that this one
+needs it too.
+
+**Fix:** place each buffer of the DMA in a `ramgs` section.
+""",
+        "TRM, DMA; DS, memory map",
+    ),
+    _rule(
+        "dma-range",
+        Severity.ERROR,
+        "A DMA transfer leaves the object in which it began.",
+        """
+The DMA counts words, and knows nothing of arrays: what lies behind the array is read or overwritten, and no pointer
+shows it. `BURST_SIZE` and `TRANSFER_SIZE` hold the number of words of a burst less one, and of bursts less one.
+
+The finding is at the statement that sets the sizes.
+
+**Fix:** set both sizes less one, and check that bursts times words is not more than the array has.
+""",
+        "TRM, DMA: BURST_SIZE, TRANSFER_SIZE",
+    ),
+    _rule(
+        "dma-step",
+        Severity.ERROR,
+        "A step of a DMA channel is too small: words are read or written twice.",
+        """
+`BURST_STEP` is added behind each access of a burst, `TRANSFER_STEP` behind the last access of a burst. They count
+words of 16 bits, in 32-bit mode too: there a step of 1 meets each double word twice. A step of 0 is right for a
+register (a result, a FIFO), and for one word that fills a block. Of an array it uses one word again and again.
+
+**Fix:** use a step of 1 with 16 bits, and of 2 with 32 bits, within bursts and between them.
+""",
+        "TRM, DMA: address generation",
+    ),
+    _rule(
+        "dma-unfinished",
+        Severity.WARNING,
+        "A DMA channel is started again before its transfer has ended.",
+        """
+A trigger moves one burst. Without `ONESHOT` a channel that only the program triggers needs as many `PERINTFRC` as the
+transfer has bursts. Setting `RUN` again begins no new transfer: the next trigger moves the next burst of the old one.
+
+The finding is at the statement that sets `MODE`.
+
+**Fix:** set `ONESHOT`, or give a trigger for each burst and start the channel once.
+""",
+        "TRM, DMA: one-shot mode, CONTROL.RUN",
+    ),
+    _rule(
+        "dma-race",
+        Severity.WARNING,
+        "The program uses a buffer while a DMA channel that it has triggered still moves it.",
+        """
+The program has triggered a copy by `PERINTFRC`, and reads the target, or rewrites the source, while words are still on
+their way. How many have arrived depends on the clock, on other channels and on the build.
+
+A loop that only polls a word of the target is not reported, nor are transfers that a module triggers.
+
+**Fix:** wait for the interrupt at the end of the transfer, or until `CONTROL.TRANSFERSTS` is 0, with a limit.
+""",
+        "TRM, DMA: CONTROL.TRANSFERSTS, CHINTMODE",
+    ),
+    _rule(
         "interrupt-without-handler",
         Severity.ERROR,
         "An interrupt was taken that has no handler.",

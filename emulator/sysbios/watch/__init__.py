@@ -10,7 +10,7 @@ nothing, and cost nothing in an image that nobody watches.  Which rules there ar
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 from emulator.c28x.link import Linked
@@ -57,11 +57,24 @@ class Tapped(Protocol):
         """`listener(register, access, word, lanes)` at each write."""
 
 
-class KernelWatch:
-    """All detectors on one kernel and one image.  `starved_cycles`: patience of a ready task without a period."""
+class Transfer(Protocol):
+    """Words that move beside the CPU (`emulator.peripherals.dma_doubts.TransferDoubts`)."""
 
-    def __init__(self, kernel: Kernel, linked: Linked, *, starved_cycles: int = STARVED_CYCLES) -> None:
+    def touched(self, base: int, *, write: bool) -> None:
+        """The CPU reads or writes the object at `base` meanwhile."""
+
+
+class KernelWatch:
+    """All detectors on one kernel and one image.  `starved_cycles`: patience of a ready task without a period;
+    `transfers`: those that move words at the moment.
+    """
+
+    def __init__(
+        self, kernel: Kernel, linked: Linked, *, transfers: Sequence[Transfer] = (),
+        starved_cycles: int = STARVED_CYCLES,
+    ) -> None:  # fmt: skip
         findings = kernel.core.findings
+        self.transfers = transfers
         calls, spots, names = Calls(kernel), StatementSpots(findings), HandleNames(linked)
         self.threads = threads = ThreadWatch(kernel)
         _order(calls, threads)
@@ -112,8 +125,12 @@ class KernelWatch:
         """What is told of every access: the generated code calls it without a step between."""
         cpu, threads, transmission = kernel.core.cpu, self.threads, self.transmission
         races, sending, events = self.races.touch, transmission.sending, self.lost_events.touch
+        transfers = self.transfers
 
         def touch(obj: Object, offset: int, write: bool) -> None:
+            if transfers:
+                for transfer in transfers:
+                    transfer.touched(obj.base, write=write)
             if not kernel.active:
                 # A program without the kernel: `main` needs no protection before the first interrupt.
                 if threads.routines:

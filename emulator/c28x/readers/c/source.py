@@ -273,7 +273,10 @@ def _remark_preprocessing(module: Module, unit: Unit) -> None:
     for remark in unit.remarks:
         module.remarks.append(Remark(remark.where, rule="preprocessor", message=remark.message, name=""))
     for pragma in unit.pragmas:
-        word = pragma.text.split("(")[0].strip()
+        word, _, arguments = pragma.text.partition("(")
+        word = word.strip()
+        if word == "DATA_SECTION":
+            module.placed.add(arguments.split(",")[0].strip())
         if word in _PLACING and pragma.where.file == unit.file:
             message = f"#pragma {pragma.text} is ignored: where code and data lie is not modelled"
             module.remarks.append(Remark(pragma.where, rule="pragma-ignored", message=message, name=word))
