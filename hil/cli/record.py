@@ -23,6 +23,8 @@ from hil.recording.replay import Player, Verdict, replay_orders, setup_of
 from hil.recording.tap import Tap, open_robot
 from hil.recording.wire import header_at, header_of
 from hil.recording.wire import record as new_log
+from hil.reports.json_report import findings_of
+from hil.reports.model import report_of
 from hil.serial_port import Deliver, PortError, open_port
 
 _LOG_HELP: Final = "A wire log (hil record, hil console --wire)."
@@ -141,7 +143,10 @@ def replay(
             return
         verdict, setup, findings = _play_orders(recording, world, seed, output, quiet=json_output)
     if json_output:
-        show.print_json({"log": str(log), "setup": setup.as_dict(), "problems": recording.problems, **asdict(verdict)})
+        show.print_json({
+            "log": str(log), "setup": setup.as_dict(), "problems": recording.problems, **asdict(verdict),
+            "findings": findings_of(report_of(findings)),
+        })  # fmt: skip
     else:
         show.print_findings(findings)
         _print_verdict(verdict)

@@ -10,6 +10,9 @@ import pytest
 
 from hil.cli import invoke
 from tests.hil.diff.test_whole import BUMPER
+from tests.hil.reports.test_same_place import of_json
+
+SHORT = ("--for", "0.3", "--seed", "1")
 
 
 def test_a_folder_without_a_file_of_the_robot_is_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -25,7 +28,7 @@ def test_findings_stand_in_the_table_that_every_command_prints(
     wrong = BUMPER.replace("char Read_Bumper(void)\n{\n", "char Read_Bumper(void)\n{\n    int n, m;\n    m = n;\n")
     (tmp_path / "bumper.c").write_text(wrong, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
-    asked = ["diff", ".", "--for", "0.3", "--calls", "3"]
+    asked = ["diff", ".", *SHORT, "--calls", "3"]
     assert invoke(asked) == 1
     lines = capsys.readouterr().out.splitlines()
     head = next(number for number, line in enumerate(lines) if re.match(r" ?severity +rule +what +where", line))
@@ -38,5 +41,8 @@ def test_findings_stand_in_the_table_that_every_command_prints(
     assert invoke([*asked, "--json"]) == 1
     told = json.loads(capsys.readouterr().out)["findings"]
     by = {(one["rule"], one["object"]): one["shown_by"] for one in told}
+    assert invoke(["run", "--no-port", "--pace", "max", "--firmware", ".", *SHORT, "--order", "mission", "--json"]) == 0
+    in_run = of_json(json.loads(capsys.readouterr().out)["findings"])
+    assert of_json(one for one in told if one["how"] == "dynamic") == in_run
     assert by[("uninitialised", "bumper.Read_Bumper.n")] == ["the C alone"]
     assert by[("uninitialised", "us.Read_Distance.resultF")] == ["both"]
