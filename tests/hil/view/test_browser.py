@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+import urllib.request
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 from hil.recording.trajectory import parse_trajectory
-from tests.hil.view.conftest import add_signal
+from tests.hil.view.conftest import View, add_signal
 
 Shot = Callable[[Any, str], None]
 TIME = r"time: ([\d.]+) s"
@@ -55,8 +56,11 @@ def log(page: Any) -> str:
 
 
 @pytest.fixture(autouse=True)
-def _as_at_first(page: Any) -> None:
-    """Each test finds a run that goes on, whichever tests of this run came before it."""
+def _as_at_first(request: pytest.FixtureRequest) -> None:
+    """Each test of the module's view finds a run that goes on, whichever tests came before it."""
+    if "page" not in request.fixturenames:
+        return
+    page = request.getfixturevalue("page")
     if "paused" in page.locator(".chip").inner_text():
         page.get_by_role("button", name="Run", exact=True).click()
 
@@ -401,6 +405,27 @@ def test_keys_are_listed_and_light_and_dark_can_be_read(page: Any, shot: Shot) -
     # WCAG 2.1, 1.4.6: 7 to 1.
     assert min(contrasts) >= 7.0
     assert colours[0] != colours[1]
+
+
+def test_one_page_too_many_is_told_so_and_asks_again(browser: Any, shot: Shot) -> None:
+    from hil.view.crowd import MOST_PAGES
+
+    view = View("--world", "room", "--no-open")
+    for _ in range(MOST_PAGES):  # pages that are asked for and may be loading still
+        urllib.request.urlopen(view.address).close()
+    page = browser.new_page(viewport={"width": 390, "height": 844})
+    answer = page.goto(view.address)
+    assert answer.status == 503
+    assert page.title() == "one page too many - c2000-hil"
+    assert page.locator("html").get_attribute("lang") == "en"
+    told = page.get_by_role("status")
+    assert told.inner_text().startswith(f"This view has {MOST_PAGES} pages open and no room for one more: close one")
+    assert told.bounding_box()["width"] < 390
+    shot(page, "too-many")
+    with page.expect_request(view.address):
+        pass  # it comes by itself when there is room
+    page.close()
+    view.end()
 
 
 def contrast(text: str, ground: str) -> float:
