@@ -66,7 +66,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "lost.",
         "wrong-result",
         "When the map starts, the code discards what waits. Then it draws the newest frame.",
-        depends_on="that the driver of the port keeps characters that nothing reads, 4096 here",
+        depends_on="whether the driver of the port keeps characters that nothing reads, 4096 here",
     ),
     _console(
         "CONS-torn-number", 124, "leerOdo", "frame2.count(',') == 5",

@@ -22,7 +22,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "start wire low, reads, and then starts the next round. So it reads every range once, and after it has "
         "settled.",
         line=58,
-        depends_on="that the three sonars are chained: TX of one to RX of the next",
+        depends_on="whether the three sonars are chained: TX of one to RX of the next",
         severity=Severity.WARNING,
     ),
     Defect(
@@ -70,7 +70,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "startup-read",
         "TaskUS sleeps 450 ms before its first reading, until the third range has settled.",
         line=272,
-        depends_on="that the sonars are switched on together with the board",
+        depends_on="whether the sonars are switched on together with the board",
         severity=Severity.WARNING,
     ),
     Defect(

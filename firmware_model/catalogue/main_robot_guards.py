@@ -68,7 +68,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "closed-loop",
         "If the two differ by 0.2 rad within half a second (0.4 rad/s), the robot stops until it is ordered to stop.",
         line=318,
-        depends_on="that the gyro measures turns to both sides with the right size (GYRO-scale, GYRO-clockwise-zero)",
+        depends_on="whether the gyro measures turns to both sides with the right size (GYRO-scale, GYRO-clockwise-zero)",
         severity=Severity.WARNING,
     ),
     Defect(
@@ -115,7 +115,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "When the bumper has been pressed for 6 s, 3 s of them backwards (30 cm), the robot stops until the bumper is "
         "released.",
         line=490,
-        depends_on="that the mission ever drives backwards (MAIN-bump-clears)",
+        depends_on="whether the mission ever drives backwards (MAIN-bump-clears)",
         severity=Severity.WARNING,
     ),
 )  # fmt: skip

@@ -18,7 +18,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "The task sleeps until the previous frame has been sent.",
         covered_by=("GYRO-starves-at-start", "GYRO-turn-on", "MAIN-clock-before-task"),
         line=46,
-        depends_on="that XBee.c, which is not printed in the thesis, keeps the pointer and does not copy the frame",
+        depends_on="whether XBee.c, which is not printed in the thesis, keeps the pointer and does not copy the frame",
         severity=Severity.WARNING,
     ),
     Defect(

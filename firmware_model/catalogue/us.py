@@ -18,7 +18,7 @@ DEFECTS: Final[tuple[Defect, ...]] = (
         "no-effect",
         "The task sleeps 300 ms before the pulse.",
         line=44,
-        depends_on="that the sonars are switched on together with the board",
+        depends_on="whether the sonars are switched on together with the board",
         severity=Severity.ERROR,
     ),
     Defect(

@@ -93,14 +93,14 @@ def faults(
             return
         from hil.faults.kinds import COMMON
 
-        listed = Table(title="What can break on purpose", title_justify="left")
+        listed = Table(title="Faults that can be injected", title_justify="left")
         for heading in ("fault", "what", "parameters", "needs"):
             listed.add_column(heading)
         for kind in kinds:
             own = ", ".join(_said(each) for each in kind.parameters if each not in COMMON)
             listed.add_row(*map(escape, (kind.name, kind.sentence, own, kind.needs)))
         show.console().print(listed)
-        show.say(f"Each has besides: {', '.join(_said(each) for each in COMMON)}.")
+        show.say(f"Every fault also has: {', '.join(_said(each) for each in COMMON)}.")
 
 
 def _measure(name: str | None, *, json_output: bool) -> None:

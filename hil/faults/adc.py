@@ -153,5 +153,5 @@ KINDS = (
         "adc-input-shorted", "An ADC input is shorted to one voltage.", "any board", InputShorted,
         (_INPUT, FaultParameter("volts", "V", "which", 0.0, 0.0, 3.6)),
     ),
-    FaultKind("adc-dead", "An ADC does not convert any more.", "any board", Dead, (_ADC,)),
+    FaultKind("adc-dead", "An ADC stops converting.", "any board", Dead, (_ADC,)),
 )  # fmt: skip

@@ -139,11 +139,11 @@ class Blocked(_Hampered):
 
 
 KINDS = (
-    FaultKind("encoder-edge-lost", "Edges of an encoder do not come.", "a motor with encoder", EdgeLost, (_SIDE,),
+    FaultKind("encoder-edge-lost", "Edges of an encoder are lost.", "a motor with encoder", EdgeLost, (_SIDE,),
               FaultParameter("rate", "", "probability for each edge", 0.05, 0.0, 1.0)),
     FaultKind("encoder-phases-swapped", "A and B of an encoder are swapped: it counts backwards.",
               "a motor with encoder", PhasesSwapped, (_SIDE,)),
-    FaultKind("wheel-slips", "A wheel loses a part of its way.", "a robot in its world", Slips,
+    FaultKind("wheel-slips", "A wheel slips and loses a part of its distance.", "a robot in its world", Slips,
               (_SIDE, FaultParameter("percent", "%", "of its way", 30.0, 0.0, 99.0))),
     FaultKind("wheel-blocked", "A wheel cannot turn.", "a robot in its world", Blocked, (_SIDE,)),
 )  # fmt: skip

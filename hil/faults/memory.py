@@ -68,7 +68,7 @@ class BitFlip(Effect):
 
 KINDS = (
     FaultKind(
-        "ram-bit-flip", "A bit of a RAM word flips, as a particle does it.", "any board", BitFlip,
+        "ram-bit-flip", "A bit of a RAM word flips, as a particle can cause it.", "any board", BitFlip,
         (FaultParameter("word", "", "a variable (module.name) or a word address", type=str),
          FaultParameter("bit", "", "which, 0 is the lowest", 0, 0, 15, type=int)),
         FaultParameter("rate", "Hz", "how often again, at random times; 0: once", 0.0, 0.0, 1e4), watch=True,

@@ -190,9 +190,9 @@ KINDS = (
     FaultKind("serial-byte-doubled", "A byte comes twice.", _NEEDS, ByteDoubled, (_DIRECTION,), _RATE),
     FaultKind("serial-burst", "A run of bytes is noise.", _NEEDS, Burst,
               (_DIRECTION, FaultParameter("bytes", "", "how long a run is", 8, 1, 1000, type=int)), _RATE),
-    FaultKind("serial-stall", "Nothing passes; what was held comes afterwards in one go.", _NEEDS, Stall,
+    FaultKind("serial-stall", "The line passes nothing; held bytes arrive together at the end.", _NEEDS, Stall,
               (_DIRECTION,)),
     FaultKind("serial-break", "The line is held low.", _NEEDS, HeldLow, (_DIRECTION,)),
-    FaultKind("serial-wrong-baud", "The sender's bits are of another length.", _NEEDS, WrongBaud,
+    FaultKind("serial-wrong-baud", "The sender uses another baud rate.", _NEEDS, WrongBaud,
               (_DIRECTION, FaultParameter("baud", "bit/s", "the sender's", 4800.0, 110.0, 1e6))),
 )  # fmt: skip

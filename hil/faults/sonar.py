@@ -109,11 +109,12 @@ class CrossTalk(_OfSensor):
 KINDS = (
     FaultKind("sonar-deaf", "A sonar hears no echo: it reports its ceiling.", "a ring of sonars", Deaf, (_SENSOR,)),
     FaultKind(
-        "sonar-stuck", "A sonar hears the same echo whatever stands there.", "a ring of sonars", EchoStuck,
+        "sonar-stuck", "A sonar always reports the same range.", "a ring of sonars", EchoStuck,
         (_SENSOR, FaultParameter("range", "m", "the distance that it reports", 0.1524, 0.1524, 6.45)),
     ),
     FaultKind(
-        "sonar-cross-talk", "A foreign sonar's pings arrive: one before the echo is taken for it.", "a ring of sonars",
-        CrossTalk, (_SENSOR,), FaultParameter("rate", "Hz", "pings that arrive, at random times", 20.0, 0.01, 1000.0),
+        "sonar-cross-talk", "Pings of another sonar arrive: one before the echo counts as the echo.",
+        "a ring of sonars", CrossTalk, (_SENSOR,),
+        FaultParameter("rate", "Hz", "pings that arrive, at random times", 20.0, 0.01, 1000.0),
     ),
 )  # fmt: skip

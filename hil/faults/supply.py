@@ -90,7 +90,7 @@ class BrownOut(SelectLost):
 KINDS = (
     FaultKind("supply-sag", "The motors' supply falls.", "motors", Sag,
               (FaultParameter("volts", "V", "what is left", 4.0, 0.1, 9.0),)),
-    FaultKind("brown-out", "All supplies but the chip's break in: gyro and sonars start anew, the motors stand still.",
+    FaultKind("brown-out", "All supplies except the chip's drop: gyro and sonars restart, the motors stop.",
               "a gyro L3G4200D on an SPI", BrownOut,
               (FaultParameter("volts", "V", "what is left; from 2.4 on the gyro bears it", 0.0, 0.0, 2.49),)),
 )  # fmt: skip

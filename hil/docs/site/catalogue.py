@@ -41,7 +41,7 @@ def _entry(defect: Defect) -> str:
     line = f", line {defect.line}" if defect.line else ""
     said = [f"- **{word}:** {text}" for word, text in (
         ("Wrong", defect.wrong), ("Why", defect.source), ("Seen", defect.symptom), ("Fix", defect.correction),
-        ("Only if", defect.depends_on),
+        ("Depends on", defect.depends_on),
     ) if text]  # fmt: skip
     rule = f"[{defect.rule}](../rules/{defect.rule}.md)"
     where = f"`{defect.function}`{line}: `{defect.place}`"
