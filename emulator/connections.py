@@ -22,6 +22,7 @@ from emulator.c28x.link import Linked
 from emulator.c28x.sites import Place
 from emulator.chip import (
     ADC_PIE,
+    ADCEVT_PIE,
     CAN_PIE,
     DMA_ADC,
     DMA_TRIGSEL,
@@ -65,6 +66,8 @@ FIFO_DEPTH: Final = 16
 FILTERED: Final = 2
 #: Of fewer edges nothing is said.
 LEAST_EDGES: Final = 8
+#: TZA, TZB: a trip changes nothing.
+NO_CHANGE: Final = 3
 #: LOADAMODE: the shadow register is never loaded.
 FREEZE: Final = 3
 
@@ -109,6 +112,8 @@ class Connections:
         self._cpu_timers()
         self._trips()
         self._trip_actions()
+        self._forced_trips()
+        self._post_processing()
         self._pairs()
         self._chip.pie.finish()
         self._i2c()
@@ -117,6 +122,7 @@ class Connections:
         self._dacs()
         self._loads()
         self._compares()
+        self._compares_for_nobody()
 
     # The source
 
@@ -465,11 +471,28 @@ class Connections:
         if only and min(only) > last and not self._could(second, lambda wrap: wrap + 1 >= min(only), "STOP_WRAP"):
             why = f"{second}.STOP_WRAP = {last - 1}: event {last} is the last, CEVT{min(only)} is enabled"
             return Missing(why, second, "STOP_WRAP")
-        select = f"INPUT{ECAP_INPUT[n]}SELECT"
-        pin = self._value(f"InputXbarRegs.{select}", "")
-        if not pin and not self._writes(f"InputXbarRegs.{select}") and not self._chip.pins[pin].drivers():
-            return Missing(f"InputXbarRegs.{select} was never set, so its input is GPIO0, which nothing drives", first)
+        return self._no_input(ECAP_INPUT[n], first)
+
+    def _no_input(self, number: int, user: str) -> Missing | None:
+        """Why the input of an eCAP or an external interrupt, set up in the register `user`, has no edges; None if it
+        can have some.
+        """
+        select = f"InputXbarRegs.INPUT{number}SELECT"
+        if self._value(select, "") or self._writes(select):
+            return None
+        why = f"{select} was never set, so its input is GPIO0"
+        if not self._chip.pins[0].drivers():
+            return Missing(f"{why}, which nothing drives", user)
+        for other, name in self._single_users():
+            instead = f"InputXbarRegs.INPUT{other}SELECT"
+            if self._writes(instead) and self._source.last(*_split(name)) is None:
+                return Missing(f"{why}; {instead} was set, and nothing uses that input", instead)
         return None
+
+    def _single_users(self) -> Iterator[tuple[int, str]]:
+        """Inputs of the X-BAR that have one user, and the registers of that user (TRM, input X-BAR destinations)."""
+        yield from ((number, f"ECap{n}Regs") for n, number in ECAP_INPUT.items())
+        yield from ((number, f"XintRegs.XINT{n}CR") for n, number in XINT_INPUT.items() if number > 6)
 
     def _captures(self) -> None:
         """Captures that are read and never loaded, and one shots that nobody arms again."""
@@ -484,6 +507,11 @@ class Connections:
                 missing = Missing(f"{second}.TSCTRSTOP = 0: its counter stands still", second, "TSCTRSTOP")
             elif self._stuck(first, "CAPLDEN", bool):
                 missing = Missing(f"{first}.CAPLDEN = 0: no edge loads it", first, "CAPLDEN")
+            elif self._chip.pins[0].drivers():
+                missing = self._no_input(ECAP_INPUT[n], first)
+                if missing:
+                    self._tell(reads[0], f"eCAP{n} measures another signal", missing, first)
+                    continue
             if missing:
                 self._tell(reads[0], f"a capture of eCAP{n} is read, and is always 0", missing, f"{name}.CAP1")
             elif self._value(second, "CONT_ONESHT") and self._chip.ecap[n].stopped and self._waits_for_ever():
@@ -594,11 +622,7 @@ class Connections:
         register = f"XintRegs.XINT{number}CR"
         if self._stuck(register, "ENABLE", bool):
             return Missing(f"{register}.ENABLE = 0", register, "ENABLE")
-        select = f"INPUT{XINT_INPUT[number]}SELECT"
-        pin = self._value(f"InputXbarRegs.{select}", "")
-        if pin or self._writes(f"InputXbarRegs.{select}") or self._chip.pins[pin].drivers():
-            return None
-        return Missing(f"InputXbarRegs.{select} was never set, so its input is GPIO0, which nothing drives", register)
+        return self._no_input(XINT_INPUT[number], register)
 
     def _cpu_timers(self) -> None:
         """Routines of CPU timers 1 and 2, whose interrupts go to the CPU directly."""
@@ -725,6 +749,51 @@ class Connections:
                         f"{select} trips output {x}, and no statement sets {name}.TZCTL.TZ{x}: 0 is high impedance",
                         object=f"{name}.TZCTL.TZ{x}", how="dynamic",
                     )  # fmt: skip
+
+    def _forced_trips(self) -> None:
+        """Trips that the program forces, and that change no output."""
+        for n in range(1, EPWM_COUNT + 1):
+            name = f"EPwm{n}Regs"
+            force, control = self._source.last(name, "TZFRC"), f"{name}.TZCTL"
+            outputs = [x for x in "AB" if self._writes(f"{name}.AQCTL{x}")]
+            if force is None or not outputs or any(self._could(f"{name}.TZEINT", bool, way) for way in ("OST", "CBC")):
+                continue
+            if all(self._stuck(control, f"TZ{x}", lambda action: action != NO_CHANGE) for x in outputs):
+                missing = Missing(f"{control}.TZ{outputs[0]} = 3: no change", control, f"TZ{outputs[0]}")
+                self._tell(force, f"{name}.TZFRC trips the outputs, which go on switching", missing, control)
+
+    def _post_processing(self) -> None:
+        """Blocks behind the ADC whose events interrupt: does their SOC convert, and does anything clear the event?"""
+        for letter in ADC_PIE:
+            block = f"Adc{letter.lower()}Regs"
+            for event in (f"PPB{k}{kind}" for k in range(1, 5) for kind in ("TRIPHI", "TRIPLO", "ZERO")):
+                place = self._wanting(f"{block}.ADCEVTINTSEL", event)
+                if place is None or not self._value(f"{block}.ADCEVTINTSEL", event):
+                    continue
+                config = f"{block}.ADCPPB{event[3]}CONFIG"
+                soc = self._value(config, "CONFIG")
+                routine = self._chip.pie.left_by(*ADCEVT_PIE[letter])
+                flag = f"{block}.ADCEVTSTAT.{event}"
+                if self._never_starts(block, soc):
+                    missing = Missing(f"{config}.CONFIG = {soc}: nothing starts SOC{soc}", config, "CONFIG")
+                    self._tell(place, f"event {event} of {block} interrupts, and never comes", missing, config)
+                elif routine and self._value(f"{block}.ADCEVTSTAT", event) and not self._could(
+                    f"{block}.ADCEVTCLR", bool, event
+                ):  # fmt: skip
+                    self._chip.findings.report_at(
+                        routine, "flag-not-cleared",
+                        f"{flag} is set, and no statement sets ADCEVTCLR.{event}: its interrupt comes once only",
+                        object=flag, how="dynamic", task=f"Isr:{routine.function}",
+                    )  # fmt: skip
+
+    def _never_starts(self, block: str, soc: int) -> bool:
+        """Whether nothing can start a SOC: no trigger, no ADCINT, no burst, no statement."""
+        return (
+            self._stuck(f"{block}.ADCSOC{soc}CTL", "TRIGSEL", bool)
+            and self._stuck(f"{block}.ADCINTSOCSEL{soc // 8 + 1}", f"SOC{soc}", bool)
+            and self._stuck(f"{block}.ADCBURSTCTL", "BURSTEN", bool)
+            and not self._could(f"{block}.ADCSOCFRC1", bool, f"SOC{soc}")
+        )
 
     def _pairs(self) -> None:
         """Pairs of outputs with a dead band of which one has no pin."""
@@ -860,6 +929,31 @@ class Connections:
                 )  # fmt: skip
             elif used and (beyond := self._chip.epwm[n].above.get(compare)):
                 self._beyond(f"{name}.{compare}", compare, beyond)
+
+    def _compares_for_nobody(self) -> None:
+        """Compare values that are computed for an output which the other compare switches."""
+        if any(self._writes(f"EPwm{n}Regs.EPWMXLINK") for n in range(1, EPWM_COUNT + 1)):
+            return  # a value written here counts elsewhere
+        for _, name, compare, _ in self._epwms():
+            x, other = compare[-1], "AB"[compare[-1] == "A"]
+            action = f"{name}.AQCTL{x}"
+            computed = any(write.values is None for write in self._source.writes[name, compare])
+            crossed = any(self._value(action, f"C{other}{way}") for way in "UD")
+            paired = self._value(f"{name}.DBCTL", "OUT_MODE")
+            if not computed or not crossed or paired or (name, compare) in self._source.reads:
+                continue
+            choices = {choice for choice, (of, _) in COMPARES.items() if of == compare}
+            switches = (
+                not self._stuck(f"{name}.AQCTL{output}", f"C{x}{way}", bool) for output in "AB" for way in "UD"
+            )
+            triggers = (
+                self._could(f"{name}.ETSEL", choices.__contains__, f"{event}SEL") for event in ("INT", "SOCA", "SOCB")
+            )
+            if not any(switches) and not any(triggers):
+                missing = Missing(f"{action} switches output {x} at CMP{other}", action)
+                self._tell(
+                    self._source.last(name, compare), f"the values of {name}.{compare} change nothing", missing, action
+                )  # fmt: skip
 
     def _beyond(self, register: str, compare: str, beyond: Beyond) -> None:
         """A compare value above the period, if it was computed: a constant is meant as it stands."""

@@ -20,6 +20,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Final
 
+from emulator.c28x.findings import Cause
 from emulator.clock import Clock
 from emulator.cpu import Cpu
 from emulator.registers.adc import AdcRegs, AdcResultRegs
@@ -64,14 +65,28 @@ class PostProcessing:
     `process`.  `soc0()` is the last result of SOC0.
     """
 
-    __slots__ = ("_blocks", "_clock", "_cpu", "_enabled", "_event", "_flags", "_soc0", "_stamped", "_woken", "in_use",
-                 "watched")  # fmt: skip
+    __slots__ = (
+        "_blocks",
+        "_clock",
+        "_cpu",
+        "_enabled",
+        "_event",
+        "_flags",
+        "_set_by",
+        "_soc0",
+        "_stamped",
+        "_woken",
+        "in_use",
+        "watched",
+    )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: AdcRegs, results: AdcResultRegs, event: Callable[[], None],
                  woken: Callable[[], None], soc0: Callable[[], int]) -> None:  # fmt: skip
         self._clock, self._cpu, self._event = clock, cpu, event
         self._woken, self._soc0 = woken, soc0
         self._blocks = tuple(_Block(number, regs, results) for number in (1, 2, 3, 4))
+        #: Of the registers that were written: by which statement.  What comes of a setting is told there.
+        self._set_by: dict[Cell, Cause | None] = {}
         self._flags, self._enabled = regs.registers["ADCEVTSTAT"], regs.registers["ADCEVTINTSEL"]
         for block in self._blocks:
             for register in (block.config, block.offcal, block.offref, block.triphi):
@@ -159,21 +174,28 @@ class PostProcessing:
 
     def _overridden(self, block: _Block, last: _Block) -> None:
         lost, soc = block.offcal, block.config.value & 0xF
-        self._cpu.findings.report(
-            "not-configured",
+        self._report(
+            lost, "not-configured",
             f"{lost.path} = {signed(lost.value, 10)} has no effect: PPB{last.number} has SOC{soc} too, and the OFFCAL "
             f"of the highest block is used, which is {signed(last.offcal.value, 10)}",
-            object=lost.path, value=lost.value,
+            lost.path, lost.value,
         )  # fmt: skip
 
     def _signed_limit(self, block: _Block, error: int) -> None:
         path = block.result.path
-        self._cpu.findings.report(
-            "adc-limit-signed",
+        self._report(
+            block.config if block.config.value & TWOSCOMPEN else block.offref, "adc-limit-signed",
             f"{path} is {error}, and the limits of PPB{block.number} do not compare signed results on this silicon: "
             "leave ADCPPBxOFFREF at 0 and TWOSCOMPEN off where TRIPHI or TRIPLO interrupt",
-            object=path, value=error,
+            path, error,
         )  # fmt: skip
+
+    def _report(self, register: Cell, rule: str, message: str, object: str, value: int) -> None:
+        """Tell what comes of a register's setting, at the statement that set it."""
+        findings = self._cpu.findings
+        before, findings.cause = findings.cause, self._set_by.get(register)
+        findings.report(rule, message, object=object, value=value)
+        findings.cause = before
 
     # --- register handlers -------------------------------------------------------------------------------------------
 
@@ -193,6 +215,7 @@ class PostProcessing:
         if not self.in_use:
             self._wake()
         register.store(word, lanes)
+        self._set_by[register] = self._cpu.findings.mark()
         self.watched = 0
         for block in self._blocks:
             self.watched |= 1 << (block.config.value & 0xF)

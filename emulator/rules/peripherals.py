@@ -181,13 +181,15 @@ connections are checked:
   selected (`INPUTxSELECT`). Or it enables a line without a routine, while another line of the group has a routine and
   is not enabled. Or `IER` or `ENPIE` does not pass the interrupt on.
 * DMA: a channel was never started, has no trigger, or uses an ADC interrupt that is not enabled.
-* eCAP: it has no input, its counter is stopped, no edge loads it (`CAPLDEN`), or its sequence ends before the event
-  that is enabled (`STOP_WRAP`).
+* ADC post-processing: an event interrupts, and nothing starts the SOC of its block.
+* eCAP: it has no input, or the program selected the input of another eCAP; its counter is stopped, no edge loads it
+  (`CAPLDEN`), or its sequence ends before the event that is enabled (`STOP_WRAP`).
 * eQEP: the program reads `QPOSLAT`, which the unit timer never loads (`QCLM`), or the unit timer has no period.
 * ePWM digital compare: it uses a TRIP input of the X-BAR that has no enabled mux, or a comparator that is off.
 * ePWM outputs: the dead band makes a pair of outputs, and one of them has no pin. A compare value is above the period,
   so the output never changes there (one above the period means 100 % and is right). A compare register is never loaded
-  from its shadow (`LOADAMODE = 3`).
+  from its shadow (`LOADAMODE = 3`), or its values change nothing, because its output switches at the other compare. A
+  trip that the program forces changes no output (`TZA = 3`).
 * DAC: it gets codes and drives no pin.
 * I2C and SCI: the module stays in reset, or an interrupt needs more characters than the FIFO holds.
 * SPI: the interrupt of a direction is not enabled.

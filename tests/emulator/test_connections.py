@@ -446,3 +446,133 @@ def test_an_interrupt_of_the_spi_is_enabled_there_too(tmp_path: Path, line: int,
     setting += f"\n    PieCtrlRegs.PIEIER6.bit.INTx{line} = 1;"
     text = text.replace("    IER |=", f"    {setting}\n    IER |= M_INT6 |")
     assert [why in finding.message for finding in told(tmp_path, text)] == [True] * bool(why)
+
+
+#: ePWM2 moves two outputs and is tripped on order; its counter starts SOC0, whose result is watched; eCAP1 measures
+#: GPIO24, while GPIO0 is an output of ePWM1.
+PARTS = """#include "F28x_Project.h"
+volatile Uint16 Over, Order, Width;
+interrupt void over(void)
+{
+    Over++;
+    AdcaRegs.ADCEVTCLR.bit.PPB1TRIPHI = 1;
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP10;
+}
+interrupt void edge(void)
+{
+    Width = (Uint16)ECap1Regs.CAP1;
+    ECap1Regs.ECCLR.bit.CEVT1 = 1;
+    ECap1Regs.ECCLR.bit.INT = 1;
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP4;
+}
+void Put(Uint16 a, Uint16 b) { EPwm2Regs.CMPA.bit.CMPA = a; EPwm2Regs.CMPB.bit.CMPB = b; }
+void main(void)
+{
+    InitSysCtrl();
+    DINT;
+    InitPieCtrl();
+    IER = 0x0000;
+    IFR = 0x0000;
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.ADCA_EVT_INT = &over;
+    PieVectTable.ECAP1_INT = &edge;
+    GpioCtrlRegs.GPAMUX1.bit.GPIO0 = 1;
+    GpioCtrlRegs.GPAMUX1.bit.GPIO2 = 1;
+    GpioCtrlRegs.GPAMUX1.bit.GPIO3 = 1;
+    InputXbarRegs.INPUT7SELECT = 24;
+    EPwm2Regs.TZCTL.bit.TZA = TZ_FORCE_LO;
+    EPwm2Regs.TZCTL.bit.TZB = TZ_FORCE_LO;
+    AdcaRegs.ADCCTL2.bit.PRESCALE = 6;
+    AdcaRegs.ADCCTL1.bit.ADCPWDNZ = 1;
+    DELAY_US(1000);
+    AdcaRegs.ADCSOC0CTL.bit.ACQPS = 14;
+    AdcaRegs.ADCSOC0CTL.bit.TRIGSEL = 7;
+    AdcaRegs.ADCPPB1CONFIG.bit.CONFIG = 0;
+    AdcaRegs.ADCPPB1TRIPHI.bit.LIMITHI = 0;
+    AdcaRegs.ADCPPB4OFFCAL.bit.OFFCAL = 0x200;
+    AdcaRegs.ADCEVTINTSEL.bit.PPB1TRIPHI = 1;
+    EDIS;
+    EPwm1Regs.TBPRD = 2000;
+    EPwm1Regs.CMPA.bit.CMPA = 500;
+    EPwm1Regs.AQCTLA.bit.ZRO = AQ_SET;
+    EPwm1Regs.AQCTLA.bit.CAU = AQ_CLEAR;
+    EPwm1Regs.TBCTL.bit.CTRMODE = TB_COUNT_UP;
+    EPwm2Regs.TBPRD = 2000;
+    EPwm2Regs.AQCTLA.bit.ZRO = AQ_SET;
+    EPwm2Regs.AQCTLA.bit.CAU = AQ_CLEAR;
+    EPwm2Regs.AQCTLB.bit.ZRO = AQ_SET;
+    EPwm2Regs.AQCTLB.bit.CBU = AQ_CLEAR;
+    EPwm2Regs.ETSEL.bit.SOCASEL = ET_CTR_ZERO;
+    EPwm2Regs.ETSEL.bit.SOCAEN = 1;
+    EPwm2Regs.ETPS.bit.SOCAPRD = ET_1ST;
+    EPwm2Regs.TBCTL.bit.CTRMODE = TB_COUNT_UP;
+    ECap1Regs.ECCTL1.bit.CAPLDEN = 1;
+    ECap1Regs.ECCTL2.bit.TSCTRSTOP = 1;
+    ECap1Regs.ECEINT.bit.CEVT1 = 1;
+    EALLOW;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 1;
+    EDIS;
+    PieCtrlRegs.PIEIER4.bit.INTx1 = 1;
+    PieCtrlRegs.PIEIER10.bit.INTx1 = 1;
+    IER |= M_INT4 | M_INT10;
+    EINT;
+    for (;;) {
+        Put(Width + 10, Over + 20);
+        if (Order) { EALLOW; EPwm2Regs.TZFRC.bit.OST = 1; EDIS; }
+    }
+}
+"""
+
+
+@pytest.mark.parametrize(("was", "now", "rule", "at", "why"), [
+    ("CBU = AQ_CLEAR", "CAU = AQ_CLEAR", "not-connected", "AQCTLB.bit.CAU", "AQCTLB switches output B at CMPA"),
+    ("INPUT7SELECT", "INPUT8SELECT", "not-connected", "INPUT8SELECT", "nothing uses that input"),
+    ("TZA = TZ_FORCE_LO;\n    EPwm2Regs.TZCTL.bit.TZB = TZ_FORCE_LO", "TZA = TZ_NO_CHANGE;\n    "
+     "EPwm2Regs.TZCTL.bit.TZB = TZ_NO_CHANGE", "not-connected", "TZA = TZ_NO_CHANGE", "go on switching"),
+    ("CONFIG = 0", "CONFIG = 1", "not-connected", "CONFIG = 1", "nothing starts SOC1"),
+    ("    AdcaRegs.ADCEVTCLR.bit.PPB1TRIPHI = 1;\n", "", "flag-not-cleared", "interrupt void over", "comes once only"),
+])  # fmt: skip
+def test_a_part_that_is_set_up_for_nobody(tmp_path: Path, was: str, now: str, rule: str, at: str, why: str) -> None:
+    assert PARTS.count(was) == 1
+    text = PARTS.replace(was, now)
+    (finding,) = told(tmp_path, text, rule)
+    assert finding.place is not None
+    assert at in text.splitlines()[finding.place.line - 1]
+    assert why in finding.message
+
+
+@pytest.mark.parametrize(("was", "now"), [
+    ("", ""),
+    # The same value for both outputs, of which one has the other's complement.
+    ("CBU = AQ_CLEAR", "CAU = AQ_CLEAR; EPwm2Regs.DBCTL.bit.OUT_MODE = DB_FULL_ENABLE"),
+    # Compare B triggers the conversion.
+    ("CBU = AQ_CLEAR", "CAU = AQ_CLEAR; EPwm2Regs.ETSEL.bit.SOCASEL = 6"),
+    ("INPUT7SELECT", "INPUT8SELECT = 25; ECap2Regs.ECCTL1.bit.CAPLDEN = 1; InputXbarRegs.INPUT7SELECT"),
+    # A trip that only interrupts.
+    ("TZA = TZ_FORCE_LO;\n    EPwm2Regs.TZCTL.bit.TZB = TZ_FORCE_LO", "TZA = TZ_NO_CHANGE;\n    "
+     "EPwm2Regs.TZCTL.bit.TZB = TZ_NO_CHANGE; EPwm2Regs.TZEINT.bit.OST = 1"),
+    # The program starts SOC1 itself.
+    ("CONFIG = 0", "CONFIG = 1; AdcaRegs.ADCSOCFRC1.bit.SOC1 = 1"),
+    # The event is kept until an order takes it back.
+    ("    AdcaRegs.ADCEVTCLR.bit.PPB1TRIPHI = 1;\n", "    if (Order) AdcaRegs.ADCEVTCLR.bit.PPB1TRIPHI = 1;\n"),
+])  # fmt: skip
+def test_parts_that_are_right_are_told_nothing(tmp_path: Path, was: str, now: str) -> None:
+    text = PARTS.replace(was, now) if was else PARTS
+    for rule in ("not-connected", "flag-not-cleared"):
+        assert told(tmp_path, text, rule) == []
+
+
+@pytest.mark.parametrize(("was", "now", "rule", "at"), [
+    # Without a word PPB2 to PPB4 are blocks of SOC0, too, and the last one's offset counts.
+    ("ADCPPB4OFFCAL", "ADCPPB1OFFCAL", "not-configured", "OFFCAL"),
+    ("ADCPPB4OFFCAL.bit.OFFCAL = 0x200", "ADCPPB1OFFREF = 100", "adc-limit-signed", "OFFREF"),
+    ("ADCPPB4OFFCAL.bit.OFFCAL = 0x200", "ADCPPB4OFFCAL.bit.OFFCAL = 0x200; AdcaRegs.ADCPPB1CONFIG.bit.TWOSCOMPEN = 1",
+     "adc-limit-signed", "TWOSCOMPEN"),
+])  # fmt: skip
+def test_what_comes_of_a_setting_is_told_at_it(tmp_path: Path, was: str, now: str, rule: str, at: str) -> None:
+    text = PARTS.replace(was, now)
+    assert text != PARTS
+    (finding,) = told(tmp_path, text, rule)
+    assert finding.place is not None
+    assert at in text.splitlines()[finding.place.line - 1]
