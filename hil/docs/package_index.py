@@ -2,7 +2,7 @@
 
 An index shows the text alone.  A link to a file beside it would lead nowhere, so it becomes the name of the page that
 `hil docs` shows, or the words of the link; a picture is left out; what is installed from a checkout is installed from
-the index.  `[project.urls]` has no address yet: with one, links and pictures could go there.
+the index; a command or a row that needs files of a checkout is left out.  `[project.urls]` has no address yet: with one, links and pictures could go there.
 
 The backend is started by its path, without anything of this project installed.
 """
@@ -32,12 +32,14 @@ TARGET = Path("build/package_index.md")
 _COMMENT = re.compile(r"<!--.*?-->\n?", re.DOTALL)
 _PICTURE = re.compile(r"!\[[^\]]*\]\([^)]*\)\n*")
 _LINK = re.compile(r"\[(?P<words>[^\]\n]*)\]\((?!https?:)(?P<to>[^)#\s]+)[^)]*\)")
+#: The tests, the script of CI, the sources as text.
+_OF_CHECKOUT = re.compile(r"^.*(?:tests/|&& pytest|\.ci/|grep -r).*\n", re.MULTILINE)
 _INSTALL = re.compile(r"pip install -e (?:\.|'\.(?P<extras>\[[^\]]*\])')")
 
 
 def described(text: str, pages: dict[str, str]) -> str:
     """README's text for an index; `pages` are the pages of `hil docs` by their path."""
-    text = _PICTURE.sub("", _COMMENT.sub("", text))
+    text = _OF_CHECKOUT.sub("", _PICTURE.sub("", _COMMENT.sub("", text)))
     text = _LINK.sub(lambda to: f"`hil docs {pages[to['to']]}`" if to["to"] in pages else to["words"], text)
     return _INSTALL.sub(_installed, text)
 

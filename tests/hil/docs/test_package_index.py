@@ -32,6 +32,13 @@ def test_it_is_installed_from_the_index() -> None:
     assert "pip install 'c2000-hil[all]' && hil demo" in SHOWN
 
 
+def test_no_command_needs_a_checkout() -> None:
+    for needs in ("tests/", "&& pytest", ".ci/run", "grep -r"):
+        assert needs not in SHOWN
+    assert "```sh\n```" not in SHOWN
+    assert "hil tasks " in SHOWN
+
+
 def test_text_between_stays() -> None:
     assert described("# A\n\n![p](x.png)\n\nb [c](d.md#e), [f](https://g.org) [h](i.md)", {"d.md": "page"}) == (
         "# A\n\nb `hil docs page`, [f](https://g.org) h"
