@@ -2,7 +2,7 @@
 
 The key of a program is everything that it was made of: what was asked for, the `CompileOptions`, and the translator.
 It is taken only if every source file still has the content that it had, and reading a register is still what it was.
-What cannot be read or written is as if it were not there: then the program is compiled.
+If an entry cannot be read or written, the program is compiled.
 
 The folder is the user's own cache (`HIL_CACHE`, else `XDG_CACHE_HOME`, else `~/.cache`); its files are trusted as the
 user's programs are.  `HIL_CACHE=off` keeps nothing.
@@ -198,7 +198,7 @@ def _load(file: str, size: int, inode: int) -> Kept | None:
 
 
 class _Pickler(pickle.Pickler):
-    """Keeps what is looked at once the code is written.
+    """Pickles only what is still needed once the code is generated.
 
     Trees are, in a program that is watched.  A type's name means what the first module that has it says (`type_named`);
     every C file has all types and functions of its headers: equal ones become one.

@@ -1,9 +1,9 @@
 """Functions that are called through a pointer of another type.
 
 TI's compiler hands over the first arguments in registers, chosen by the class of each (CC section "how a function is
-called": 16-bit values in AL and AH, 32-bit ones in ACC, pointers in XAR4 and XAR5, floats in R0H to R3H).  So what a
-function does not take is left lying there and harms nobody; what it takes and nobody handed over, or in a register of
-another class, is whatever that register holds: 0 here (CHOICE).
+called": 16-bit values in AL and AH, 32-bit ones in ACC, pointers in XAR4 and XAR5, floats in R0H to R3H).  An argument
+that the function does not take is harmless.  A parameter that was not passed, or was passed in a register of another
+class, holds whatever is in its register: 0 here (CHOICE).
 """
 
 from __future__ import annotations

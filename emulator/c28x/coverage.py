@@ -23,7 +23,7 @@ class FileCoverage:
 
 
 class Coverage:
-    """The counters of images that share it: what is the same function in several is counted together."""
+    """The counters of several images.  A function that they have in common is counted together."""
 
     def __init__(self) -> None:
         self._counts: dict[tuple[str, str, tuple[Where, ...]], list[int]] = {}

@@ -137,7 +137,7 @@ def parse_fill(fill: str) -> tuple[str, int]:
 
 
 class _BlockWord:
-    """What a pointer to a register block designates when it points to no register: a word of memory."""
+    """The word of memory at a pointer into a register block where there is no register."""
 
     def __init__(self, runtime: Runtime, p: Pointer, words: int, ctype: IntType, site: Spot) -> None:
         self._runtime, self._p, self._words, self._ctype, self._site = runtime, p, words, ctype, site

@@ -17,7 +17,7 @@ _LOOKED_AT: Final = 3000
 
 
 class NoModule(ValueError):
-    """A module that is nowhere."""
+    """A module that cannot be found."""
 
 
 class SourceError(ValueError):

@@ -1,4 +1,4 @@
-"""Questions about the typed tree: what it touches, calls, changes, and whether it comes to its end."""
+"""Queries on the typed tree: what it touches, calls and changes, and whether it can reach its end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run came to, for `hil run`: a line while it runs, and the summary at its end; of a board, and of a robot."""
+"""The status line of `hil run` while it runs, and its summary at the end, for a board and for a robot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``hil audit``: every defect of the catalogue, demonstrated on the faithful firmware and gone with its correction."""
+"""``hil audit``: demonstrates each known defect in the original firmware, and that its correction removes it."""
 
 from __future__ import annotations
 

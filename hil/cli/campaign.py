@@ -1,4 +1,4 @@
-"""``hil campaign``: short runs with worlds, faults and orders at random, and what must hold of all of them."""
+"""``hil campaign``: short runs with random worlds, faults and orders, and what every run must satisfy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which commands there are.  The module of one is imported when it is chosen, and by no other command."""
+"""The list of commands.  A command's module is imported only when that command is chosen."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ TAKE_WHAT_LOOKS_LIKE_OPTIONS: Final = ("drive",)
 
 
 class Unopened(TyperCommand):
-    """A command as a list of commands shows it.  `whole` imports it; so does whoever runs it or asks for its help."""
+    """A command whose module is not imported yet: enough for `hil --help`.  `whole` imports the module."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name=name)

@@ -1,4 +1,4 @@
-"""``hil compare-filters``: ways to make a distance of several samples of a sonar."""
+"""``hil compare-filters``: compares ways to compute a distance from several sonar samples."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``hil demo``: a mission to look at, with nothing to decide."""
+"""``hil demo``: shows a mission, without any choices to make."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``hil docs``: the pages that come with it."""
+"""``hil docs``: the documentation pages of the package."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``hil faults``: what can break on purpose; and the option ``--fault`` of the commands that run something."""
+"""``hil faults``: the faults that can be injected; and the option ``--fault`` of the commands that run something."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``hil record``, ``hil replay``, ``hil compare``: what passed through a line, kept, played again, compared."""
+"""``hil record``, ``hil replay``, ``hil compare``: log a serial line, replay the log, compare two logs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``hil rta``: the real-time workbench: response times computed, seen, and as the thesis prints them."""
+"""``hil rta``: response times of tasks: computed, measured, and as the thesis states them."""
 
 from __future__ import annotations
 
@@ -175,7 +175,7 @@ def rta(
 
 
 class _RunKind:
-    """One kind of runs, and what is computed with the largest times of these."""
+    """Runs of one kind, and the response times computed with their largest execution times."""
 
     def __init__(
         self, kind: str, observer: Observer, task_set: TaskSet, protocol: Protocol, phasings: int, began: float

@@ -59,19 +59,19 @@ class UserError(Exception):
 
 
 class StopRequest:
-    """What the user's wish to end does: remembered, and handed to what runs as soon as something runs."""
+    """A request to end (Ctrl-C, SIGTERM).  It is remembered, and passed on to what runs, now or as soon as it runs."""
 
     def __init__(self) -> None:
         self.requested = False
         self._then: Callable[[], None] = lambda: None
 
     def __call__(self) -> None:
-        """The user wants to end."""
+        """Take the request."""
         self.requested = True
         self._then()
 
     def ends(self, stop: Callable[[], None]) -> None:
-        """Call `stop` when the user wants to end, at once if that was before."""
+        """Call `stop` on a request; at once if there was one before."""
         self._then = stop
         if self.requested:
             stop()

@@ -21,7 +21,7 @@ from hil.tolerance import EXPLANATION, OFF_BY, residual_percent
 
 @dataclass(frozen=True, slots=True)
 class Published:
-    """What the thesis gives for a task: range seen in figure 37, computation time and deadline of figure 39."""
+    """The thesis' figures for a task: the measured range (figure 37), computation time and deadline (figure 39)."""
 
     figure37_min_us: float | None
     figure37_max_us: float | None

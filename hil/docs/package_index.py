@@ -2,7 +2,8 @@
 
 An index shows the text alone.  A link to a file beside it would lead nowhere, so it becomes the name of the page that
 `hil docs` shows, or the words of the link; a picture is left out; what is installed from a checkout is installed from
-the index; a command or a row that needs files of a checkout is left out.  `[project.urls]` has no address yet: with one, links and pictures could go there.
+the index; a command or a row that needs files of a checkout is left out.  `[project.urls]` has no address yet: with
+one, links and pictures could go there.
 
 The backend is started by its path, without anything of this project installed.
 """

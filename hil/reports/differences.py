@@ -1,4 +1,4 @@
-"""What two runs put out, held against each other: data and comparison, nothing that runs."""
+"""The outputs of two runs, compared.  Nothing runs here."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class FrameDifference:
 
 @dataclass(frozen=True, slots=True)
 class RunDifferences:
-    """What differs when something holds another value."""
+    """The outputs that differ between two runs in which some memory holds different values."""
 
     differences: tuple[OutputDifference, ...]
     frames: FrameDifference
@@ -109,7 +109,7 @@ def _numbers(numbers: tuple[int, ...]) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """What findings name, and what was given another value: an object, a cell outside one, the words at address 0."""
+    """The memory that a finding names, whose value was changed: an object, a cell outside one, words at address 0."""
 
     rule: str
     object: str
@@ -123,7 +123,7 @@ class Subject:
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """The same scenario under two fills, and with one object at a time holding what the second fill says."""
+    """One scenario under two fills, and again with only one object at a time filled by the second."""
 
     fill_a: str
     fill_b: str

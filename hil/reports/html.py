@@ -1,6 +1,6 @@
 """A report as one HTML file: no script, nothing loaded from elsewhere, light and dark, filters in style sheets.
 
-`report.html.j2` is the page; this module gives it the report and a few words it does not know.
+`report.html.j2` is the template; this module gives it the report and a few filters.
 """
 
 from __future__ import annotations

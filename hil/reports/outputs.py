@@ -1,7 +1,7 @@
 """Everything that a run puts out: bytes on the line and every write of the firmware to a register, with time.
 
-An output is a stream of (cycles, value): of a field assignment the field where it stands, of a write to the high half
-of a 32-bit register (CMPA) the value of that half.
+An output is a stream of (cycles, value).  For an assignment to a field the value is that field, in its place in the
+word; for a write to the high half of a 32-bit register (CMPA) it is that half.
 Registers of the ePWM modules are the motors', GPIO registers the pins'; the others are what configures peripherals and
 talks to the gyro.  Not recorded: what peripherals do to their own registers; SCITXBUF, whose bytes are the line's.
 """
@@ -23,7 +23,7 @@ Stream: TypeAlias = list[tuple[int, int]]
 
 
 class OutputKind(Enum):
-    """What an output is."""
+    """The kind of an output."""
 
     UART = "UART"
     PWM = "PWM"
@@ -42,7 +42,7 @@ def kind_of(name: str) -> OutputKind:
 
 @dataclass(slots=True)
 class RunOutputs:
-    """What one run put out."""
+    """All outputs of one run."""
 
     #: Output -> its stream.
     streams: dict[str, Stream] = field(default_factory=dict)

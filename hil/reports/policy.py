@@ -1,4 +1,4 @@
-"""What a project makes of findings: severities of its own, its baseline, and from where on a run has failed.
+"""A project's policy: its own severities, its baseline, and the severity from which a run fails.
 
 In `pyproject.toml`::
 

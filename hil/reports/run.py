@@ -1,4 +1,4 @@
-"""From a bench that has run to what a report says of the run."""
+"""Makes the `Run` of a report from a bench that has run."""
 
 from __future__ import annotations
 

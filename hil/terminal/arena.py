@@ -1,4 +1,4 @@
-"""The arena as the frames tell it: where the robot was, what its sonars saw, where it looks.  Pure drawing.
+"""Draws the arena from the robot's frames: its path, what its sonars saw, its heading.
 
 As in the thesis console everything rests on the frame's own pose, whose heading is in whole radians: the point cloud
 turns in steps of 57 degrees.  North is up, the frame's x axis points to the right, both axes have one scale.
@@ -30,7 +30,7 @@ _ARROWS: Final = "→↗↑↖←↙↓↘"
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """A window onto the plane: the point in its middle, and how much a dot is, the same in both directions."""
+    """A window onto the plane: its middle, and the metres per dot, the same in both directions."""
 
     x_m: float
     y_m: float
@@ -58,7 +58,7 @@ class View:
 
 
 class ArenaHistory:
-    """What the frames have told so far; the oldest is forgotten."""
+    """The frames' poses and sonar points so far; the oldest are dropped."""
 
     def __init__(self) -> None:
         self._path: deque[Point] = deque(maxlen=MOST_POSES)

@@ -1,7 +1,7 @@
 """The line of a console: any serial port or URL, read and written in threads of its own, everything bounded.
 
-The screen may stand still (a shell over a slow connection): the line does not.  Frames wait for the screen in a short
-queue, the oldest give way; ``#SETR`` of telemanipulation and its dead man run here, in the writer's time.
+A slow screen (a shell over a slow connection) does not slow the line down.  Frames wait for the screen in a short queue
+that drops the oldest.  ``#SETR`` of telemanipulation and the dead man's timer run in the writer's thread.
 
 When the process is killed the hard way (SIGKILL, power) no ``#STOP`` leaves: nothing here can help that.
 """
@@ -46,7 +46,7 @@ Event = OdometryFrame | bytes
 
 @dataclass(frozen=True, slots=True)
 class Traffic:
-    """What passed so far."""
+    """Counts of what passed the line so far."""
 
     frames: int
     malformed: int

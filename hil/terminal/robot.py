@@ -1,4 +1,4 @@
-"""An emulated robot of one's own, in a thread of its own, behind a port that the console opens like any other.
+"""An emulated robot in a thread of its own, behind a port that the console opens like any other.
 
 Built, booted, run and closed in that thread: the kernel's tasks are greenlets, and those never change their thread.
 """

@@ -1,4 +1,4 @@
-"""From a wish to a summary: open what is wanted, show it, stop the robot, however the screen ended."""
+"""A session at the console: open the robot, show the screen, stop the robot however the screen ended."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from hil.terminal.robot import EmulatedRobot, real_machine
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """What a session at the console came to."""
+    """The result of a session at the console."""
 
     port: str | None
     seconds: float

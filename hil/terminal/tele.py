@@ -1,4 +1,4 @@
-"""Driving with arrow keys where nobody tells of keys released: a terminal only says that a key was pressed.
+"""Drives with the arrow keys.  A terminal reports only presses, not releases.
 
 * A press changes the speed by the thesis console's step (annex 2: 0.01 m/s, 0.03 rad/s).  However fast a terminal
   repeats a held key, an axis changes by at most one step a period, as in that console.

@@ -1,4 +1,4 @@
-"""One test as the plugin sees it: the boards it used, what it expects of them, and whether it has failed.
+"""One test in the plugin: the boards it used, the findings it expects, and whether it has failed.
 
 A finding fails the test that caused it unless the test expects or allows it; an expected finding that does not come
 fails it too.  Severities, baseline and threshold are those of the project (`hil.reports.policy`).
@@ -28,8 +28,8 @@ class ExpectedFinding:
     """A finding that a test waits for (`required`) or puts up with.
 
     `rule` may hold wildcards where it is not required; `object` is the object's name or its path (`result`,
-    `us.Read_Distance.result`), `function` the C function.  A part of one's own may report by rules of its own, so that
-    only what looks like a mistyped rule is refused.
+    `us.Read_Distance.result`), `function` the C function.  Parts of the user may report rules of
+    their own, so only a name that looks like a mistyped rule is refused.
     """
 
     rule: str

@@ -1,4 +1,4 @@
-"""A test's board as the machine that is fed and has faults: no start-up, no world, a line to a PC if it has one."""
+"""Lets feeds and faults work on a test's board, which has no start-up and no world."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from hil.board import Board
 
 
 class OnBoard:
-    """What `hil.faults.FaultTarget` and `hil.feeds.feeding.Fed` ask for, of a board that a test runs by itself."""
+    """A test's board as a `hil.faults.FaultTarget` and a `hil.feeds.feeding.Fed`."""
 
     start_up_cycles = 0
 

@@ -1,6 +1,6 @@
 """The fixtures of the plugin.  They are made when a test asks for them, and only then is the emulator imported.
 
-They need each other by names that begin with `hil_`, so that a project's own `board` or `seed` is nothing to them.
+They use each other by names that begin with `hil_`, so that a project's own `board` or `seed` does not affect them.
 The short names are made by `short_names`.
 """
 

@@ -1,9 +1,8 @@
-"""No call of a test hangs: a driver function that does not return is ended, with a finding at the loop it is in.
+"""Ends a driver function that does not return, with a finding at its loop: no call of a test hangs.
 
-A loop that is written without an end is right where it is, at the end of `main`: who calls it is told so, without a
-finding.  In an interrupt routine it is none of that kind.
-An interrupt routine is a call too, whoever lets the time pass in which it is taken.  The loop is that of the innermost
-function that has not returned for half of the time: what it calls comes and goes.
+An endless loop at the end of `main` is right.  Then the caller is told, and there is no finding.  In an interrupt
+routine such a loop is a finding.  Interrupt routines that are taken during a call are guarded like calls.  The loop
+told is that of the innermost function that has not returned for half of the time limit.
 """
 
 from __future__ import annotations
@@ -45,7 +44,7 @@ def guard(board: Board, linked: Linked, limit_s: float) -> None:
 
 @dataclass(slots=True, eq=False)
 class _Call:
-    """A call that has not returned: which, when and where it began."""
+    """A call that has not returned: its function, and when and where it began."""
 
     path: str
     who: str
@@ -61,7 +60,7 @@ class _Call:
 
 
 class _CallWatch:
-    """Looks at the calls that have not returned, every now and then: most calls return before it looks."""
+    """Checks from time to time which calls have not returned.  Most calls return before the first check."""
 
     def __init__(self, board: Board, linked: Linked, limit_s: float) -> None:
         self._core, self._clock, self._findings = board.cpu, board.clock, linked.runtime.findings

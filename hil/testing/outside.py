@@ -1,7 +1,7 @@
-"""What is outside of the chip, as a test sets it: volts, ranges, rates, shafts, levels.
+"""Sets what is outside of the chip in a test: volts, ranges, rates, shafts, levels.
 
-Plain methods with their units.  What is set stays until it is set again, also against a world: in a test with `bench`
-the world goes on moving everything else.
+Plain methods with units in their names.  A value stays until it is set again, even if a world would set it: in a test
+with `bench` the world goes on moving everything else.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""What the rest of the chip can change while a loop waits: interrupt routines, and events of peripherals.
+"""What can change while a loop waits: by interrupt routines, and by events of peripherals.
 
-Everything here errs to one side: what is not known may change anything.
+The answers are conservative: what is not known may change anything.
 """
 
 from __future__ import annotations
@@ -197,7 +197,7 @@ class Reach:
 
 
 class _Routine:
-    """What an interrupt routine touches, with all that it calls."""
+    """The objects and registers that an interrupt routine touches, with all that it calls."""
 
     def __init__(self, reach: Reach, path: str) -> None:
         functions = reach.threads.functions

@@ -1,4 +1,4 @@
-"""What a test runs under: its nearest marker, else the option, else the ini key.
+"""The settings of a test: of its nearest marker, else of the option, else of the ini key.
 
 `MARKERS` and `INI` list them all; the options are `--hil-fill`, `--hil-seed` and `--hil-float-division`.
 """

@@ -1,8 +1,8 @@
 """Short names of fixtures and markers: `board` is `hil_board`.
 
-A short name that a fixture of another plugin has is left to that one, whichever plugin was loaded first.  A conftest.py
-or a test file may override a short name, as pytest has it; the fixtures of this plugin need each other by their own.
-A short marker that the project or another plugin has registered is theirs.
+If another plugin has a fixture of a short name, that plugin keeps it, whichever was loaded first.  A conftest.py or a
+test file may override a short name as usual; the fixtures of this plugin use each other by their long names.  A marker
+that the project or another plugin has registered stays theirs.
 """
 
 from __future__ import annotations

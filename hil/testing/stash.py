@@ -1,4 +1,4 @@
-"""Where pytest keeps what the plugin knows: of a session, and of a test."""
+"""The keys under which pytest keeps the plugin's data of a session and of a test."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ends the firmware for good, and the finding that announces it."""
+"""The exceptions that end the firmware for good, and the rule whose finding comes with each."""
 
 from __future__ import annotations
 

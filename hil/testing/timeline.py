@@ -1,7 +1,7 @@
-"""Virtual time as a test moves it: forward by a time, or until a trigger.
+"""A test's control of virtual time: forward by a time, or until a trigger.
 
-Time moves also while a test calls a function of the driver: as much as the function takes.  `Timeline` carries it on in
-between, through the kernel if one runs, else from event to event with an idle CPU.
+A call of a driver function takes its own time.  Between calls `Timeline` advances the time: through the kernel if one
+runs, else from event to event with an idle CPU.
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ LOOK_CYCLES: Final = SYSCLK_HZ // 10_000
 
 
 class Subscription:
-    """A listener that hears nothing more once it is ended, also of an emission that goes on."""
+    """A listener that gets nothing after `end`, not even the rest of an emission under way."""
 
     __slots__ = ("_fire", "_on", "_stop")
 
@@ -70,7 +70,7 @@ class Trigger(ABC):
 
 
 class Either(Trigger):
-    """Whichever comes first; gives what that one gives."""
+    """The trigger that fires first; gives its value."""
 
     def __init__(self, *triggers: Trigger) -> None:
         self.triggers = triggers

@@ -1,4 +1,4 @@
-"""What a loop that does not end waits for, and what could have ended it: a flag, a routine and its enable bits.
+"""What an endless polling loop waits for, and what could end it: a flag, an interrupt routine and its enable bits.
 
 `PollingLoop` looks at the conditions that end a loop, and at what these are computed from.  It is `hopeless` if nothing
 can change them: the loop does not, nor does a routine that may run, nor an event of the chip (`reach.py`).  Where this

@@ -61,7 +61,7 @@ class BoardPanel:
 
 
 class FaceRow:
-    """One face: its name and unit, what it is now, and what sets it."""
+    """One face: its name, unit and present value, and the control that sets it."""
 
     def __init__(self, part: Part, face: Face, put: Callable[[Part, Face, float], None]) -> None:
         self._part, self._face, self._put = part, face, put

@@ -1,4 +1,4 @@
-"""A run that can be gone back in: every input with its cycle, and the moments worth going back to.
+"""A run that can go back in time: every input with its cycle, and the moments to return to.
 
 What determines a run is its `Setup` and what was done to it from outside: bytes on the line, values put to faces of its
 parts, faults, hands on the world.  All are logged here with the cycle at which they were done, so a new bench given the
@@ -78,8 +78,8 @@ def hands(bench: RunningBoard, stage: StageProtocol | None) -> Mapping[str, Hand
 class RewindableRun:
     """A machine with its history.  Implements `hil.machine.Machine`.
 
-    `done` has happened; `ahead` will, each at its cycle, as `run_until` comes there.  `read` is what was read of files
-    to make an earlier one like it (`RunningBoard.read`).
+    `done` are the inputs so far; `ahead` are those still to come, each at its cycle.  `read` is what was read from
+    files, so that the run can be built again (`RunningBoard.read`).
     """
 
     def __init__(
@@ -198,7 +198,7 @@ class RewindableRun:
 
 
 class Moments:
-    """The moments to go back to, in order of time, "ready" always; the oldest without a name gives way first."""
+    """The moments to return to, in order of time.  "ready" stays; the oldest without a name is dropped first."""
 
     def __init__(self, ready_cycles: int = 0, most: int = 60) -> None:
         self._most = most

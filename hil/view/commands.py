@@ -1,4 +1,4 @@
-"""What other threads want done in the machine's thread: one queue, and what waits for the machine to be at rest."""
+"""Commands of other threads for the machine's thread: one queue, some of it held back until the machine is at rest."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class _Command:
 
 
 class Commands:
-    """Put in by any thread, done by one."""
+    """A queue that any thread fills and one thread empties."""
 
     def __init__(self) -> None:
         self._queue: queue.SimpleQueue[_Command] = queue.SimpleQueue()

@@ -83,7 +83,7 @@ class FaultsPanel:
 
 
 class FaultRow:
-    """One that was mounted: what it is, what came of it, and what ends it."""
+    """One mounted fault: its parameters, how often it fired, and the button that ends it."""
 
     def __init__(self, engine: Engine, index: int, fault: str) -> None:
         self.fault = fault

@@ -1,4 +1,4 @@
-"""What a signal of the scope is: a quantity with a unit, a level, or words; and how it is called there."""
+"""The kinds of signals of the scope (a quantity with a unit, a level, words), and their names."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Draw(Enum):
 
 @dataclass(frozen=True, slots=True)
 class SignalKind:
-    """What a signal is."""
+    """The kind of a signal."""
 
     draw: Draw
     #: Of what is drawn on an axis; empty: nobody knows it.

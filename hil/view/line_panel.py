@@ -14,7 +14,7 @@ ENDS: Final = {"\r": "CR", "\n": "LF", "\r\n": "CR LF", "": "nothing"}
 
 
 class LinePanel:
-    """It knows only a line."""
+    """The panel; it uses only the line, not the board."""
 
     def __init__(self, line: RobotLine) -> None:
         self._line = line

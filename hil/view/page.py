@@ -1,4 +1,4 @@
-"""The page: what stands where, the keys, and the 20 Hz."""
+"""The page: its layout, its keys, and its update 20 times a second."""
 
 from __future__ import annotations
 
@@ -245,7 +245,7 @@ def _board_panel(engine: Engine) -> BoardPanel:
 
 
 class _Head:
-    """What it is doing, as tiles."""
+    """The status tiles: state, time, pose, distances, findings."""
 
     def __init__(self, engine: Engine, stage: PanelsProtocol | None, on_findings: Callable[[], None]) -> None:
         self._engine, self._stage = engine, stage

@@ -142,7 +142,7 @@ def _serve(
     from hil.view.crowd import Crowd
 
     class Server(uvicorn.Server):
-        """The caller handles signals."""
+        """The HTTP server.  It installs no signal handlers; the caller does."""
 
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
             # NiceGUI looks through all of Python's objects as it starts, and a tuple that another thread is making at

@@ -1,4 +1,4 @@
-"""What the page sees of the machine: snapshots and paths, made in the machine's thread and never changed afterwards."""
+"""Snapshots and paths for the page: made in the machine's thread, immutable afterwards."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Mark:
 
 
 class Showing:
-    """The last of each, for readers in any thread; what it says besides the run is set by the machine's thread."""
+    """The latest snapshot, paths and marks.  The machine's thread sets them, any thread may read them."""
 
     def __init__(self, pace: float | None) -> None:
         self.findings: tuple[Finding, ...] = ()

@@ -1,7 +1,7 @@
-"""What the page shows of the machine at one moment: made by the machine's own thread, never changed afterwards.
+"""The machine at one moment, for the page: made in the machine's thread, immutable afterwards.
 
-Everything is looked at without touching it: stored words and objects, no register read, no integration of the world.
-A look must not change the run.
+Making one must not change the run: stored words and objects are taken, no register is read, the world is not
+integrated.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Mode(Enum):
-    """What the machine's thread does."""
+    """The state of the machine's thread."""
 
     STARTING = "starting up"
     RUNNING = "running"

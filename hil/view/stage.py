@@ -1,4 +1,4 @@
-"""What a board stands in, as the view has it: a world with a robot, or nothing.
+"""The surroundings of a board in the view: a world with a robot, or nothing.
 
 A board names the package of its stage (`Board.view`).  It has two modules.  `stage` has a class `Stage` (a
 `StageProtocol`), made of each machine and living in its thread.  `panels` has a class `Panels` (a `PanelsProtocol`),
@@ -44,7 +44,7 @@ class StageProtocol(Protocol):
 
 
 class PanelsProtocol(Protocol):
-    """What a page has of a stage besides what it has of every board."""
+    """The panels that a stage adds to the page of every board."""
 
     #: Keys and what they do, for the list.
     keys: Sequence[tuple[str, str]]

@@ -31,7 +31,7 @@ class DecodedWord:
 
 
 class RegisterDevice(Protocol):
-    """A device that a transfer can be decoded of."""
+    """A device whose transfers can be decoded into register accesses."""
 
     register_names: Mapping[int, str]
 

@@ -63,7 +63,7 @@ def operands(b: Builder, *builds: Callable[[], Operand]) -> list[Operand]:
 
 
 class _Changeable:
-    """Which of many operands an effect may change: by the variables that they read, so that not all are looked at."""
+    """Finds the operands that an effect may change, by the variables that they read, without looking at all of them."""
 
     def __init__(self) -> None:
         self.by_variable: dict[Variable, set[int]] = {}

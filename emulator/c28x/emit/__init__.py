@@ -1,1 +1,1 @@
-"""The annotated tree to code: what is decided stands on the nodes, a writer only says it."""
+"""Generates code from the annotated tree.  All decisions stand on the nodes; a writer only prints them."""

@@ -1,4 +1,4 @@
-"""The lines of a function as they are written: statements as text, charges as objects until they are printed."""
+"""The lines of a generated function: statements as text; charges of cycles as objects until they are printed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A function as it is written: what the writer leaves, and all that linking needs of the generator."""
+"""A generated function: the writer's result, with all that linking needs."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What is found out about a function before it is written: once, and left on the nodes of its tree."""
+"""Passes over a function's tree before code is generated; each leaves its results on the nodes."""

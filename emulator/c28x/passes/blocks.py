@@ -1,7 +1,7 @@
-"""Static check of blocks and magnitudes: what a call of the library is given, against what it is meant to take.
+"""Static check of library calls: are block lengths and argument types those that the function needs?
 
-Only what stands in the call: a member with the length that leaves it, the size of a pointer for what it points to, a
-float for a function of integers.  A block that is a whole object is looked at when it is copied.
+It looks only at the call: a length that exceeds the member, the size of a pointer in place of what it points to, a
+float for a function of integers.  A block that is a whole object is checked when it is copied.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What loops that count bring: bounds of what is stepped in them, and what their counters are behind them.
+"""Counting loops: bounds of the locals that are stepped in them, and the values of their counters after them.
 
 Only plain locals, and loops from one constant to another one.  `values` holds conditions against it.
 """
@@ -75,7 +75,7 @@ def known_locals(function: Function, *, counted: bool) -> dict[Variable, tuple[i
 
 
 class Counted:
-    """How far the locals of a function can be stepped from the constants that they begin at.
+    """Bounds of a function's locals that begin at constants and are stepped in loops.
 
     A step within loops is taken as often as these turn, out to the statement that gives the local a constant before
     they begin.  A loop that is not known to count ends the look: then nothing is known.
@@ -169,7 +169,7 @@ def _goes_up(s: Stmt) -> bool | None:
 
 
 class Ends:
-    """What the counters of loops are when the loops have run to their end, as long as nothing changes them."""
+    """The values of loop counters after the end of their loops, until something changes them."""
 
     def __init__(self, body: list[Stmt]) -> None:
         #: By the statement behind such a loop: the counters, and what they are there.

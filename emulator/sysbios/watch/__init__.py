@@ -39,7 +39,7 @@ __all__ = ["KernelWatch"]
 
 
 class Vectors(Protocol):
-    """The vector table: who tells when a routine begins and ends, by number and name."""
+    """The vector table, which signals the begin and the end of each routine, by number and name."""
 
     @property
     def began(self) -> Signal[int, str]:

@@ -1,6 +1,6 @@
-"""Listening in on the C functions of an image: what is called, with which arguments, from which statement.
+"""Intercepts calls of an image's C functions: the function, its arguments, the calling statement.
 
-The functions themselves know nothing of it: an image that nobody watches calls them directly.
+The functions themselves do not change; an image that is not watched calls them directly.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ After = Callable[..., None]
 
 
 class Calls:
-    """Collects who listens to what; `install` puts it between the image and its externs.
+    """Collects the listeners of each function; `install` puts it between the image and its externs.
 
-    What the host calls by itself, while the kernel does not run, is nobody's business.
+    Calls by the host, while the kernel does not run, are not reported.
     """
 
     def __init__(self, kernel: Kernel) -> None:

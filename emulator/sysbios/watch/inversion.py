@@ -1,8 +1,9 @@
-"""A task that waits for a lower one, while one in between has the CPU: `no-inheritance`, `priority-inversion`.
+"""A task waits for one of lower priority while a third in between runs: `no-inheritance`, `priority-inversion`.
 
-`GateMutexPri` raises the owner when a higher task begins to wait, but nobody whom the owner waits for; leaving any gate
-that was entered before takes the raise back; an owner that sleeps or pends cannot be helped at all.  `GateMutex`, and a
-semaphore that serves as a mutex (created with 1, posted by whoever took it), raise nobody.
+`GateMutexPri` raises the owner's priority when a higher task begins to wait.  It does not raise a task that the owner
+itself waits for, and leaving any gate that was entered earlier takes the raise back.  To an owner that sleeps or pends
+a raise is no help.  `GateMutex`, and a semaphore used as a mutex (created with 1, posted by the task that took it),
+raise nobody.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Flags that are cleared behind what they announce: `event-lost`, in programs without the kernel.
+"""Flags that are cleared after their event has come: `event-lost`, in programs without the kernel.
 
-`main` starts something, its interrupt routine sets a flag, `main` clears the flag without having looked at it, and then
-waits for it.  Who clears a flag before the start throws an old event away, and is right; so is who looks first.
+`main` starts something, its interrupt routine sets a flag, `main` clears the flag without having read it, and then
+waits for it.  Clearing a flag before the start is right, because it drops an old event; so is clearing it after a read.
 """
 
 from __future__ import annotations

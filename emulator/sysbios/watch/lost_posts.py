@@ -1,7 +1,7 @@
 """Posts of a binary semaphore that are lost: `post-lost`.
 
-A binary semaphore keeps one release.  One statement that posts it again and again in one call means each post; so does
-a task that does one thing for each pend, without a loop that would empty a queue.  Then all posts but one are lost.
+A binary semaphore keeps one post.  Posts beyond it are lost.  This is reported where each post matters: one statement
+posts repeatedly in one call, or the task does one thing for each pend, without a loop that would empty a queue.
 """
 
 from __future__ import annotations

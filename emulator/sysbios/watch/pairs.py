@@ -1,9 +1,9 @@
-"""Words that belong together, as the text of a program without the kernel says.
+"""Words that must be read or written together, found in the source of a program without the kernel.
 
-An interrupt routine sets several words of one object, and another function computes with two of them at once: that an
-hour ends within a run is rare, that hours and minutes are carried together stands in the source.  Or a routine steps an
-index and goes by it and by other objects, and another function sets the index and one of these anew.  Or both move one
-index of a ring.
+The source shows it even where no run does: a carry from minutes to hours is rare.  There are three forms.  An interrupt
+routine sets several words of one object, and another function computes with two of them at once.  A routine steps an
+index and uses it with other objects, and another function sets the index and one of these.  Both move one index of a
+ring.
 """
 
 from __future__ import annotations

@@ -84,7 +84,7 @@ def _has_array(ctype: CType) -> bool:
 
 
 class Races:
-    """Told of every access of an object that others can reach."""
+    """Gets every access of an object that several threads can reach."""
 
     def __init__(
         self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings, memory: Memory,

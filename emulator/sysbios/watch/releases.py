@@ -32,7 +32,7 @@ _KEPT: Final = 10_000
 
 @dataclass(slots=True)
 class Release:
-    """One post of a Clock function, and the CPU time of each thread at that time."""
+    """One post by a Clock function, with the CPU time that each thread had used by then."""
 
     time: int
     spot: Spot

@@ -1,10 +1,10 @@
-"""Tasks that wait for ever: for each other through a gate and a semaphore, `deadlock`; for nobody, `never-posted`.
+"""Tasks that wait for ever: for each other through a gate and a semaphore (`deadlock`), or for nobody (`never-posted`).
 
 A task pends on a semaphore while it holds a gate, and whoever alone posts the semaphore waits for that gate.  A ring of
 gates alone is found by `gates.py`.
 
-A task that still waits at the end of a run, without a timeout, waits for nobody if no statement of the program ends
-such a wait.  Part of a program, without its `main`, is told nothing: its rest may do it.
+A task that still waits without a timeout at the end of a run is `never-posted` if no statement of the program ends
+such a wait.  Part of a program, without its `main`, gets no such finding: the rest may post.
 """
 
 from __future__ import annotations

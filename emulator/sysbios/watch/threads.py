@@ -1,7 +1,7 @@
-"""Who runs, what it has seen of the others, what it holds off, and how much CPU time it had.
+"""The running thread: its vector clock, what it holds off, and the CPU time it has used.
 
-A thread is a task, a Swi, a Hwi, or the function of a Clock object, as if each had a Swi of its own: that one posts a
-task does not mean that the others have anything to do with it.  Until BIOS_start there is `main`; in a program without
+A thread is a task, a Swi, a Hwi, or the function of a Clock object.  Each Clock function counts as a Swi of its own:
+a post by one of them orders nothing for the others.  Until BIOS_start there is `main`; in a program without
 the kernel, `main` and the routines of the vector table.
 
 A thread's vector clock (L. Lamport 1978, C. Fidge 1988) says how far it knows the others: a release (post, Swi_post,

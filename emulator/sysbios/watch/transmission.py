@@ -1,9 +1,9 @@
 """Buffers that an interrupt sends from: `buffer-rewritten`.
 
-What a Hwi or Swi reads last before it writes the transmit register is the buffer.  The transmission lasts until what
-was written so far has left and two characters' time more have brought nothing new.  Until then a word behind the last
-one that was read still has to be sent: who writes it, without the interrupt having told him that it has read all,
-changes what goes out.
+The buffer is the object that a Hwi or Swi reads last before it writes the transmit register.  The transmission ends
+when all that was written has left, and nothing new was written for two characters' time.  Until then the words after
+the last one read are still to be sent.  A write to them is reported, unless the interrupt has signalled that it has
+read all.
 """
 
 from __future__ import annotations

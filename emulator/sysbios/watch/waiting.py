@@ -1,8 +1,8 @@
 """Tasks that could run and do not: `starvation`, and the `busy-wait` that is often behind it.
 
-Who has the CPU is sampled at every tick of the kernel, where the tick interrupts it: a statement in DelayUs or a loop
-that polls is a busy wait.  So a busy wait is known to the tick, one millisecond by default; in a Hwi or
-Swi, where no tick may find it, it is taken exactly from the argument of DelayUs.
+The running statement is sampled at every tick of the kernel.  One in DelayUs or in a polling loop is a busy wait.  So a
+busy wait is measured with the resolution of the tick, one millisecond by default.  In a Hwi or Swi, which the tick may
+not interrupt, it is taken exactly from the argument of DelayUs.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """How waits with a time-out end: `gate-across-wait`, `timeout-ignored`.
 
-A task that waits while it holds a gate makes all others wait that want the gate.  A driver does so on purpose, for the
-interrupt that ends its transfer; here a wait counts that only time has ended, or a long one, while somebody stood at
-the gate.
+`gate-across-wait`: a task that waits while it holds a gate makes all others wait that want the gate.  A driver may do
+so on purpose, for the interrupt that ends its transfer.  So it is reported only if another task waited at the gate, and
+the wait was long or was ended by time alone.
 
-A mailbox that gave nothing leaves the message as it was.
+`timeout-ignored`: a pend on a mailbox that timed out leaves the message unchanged.
 """
 
 from __future__ import annotations
