@@ -1,31 +1,40 @@
 """Maps: walls, posts, floor and start pose, from TOML files (format: README.md of this package).
 
-Every fault of a map is one `MapError` line: file, key, what is wrong, what would be right.
+Keys, and the ranges of their numbers, are those of `map-1.schema.json`, which editors read too.  Every fault of a map
+is one `MapError` line: file, key, what is wrong, what would be right.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 from math import hypot, isfinite, radians
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from hil.files import parse_toml, read_text
 from hil.world.geometry import TOUCH_M, Post, Segment, clearance, within
 from hil.world.movers import Mover
 
-#: What walls can be made of.  Smooth: painted board, a mirror at 42 kHz.
-MATERIALS: Final = ("smooth",)
-#: No coordinate may lie further out than this.
-LIMIT_M: Final = 1000.0
 #: Posts of one fence.
 MOST_OF_FENCE: Final = 1000
 #: A start pose needs this much room around the middle between the wheels (robot.RobotParams reaches 0.12 m).
 START_CLEARANCE_M: Final = 0.125
 
 _FOLDER: Final = Path(__file__).parent / "maps"
+#: Key -> its schema, of a whole map.
+_KEYS: Final[Mapping[str, Any]] = json.loads(
+    (Path(__file__).parent / "map-1.schema.json").read_text(encoding="utf-8")
+)["properties"]
+#: Table -> key -> its schema; "": the map.
+_TABLES: Final[Mapping[str, Mapping[str, Any]]] = {
+    "": _KEYS, **{name: _KEYS[name]["properties"] for name in ("start", "floor")},
+    **{name: _KEYS[name]["items"]["properties"] for name in ("wall", "post", "fence")},
+}  # fmt: skip
+#: What walls can be made of.  Smooth: painted board, a mirror at 42 kHz.
+_MATERIALS: Final[tuple[str, ...]] = tuple(_TABLES["wall"]["material"]["enum"])
 
 
 class MapError(ValueError):
@@ -107,7 +116,7 @@ class _MapReader:
         return MapError(f"{self.file}: {key}: {wrong}; {right}")
 
     def read(self, table: Mapping[str, object]) -> WorldMap:
-        self.known(table, "", ("name", "description", "start", "floor", "wall", "post", "fence"))
+        self.known(table, "")
         name = self.text(table, "name", "name")
         description = self.text(table, "description", "description") if "description" in table else ""
         entries = self.tables(table, "wall")
@@ -156,41 +165,35 @@ class _MapReader:
         if "start" not in table:
             raise self.fail("start", "missing", "give [start] with x_m, y_m and heading_deg")
         start = self.table(table["start"], "start")
-        self.known(start, "start", ("x_m", "y_m", "heading_deg"))
-        heading = 0.0
-        if "heading_deg" in start:
-            heading = self.number(start, "heading_deg", "start.heading_deg", -360.0, 360.0)
-        return (
-            self.number(start, "x_m", "start.x_m", -LIMIT_M, LIMIT_M),
-            self.number(start, "y_m", "start.y_m", -LIMIT_M, LIMIT_M),
-            radians(heading),
-        )
+        self.known(start, "start")
+        heading_deg = self.number(start, "heading_deg", "start") if "heading_deg" in start else 0.0
+        return self.number(start, "x_m", "start"), self.number(start, "y_m", "start"), radians(heading_deg)
 
     def grip(self, table: Mapping[str, object]) -> float:
         if "floor" not in table:
             return 1.0
         floor = self.table(table["floor"], "floor")
-        self.known(floor, "floor", ("grip", "slip_left", "slip_right"))
-        return self.number(floor, "grip", "floor.grip", 0.01, 2.0) if "grip" in floor or len(floor) == 0 else 1.0
+        self.known(floor, "floor")
+        return self.number(floor, "grip", "floor") if "grip" in floor or len(floor) == 0 else 1.0
 
     def slip(self, table: Mapping[str, object]) -> tuple[float, float]:
         floor = self.table(table.get("floor", {}), "floor")
         left, right = (
-            self.number(floor, key, f"floor.{key}", -0.5, 0.9) if key in floor else 0.0
+            self.number(floor, key, "floor") if key in floor else 0.0
             for key in ("slip_left", "slip_right")
         )
         return left, right
 
     def wall(self, entry: Mapping[str, object], index: int) -> list[Segment]:
         where = f"wall[{index}]"
-        self.known(entry, where, ("points_m", "closed", "material"))
+        self.known(entry, where)
         points = self.points(entry, f"{where}.points_m")
         closed = entry.get("closed", False)
         if not isinstance(closed, bool):
             raise self.fail(f"{where}.closed", f"{closed!r} is not a truth value", "use true or false")
         material = self.text(entry, "material", f"{where}.material") if "material" in entry else "smooth"
-        if material not in MATERIALS:
-            raise self.fail(f"{where}.material", f"{material!r} is unknown", f"use one of {', '.join(MATERIALS)}")
+        if material not in _MATERIALS:
+            raise self.fail(f"{where}.material", f"{material!r} is unknown", f"use one of {', '.join(_MATERIALS)}")
         if closed:
             if len(points) < 3:
                 raise self.fail(f"{where}.points_m", "a closed wall of two points", "give at least three points")
@@ -214,31 +217,30 @@ class _MapReader:
         for place, pair in enumerate(value):
             if not isinstance(pair, list) or len(pair) != 2:
                 raise self.fail(f"{key}[{place}]", f"{_short(pair)} is not a point", "give [x, y] in metres")
-            x, y = (self.finite(item, f"{key}[{place}][{axis}]", -LIMIT_M, LIMIT_M) for axis, item in enumerate(pair))
+            of = _TABLES["wall"]["points_m"]["items"]["items"]
+            x, y = (self.finite(item, f"{key}[{place}][{axis}]", of) for axis, item in enumerate(pair))
             points.append((x, y))
         return points
 
     def post(self, entry: Mapping[str, object], index: int) -> Post:
         where = f"post[{index}]"
-        self.known(entry, where, ("x_m", "y_m", "diameter_m", "name", "path_m", "speed_m_s", "from_s", "and_back"))
+        self.known(entry, where)
         for key in ("speed_m_s", "from_s", "and_back"):
             if key in entry and "path_m" not in entry:
                 raise self.fail(f"{where}.{key}", "the post does not move", "give path_m too, or leave it out")
         name = self.text(entry, "name", f"{where}.name") if "name" in entry else where
         return Post(
-            self.number(entry, "x_m", f"{where}.x_m", -LIMIT_M, LIMIT_M),
-            self.number(entry, "y_m", f"{where}.y_m", -LIMIT_M, LIMIT_M),
-            self.number(entry, "diameter_m", f"{where}.diameter_m", 0.001, 10.0) / 2.0,
-            name,
+            self.number(entry, "x_m", where), self.number(entry, "y_m", where),
+            self.number(entry, "diameter_m", where) / 2.0, name,
         )
 
     def fence(self, entry: Mapping[str, object], index: int) -> list[Post]:
         """Posts along a closed polyline, evenly spread on each side, one at each corner."""
         where = f"fence[{index}]"
-        self.known(entry, where, ("points_m", "every_m", "diameter_m"))
+        self.known(entry, where)
         points = self.points(entry, f"{where}.points_m")
-        every_m = self.number(entry, "every_m", f"{where}.every_m", 0.01, 100.0)
-        radius_m = self.number(entry, "diameter_m", f"{where}.diameter_m", 0.001, 10.0) / 2.0
+        every_m = self.number(entry, "every_m", where)
+        radius_m = self.number(entry, "diameter_m", where) / 2.0
         posts: list[Post] = []
         for a, b in pairwise([*points, points[0]]):
             count = max(1, round(hypot(b[0] - a[0], b[1] - a[1]) / every_m))
@@ -260,12 +262,11 @@ class _MapReader:
         and_back = entry.get("and_back", False)
         if not isinstance(and_back, bool):
             raise self.fail(f"{where}.and_back", f"{_short(and_back)} is not a truth value", "use true or false")
-        from_s = self.number(entry, "from_s", f"{where}.from_s", 0.0, 1e6) if "from_s" in entry else 0.0
-        return Mover(
-            index, tuple(points), self.number(entry, "speed_m_s", f"{where}.speed_m_s", 0.001, 5.0), from_s, and_back
-        )
+        from_s = self.number(entry, "from_s", where) if "from_s" in entry else 0.0
+        return Mover(index, tuple(points), self.number(entry, "speed_m_s", where), from_s, and_back)
 
-    def known(self, table: Mapping[str, object], where: str, keys: tuple[str, ...]) -> None:
+    def known(self, table: Mapping[str, object], where: str) -> None:
+        keys = _TABLES[where.partition("[")[0]]
         for key in table:
             if key not in keys:
                 path = f"{where}.{key}" if where else key
@@ -291,18 +292,24 @@ class _MapReader:
             raise self.fail(path, f"{_short(value)} is not a text", f'give {key} = "..."')
         return value
 
-    def number(self, table: Mapping[str, object], key: str, path: str, low: float, high: float) -> float:
+    def number(self, table: Mapping[str, object], key: str, where: str) -> float:
+        of, path = _TABLES[where.partition("[")[0]][key], f"{where}.{key}"
         if key not in table:
-            raise self.fail(path, "missing", f"give a number from {low:g} to {high:g}")
-        return self.finite(table[key], path, low, high)
+            raise self.fail(path, "missing", _right(of))
+        return self.finite(table[key], path, of)
 
-    def finite(self, value: object, path: str, low: float, high: float) -> float:
-        right = f"give a number from {low:g} to {high:g}"
+    def finite(self, value: object, path: str, of: Mapping[str, Any]) -> float:
+        right = _right(of)
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise self.fail(path, f"{_short(value)} is not a number", right)
-        if not (low <= value <= high) or not isfinite(value):
+        if not (of["minimum"] <= value <= of["maximum"]) or not isfinite(value):
             raise self.fail(path, f"{_short(value)} is out of range", right)
         return float(value)
+
+
+def _right(of: Mapping[str, Any]) -> str:
+    """What a number must be, by its schema."""
+    return f"give a number from {of['minimum']:g} to {of['maximum']:g}"
 
 
 def _short(value: object) -> str:
