@@ -356,6 +356,10 @@ def usual(a: CType, b: CType) -> CType:
     return signed if signed.rank > unsigned.rank else unsigned
 
 
+#: CHOICE: these numbers of an enumeration say "none", whatever its constants are.
+NOBODY: Final = (0xFF, 0x7FFF, 0xFFFF)
+
+
 def part_name(ctype: CType, offset: int) -> str:
     """How C names what lies at word `offset` of an object: `[3].X`; the odd word of a scalar has its number."""
     if isinstance(ctype, ArrayType):

@@ -17,6 +17,7 @@ from emulator.c28x.arithmetic import COMPARE, DIVIDERS, FLOAT_TO_INT, divide_int
 from emulator.c28x.called_as import fitted, misfit
 from emulator.c28x.ctypes import (
     CHAR,
+    NOBODY,
     UINT,
     ULONG,
     VOID,
@@ -41,8 +42,6 @@ from emulator.clock import CYCLES_PER_US, Clock
 
 #: A loop that only computes takes milliseconds; this is for those that never end.
 LOOP_LIMIT_S: Final = 0.2
-#: CHOICE: these numbers of an enumeration say "none", whatever its constants are.
-_NOBODY: Final = (0xFF, 0x7FFF, 0xFFFF)
 #: So many stamps that are waited for are kept of one comparison.
 _STAMPS: Final = 64
 #: CHOICE: a float that is passed for an integer and never reaches this was not meant as one.
@@ -939,7 +938,7 @@ class Runtime:
         name = dict(site.constants).get(value)
         if name is not None:
             self.hit(site, "no-case", f"{site.name} is {name}, which has no case: {site.text}", value)
-        elif not site.constants and value > site.word and value not in _NOBODY:
+        elif not site.constants and value > site.word and value not in NOBODY:
             named = f"{site.word} to {site.bound}"
             message = f"{site.name} is {value}, no constant of its enumeration ({named}): it has no case"
             self.hit(site, "no-case", message, value)

@@ -116,7 +116,7 @@ class Variable:
     #: Declared `volatile`, or `const`.
     volatile: bool = False
     constant: bool = False
-    #: A parameter declared as an enumeration: the values of its constants.
+    #: A parameter, or an object at file scope, declared as an enumeration: the values of its constants.
     constants: tuple[int, ...] = ()
     #: A parameter declared as an array: the elements that its declaration names (0: it names none).
     length: int = 0

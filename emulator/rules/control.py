@@ -103,11 +103,13 @@ There are two forms:
   reported only if the list of cases seems meant to be complete: every case sets the same object, and one case sets it
   to the value that it has before the switch.
 
-The finding is made when such a value comes. If the missing case leaves an object without a value, that is not reported
-a second time.
+The finding is made when such a value comes, or where the source sets an object of an enumeration at file scope to a
+constant above all of its own, such as a constant of another enumeration. If the missing case leaves an object without a
+value, that is not reported a second time.
 
 **Fix:** add the missing case, or a `default` with a safe value.
 """,
         "ISO C 6.8.4.2; CERT MSC01-C",
+        how="dynamic/static",
     ),
 )

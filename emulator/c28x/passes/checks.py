@@ -68,5 +68,9 @@ def check(
         wrong = f"{source_text(against)} is wrong once it is beyond 65535"
         message = f"{name} has 32 bits, and 16 of them are kept: {wrong}"
         owners[function].report(function, s.where, "stamp-compare", message, object=name)
+    for function, s, compare in stamps.ends():
+        text = source_text(compare)
+        message = f"{text}: the end of the time wraps before the counter does, and the comparison is wrong then"
+        owners[function].report(function, s.where, "stamp-compare", message, object=text)
     check_image(modules, mentions, reports, entered, entries=bool(entries))
     return found

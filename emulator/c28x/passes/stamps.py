@@ -203,6 +203,30 @@ class Stamps:
                     if found is not None:
                         yield (*found, p)
 
+    def ends(self) -> Iterator[tuple[Function, Stmt, Compare]]:
+        """Stamps of 16 bits that are compared by order with the end of a time, which wraps before them: the function,
+        the statement, the comparison.  Behind `suspicions`.
+
+        Only of counters that a routine counts whatever happens: others may be kept from their wrap.
+        """
+        always = {
+            key_of(s.target) for f in self.functions for s in f.body
+            if isinstance(s, Assign) and isinstance(s.target, LValue) and _counts(s)
+        }  # fmt: skip
+        if not self.kinds or not always.issuperset(self.counters()):
+            return
+        for function in self.functions:
+            for s in statements(function.body):
+                for root in roots(s):
+                    for p in parts(root):
+                        if not isinstance(p, Compare) or not isinstance(p.left.ctype, IntType):
+                            continue
+                        kinds = {self.kind(p.left), self.kind(p.right)}
+                        wraps = kinds == {STAMP, DEADLINE} and _bits(p.left) == _bits(p.right) == 16
+                        ordered = self.of_compare(p.op, p.left, p.right) == "order"
+                        if wraps and ordered and not _handled(s, root, p.left, p.right):
+                            yield function, s, p
+
     # Suspicions
 
     def of_statement(self, s: Stmt) -> dict[int, str]:

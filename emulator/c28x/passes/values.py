@@ -8,7 +8,7 @@ from math import ceil, floor, isfinite
 from typing import Any
 
 from emulator.c28x.arithmetic import COMPARE
-from emulator.c28x.ctypes import UCHAR, Double64, FloatType, IntType, PointerType
+from emulator.c28x.ctypes import NOBODY, UCHAR, Double64, FloatType, IntType, PointerType
 from emulator.c28x.passes.blocks import check_blocks
 from emulator.c28x.passes.counted import Ends, known_locals, turning
 from emulator.c28x.passes.formats import check_format
@@ -151,6 +151,9 @@ class ValueChecks(ConstantChecks):
                             f"the loop never ends: a {ctype} never reaches {source_text(stop)}", source_text(stop),
                         )  # fmt: skip
             match s:
+                case Assign(target=LValue(root=Variable() as root, indices=[]), value=given) if root.constants:
+                    self.outside(root, bare(given))
+            match s:
                 case If(then=then, otherwise=otherwise):
                     self.kept |= _kept(then, otherwise) | _kept(otherwise, then)
             match s:
@@ -168,6 +171,18 @@ class ValueChecks(ConstantChecks):
                 for part in parts(root):
                     if isinstance(part, Expr):
                         self.expression(part)
+
+    def outside(self, variable: Variable, value: Expr) -> None:
+        """A constant for an object of an enumeration, above all of its own: no flags, and none that says "none"."""
+        known = variable.constants
+        low, high = min(known), max(known)
+        if not isinstance(value, Const) or not isinstance(value.value, int) or value.value in NOBODY:
+            return
+        flags = high >= len(known) and all(constant & (constant - 1) == 0 for constant in known)
+        if value.value > high and not flags:
+            name = variable.declaration.name
+            message = f"{name} is set to {source_text(value)}, no constant of its enumeration ({low} to {high})"
+            self.say("no-case", message, variable.declaration.path, value.value)
 
     def assigned_to_itself(self, target: LValue) -> None:
         """`x = x`: a parameter is named so to say that it is not used, a volatile object (or `*p`) to be read.

@@ -273,6 +273,10 @@ class Races:
             # Told at the statement that must hold the interrupt off.
             access, other = other, access
         at = (access.spot if cut is None else cut) if bare else 0
+        if not bare and p and not q:
+            at = access.spot
+        elif not bare and q and not p:
+            access, other, at = other, access, other.spot  # told where the gate is missing
         said = self._sentence(shared, rule, lost, low, high, access)
         if goes_on:
             said += ": it goes on with this object and with others, which are set one by one"

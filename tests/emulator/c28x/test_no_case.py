@@ -8,6 +8,7 @@ import pytest
 
 from tests.emulator.c28x.specimens import Pair
 from tests.emulator.c28x.test_specimens import marked_line, run
+from tests.emulator.c28x.workshop import Workshop
 
 _MODES: Final = """
 class MODE(enum):
@@ -136,3 +137,39 @@ def test_a_number_that_says_none_is_not_told(value: int) -> None:
     shop, results = run(Pair("", "", calls, "", ""), complete.replace("turn % 3", "turn"))
     assert results == [0]
     assert [f.message for f in shop.findings] == []
+
+
+_LOCK: Final = """
+class KEY(enum):
+    UP = 0
+    DOWN = 1
+    HELD = 2
+    LET_GO = 3
+class LOCK(enum):
+    CLOSED = 0
+    OPENING = 1
+    OPEN = 2
+class PARTS(enum):
+    LEFT = 1
+    RIGHT = 2
+    TOP = 8
+Lock: LOCK = LOCK.CLOSED
+Key: KEY = KEY.UP
+Parts: PARTS = PARTS.LEFT
+def Turn() -> void:
+    Lock = LOCK.OPENING
+    Key = KEY.LET_GO
+    Parts = PARTS.LEFT | PARTS.RIGHT | PARTS.TOP
+    Lock = 0xFF
+"""
+
+
+@pytest.mark.parametrize(("was", "now", "what"), [
+    ("", "", ""),
+    ("Lock = LOCK.OPENING", "Lock = KEY.LET_GO", "Lock is set to 3, no constant of its enumeration (0 to 2)"),
+    ("Key = KEY.LET_GO", "Key = 4", "Key is set to 4, no constant of its enumeration (0 to 3)"),
+])  # fmt: skip
+def test_a_constant_above_those_of_the_objects_enumeration_is_told_unrun(was: str, now: str, what: str) -> None:
+    findings = [f for f in Workshop(_LOCK.replace(was, now), static=True).findings if f.rule == "no-case"]
+    assert [f.message for f in findings] == [what] * bool(what)
+    assert all(f.place is not None and f.place.function == "Turn" for f in findings)

@@ -198,6 +198,8 @@ class CDeclarationReader:
                 variable = Variable(declared, ctype, "global")
                 self.module.symbols[name] = variable
                 self.module.own.append(name)
+        if isinstance(node.type, c_ast.TypeDecl):
+            self.declared_as(variable, node.type)
         variable.volatile = variable.volatile or self.types.qualified(node, "volatile")
         variable.constant = variable.constant or self.types.qualified(node, "const")
         if "static" in node.storage:
@@ -324,7 +326,7 @@ class CDeclarationReader:
         self.module.bodies[function] = lambda: FunctionReader(self, function, node).read()
 
     def declared_as(self, variable: Variable, node: c_ast.Node) -> None:
-        """What the type of a parameter does not keep of its declaration: an array's length, an enumeration."""
+        """What a type does not keep of its declaration: a parameter's length as an array, an enumeration."""
         match node:
             case c_ast.ArrayDecl(dim=c_ast.Node() as length):
                 variable.length = self.types.number(length, "the length of an array")

@@ -266,6 +266,9 @@ class PythonDeclarationReader(PythonTypeReader):
             ), ctype, "global",
             initialised=node.value is not None,
         )  # fmt: skip
+        named = declared.node.id if isinstance(declared.node, ast.Name) else ""
+        symbol = self.module.symbols.get(named)
+        variable.constants = tuple(symbol.constants.values()) if isinstance(symbol, EnumType) else ()
         declared.mark(variable)
         if node.value is not None:
             value = node.value

@@ -9,6 +9,67 @@ from tests.emulator.c28x.specimens import static_pair
 PAIRS: Final = (
     static_pair(
         "stamp-compare",
+        "the end of a time wraps before its 16-bit counter does",
+        """
+Ticks: volatile[uint16] = 0
+Last: uint16 = 0
+def Tick() -> void:
+    Ticks += 1
+Vector: funcptr = Tick
+def Seen() -> void:
+    Vector()
+    Last = Ticks
+def Fresh() -> int16:
+    return Ticks < uint16(Last + 20)  # <-
+""",
+        """
+Ticks: volatile[uint16] = 0
+Last: uint16 = 0
+def Tick() -> void:
+    Ticks += 1
+Vector: funcptr = Tick
+def Seen() -> void:
+    Vector()
+    Last = Ticks
+def Fresh() -> int16:
+    return uint16(Ticks - Last) < 20
+""",
+    ),
+    static_pair(
+        "stamp-compare",
+        "the end of a time wraps before its 16-bit counter does, which counts on and on",
+        """
+Ticks: volatile[uint16] = 0
+End: uint16 = 0
+def Tick() -> void:
+    Ticks += 1
+Vector: funcptr = Tick
+def Begin(length: uint16) -> void:
+    Vector()
+    End = Ticks + length
+def Over() -> int16:
+    if Ticks >= End:  # <-
+        return 1
+    return 0
+""",
+        """
+Ticks: volatile[uint16] = 0
+End: uint16 = 0
+def Tick() -> void:
+    if Ticks < 60000:
+        Ticks += 1
+Vector: funcptr = Tick
+def Begin(length: uint16) -> void:
+    Vector()
+    End = Ticks + length
+def Over() -> int16:
+    if Ticks >= End:
+        return 1
+    return 0
+""",
+    ),
+    static_pair(
+        "stamp-compare",
         "a stamp of 32 bits is kept in 16, and compared with 32",
         """
 class JOB(struct):
