@@ -622,6 +622,10 @@ class Runtime:
         for p, verb in ((source, "read"), (target, "written")):
             if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + words > p.obj.words:
                 self.examine(p, 0, site, verb)
+        obj = source.obj
+        if obj is not None and obj.declaration.function and obj.data and all(value is None for value in obj.data):
+            path = obj.declaration.path
+            self.hit(site, "uninitialised", f"{path} is copied before anything was written to it")
         self.memory.copy(target, source, words)
 
     def load_struct(self, p: Pointer, ctype: StructType, number: int) -> list[Any]:

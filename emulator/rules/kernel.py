@@ -287,6 +287,17 @@ message says where the task is and which task has the CPU. The value is the larg
 """, "BIOS, Semaphore, Mode COUNTING",
     ),
     _rule(
+        "task-ended", Severity.ERROR, "A task function returned, although its semaphore is still posted.", """
+The task never runs again. Everything that it did stops without an error: sampling, control, answers.
+
+A task function that returns ends its task (`Task_exit`). Often a `break` or a `return` for one bad value leaves the
+loop that was meant to run for ever. The finding is made when the semaphore that the task took is posted again, and it
+is where the task function begins.
+
+**Fix:** stay in the loop: `continue` with the next release, and count or report the bad value.
+""", "BIOS, Task: life of a task",
+    ),
+    _rule(
         "deadline", Severity.WARNING, "A task missed its deadline: it had not finished at its next release.", """
 A Clock function releases the task through a semaphore. The job lasts until the task pends on it again, and its deadline
 is the period. The value is the longest response time in microseconds, from the release to the end of the job. The

@@ -19,7 +19,8 @@ The program uses a value that no statement has written: a local, an element, a s
 
 A local contains what an earlier call left on the stack. A file-scope object without initialiser contains what RAM held
 at power-up, because the COFF start-up code clears nothing. A library function that scans a buffer (`strlen`, `atof`)
-reads it in the same way.
+reads it in the same way. To copy a structure of which a part was written is right; a local of which nothing was written
+is reported where it is copied.
 
 Compilers warn only of simple cases. On a PC the memory is often zero by chance, so `result += v[i]` works there for
 years. Link with two fills (`--fill zero`, `--fill nan`) to see what the value influences.

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, field
+from inspect import unwrap
 from typing import Any, Final
 
 from emulator.c28x.findings import Finding, Findings
 from emulator.clock import CYCLES_PER_US, SYSCLK_HZ, ms, us
 from emulator.sysbios.clock import ClockObject
-from emulator.sysbios.scheduler import Task
+from emulator.sysbios.scheduler import TERMINATED, Task
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.names import HandleNames
@@ -145,8 +146,26 @@ class Releases:
 
     # Findings
 
+    def _ended(self, semaphore: Semaphore, thread: Thread | None) -> bool:
+        """Whether the task that alone took a semaphore has ended, which is told where its function begins."""
+        task = thread.what if thread is not None else None
+        if not isinstance(task, Task) or task.mode != TERMINATED or task.deleted:
+            return False
+        begins = self._findings.beginnings
+        place = begins.get(task.function) or begins.get(unwrap(task.function))
+        if place is None:
+            return False
+        name = self._names.of(semaphore)
+        self._findings.report_at(
+            place, "task-ended", f"{thread} has returned from its function, and {name} is still posted for it",
+            object=task.name, how="dynamic", task=task.name,
+        )  # fmt: skip
+        return True
+
     def _pile(self, semaphore: Semaphore, source: SemaphoreState, since: int) -> None:
         name, consumer = self._names.of(semaphore), source.consumer
+        if self._ended(semaphore, consumer):
+            return
         where = "no task has pended on it yet"
         if consumer is not None and isinstance(consumer.what, Task):
             spot = self._spots.of(consumer.what, self._threads.kernel.tasks.current)
@@ -165,6 +184,8 @@ class Releases:
 
     def _miss(self, semaphore: Semaphore, source: SemaphoreState, thread: Thread) -> None:
         """The next release has come before the last one's job was done."""
+        if self._ended(semaphore, thread):
+            return
         release = source.job or source.releases[0]
         source.late = True
         if source.missed is not None:

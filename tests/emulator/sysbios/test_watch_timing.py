@@ -76,6 +76,10 @@ PAIRS = {
         "semaphore-pile-up", two_tasks("", "pass", "pass", clocks="every(postC, 2, 2)"),
         two_tasks("", "pass", "pass", clocks="every(postA, 2, 2)"),
     ),
+    "a task that leaves its loop": (
+        "task-ended", two_tasks("", "return", "pass", clocks="every(postA, 2, 2)"),
+        two_tasks("", "continue", "pass", clocks="every(postA, 2, 2)"),
+    ),
     "ready and without CPU": ("starvation", periodic(7_000, period=5), periodic(2_000, period=5)),
     "waiting in a task": (
         "busy-wait", periodic(5_000, period=40), periodic(5, wait="Task_sleep({})", period=40),
@@ -136,6 +140,20 @@ def test_a_missed_deadline_gives_the_longest_response_and_who_ran() -> None:
     assert specimen.statement(finding) == "DelayUs(3000)"
     assert any("High (priority 3) ran for" in detail for detail in finding.details)
     assert finding.count > 1
+
+
+def test_a_task_that_has_ended_is_told_where_its_function_begins() -> None:
+    specimen = Watched(two_tasks("", "return", "pass", clocks="every(postA, 2, 2)")).run(20)
+    finding = specimen.one("task-ended")
+    assert finding.object == "High"
+    assert finding.place is not None
+    assert finding.place.function == "High"
+    assert "semA is still posted" in finding.message
+
+
+def test_a_task_may_end_when_nobody_posts_for_it_any_more() -> None:
+    specimen = Watched(two_tasks("", "return", "pass", clocks="every(postA, 2, 0)")).run(20)
+    assert not specimen.rules()
 
 
 def test_a_pile_up_gives_its_size_and_where_the_task_stands() -> None:

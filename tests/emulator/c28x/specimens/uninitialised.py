@@ -9,6 +9,40 @@ from tests.emulator.c28x.specimens import Pair
 PAIRS: Final = (
     Pair(
         "uninitialised",
+        "a structure is copied of which nothing was written",
+        (("Load", (0,)),),
+        """
+class SETTINGS(struct):
+    gain: int16
+    offset: int16
+Settings: SETTINGS = [1, 0]
+def Read(out: ptr[SETTINGS], there: int16) -> void:
+    if there:
+        out.gain = 7
+def Load(there: int16) -> int16:
+    read: SETTINGS
+    Read(addressof(read), there)
+    Settings = read  # <-
+    return 1
+""",
+        """
+class SETTINGS(struct):
+    gain: int16
+    offset: int16
+Settings: SETTINGS = [1, 0]
+def Read(out: ptr[SETTINGS], there: int16) -> int16:
+    out.gain = 7
+    return there
+def Load(there: int16) -> int16:
+    read: SETTINGS
+    if Read(addressof(read), there):
+        return 0
+    Settings = read
+    return Settings.gain
+""",
+    ),
+    Pair(
+        "uninitialised",
         "accumulator without a start value",
         (("Mean", ()),),
         """
