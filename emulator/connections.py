@@ -839,6 +839,7 @@ class Connections:
                     missing = Missing(f"no statement sets {arbitration}.MsgVal", arbitration)
                     self._tell(place, "the message object that is set up here is not valid", missing, arbitration)
             self._messages(block, letter, commands)
+            self._own_frames(block, letter)
 
     def _messages(self, block: str, letter: str, commands: list[str]) -> None:
         """Messages that nobody asks to send, or that are taken again and again."""
@@ -864,6 +865,27 @@ class Connections:
                     f"{ram[again].read_again} times more, and a new message cannot be recognised",
                     object=f"{block}.CAN_NDAT_21", how="dynamic",
                 )  # fmt: skip
+
+    def _own_frames(self, block: str, letter: str) -> None:
+        """A controller in loopback hears nobody but itself, and an object takes none of its frames."""
+        can = self._chip.can[letter]
+        number = can.ram.idle_receiver() if can.passed_by >= LEAST_EDGES else 0
+        if not number:
+            return
+        waiting = can.ram[number]
+        arbitrations = [f"{block}.CAN_IF{n}ARB" for n in (1, 2)]
+        places = [
+            self._source.giving(block, _split(register)[1], self._mask(register, ""), waiting.arbitration)
+            for register in arbitrations
+        ]  # fmt: skip
+        place = next(filter(None, places), None) or self._source.last(*_split(arbitrations[1]))
+        if place is not None:
+            self._chip.findings.report_at(
+                place, "not-connected",
+                f"object {number} of {block} waits for identifier {waiting.identifier:#x}: the controller is in "
+                f"loopback, and its filter passed none of the {can.passed_by} frames that no other object took",
+                object=f"{block}.{number}", how="dynamic",
+            )  # fmt: skip
 
     def _requests(self, command: str, *, writing: bool) -> bool:
         """Whether some command to an interface of the CAN sets TxRqst of an object, or (reading) clears its NewDat."""

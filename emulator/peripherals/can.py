@@ -121,6 +121,8 @@ class Can:
         self._ram_init, self._mux = registers["CAN_RAM_INIT"], registers["CAN_IP_MUX21"]
         self._observed, self._updates = registers["CAN_IF3OBS"], registers["CAN_IF3UPD"]
         self.ram = MessageRam()
+        #: Frames in loopback that none of its objects took.
+        self.passed_by = 0
         #: The bus at the pins, the one within a controller that nobody hears, and where it is now.
         self._bus, self._inside = bus, CanBus(clock, f"{port.name} inside")
         self._at: CanBus | None = None
@@ -312,6 +314,8 @@ class Can:
         elif self._rec:
             self._rec -= 1
         number = self.ram.receive(frame)
+        if not number and self.hears_itself and not frame.remote:
+            self.passed_by += 1
         if number and self._updates.value >> number - 1 & 1:
             self._update(number)
         self._note(0, RXOK)

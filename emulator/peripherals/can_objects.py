@@ -41,7 +41,7 @@ DLC: Final = 0xF
 class MessageObject:
     """One object, as the interface registers show it."""
 
-    __slots__ = ("arbitration", "control", "data", "fresh", "mask", "read_again")
+    __slots__ = ("arbitration", "control", "data", "fresh", "mask", "read_again", "taken")
 
     def __init__(self) -> None:
         self.mask = 0
@@ -52,6 +52,8 @@ class MessageObject:
         #: Whether nobody has read its message yet, and how often an old one was read that still passed for new.
         self.fresh = False
         self.read_again = 0
+        #: Whether it has ever taken a frame.
+        self.taken = False
 
     @property
     def extended(self) -> bool:
@@ -93,7 +95,7 @@ class MessageObject:
         data = frame.data + self.bytes()[len(frame.data) :]
         self.data = [int.from_bytes(data[at : at + 4], "little") for at in (0, 4)]
         self.control |= NEWDAT | lost | (INTPND if self.control & RXIE else 0)
-        self.fresh = True
+        self.fresh = self.taken = True
 
     def take_remote(self, frame: CanFrame) -> bool:
         """A remote frame for a transmit object; whether anything changes."""
@@ -154,6 +156,13 @@ class MessageRam:
                 return number if each.take_remote(frame) else 0
             if each.control & EOB or not each.control & NEWDAT:
                 each.take(frame)
+                return number
+        return 0
+
+    def idle_receiver(self) -> int:
+        """The first valid receive object that has never taken a frame; 0: there is none."""
+        for number, each in enumerate(self._objects, 1):
+            if each.arbitration & MSGVAL and not each.arbitration & DIR and not each.taken:
                 return number
         return 0
 

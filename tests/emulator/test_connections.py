@@ -402,6 +402,12 @@ void main(void)
     ("0x80000000uL | (0x55uL << 18)", "(0x55uL << 18)", "not-connected", "sets CanaRegs.CAN_IF2ARB.MsgVal"),
     ("0x00870003uL", "0x00830003uL", "not-connected", "no statement sets TxRqst"),
     ("0x00070004uL", "0x00030004uL", "flag-not-cleared", "NewDat of object 4"),
+    ("0x80000000uL | (0x55uL << 18)", "0x80000000uL | (0x55uL << 17)", "not-connected", "for identifier 0x2a"),
+    # Another object takes what this one does not want.
+    ("    CanaRegs.CAN_IF2MCTL.all = 0x0088uL;\n    CanaRegs.CAN_IF2CMD.all = 0x00B00004uL;\n",
+     "    CanaRegs.CAN_IF2MCTL.all = 0x0088uL;\n    CanaRegs.CAN_IF2CMD.all = 0x00B00004uL;\n    Wait();\n"
+     "    CanaRegs.CAN_IF2ARB.all = 0x80000000uL | (0x77uL << 18);\n    CanaRegs.CAN_IF2CMD.all = 0x00B00005uL;\n",
+     "", ""),
     # Whether its data are new is not asked.
     ("if (CanaRegs.CAN_NDAT_21 & 8uL) {\n            CanaRegs.CAN_IF2CMD.all = 0x00070004uL",
      "{\n            CanaRegs.CAN_IF2CMD.all = 0x00030004uL", "", ""),
