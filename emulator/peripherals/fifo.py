@@ -22,6 +22,8 @@ from emulator.registers.cell import Cell
 from emulator.signal import Signal
 
 DEPTH: Final = 16
+#: So many interrupts in a row leave words behind before it is told.
+SHORT: Final = 3
 
 LEVEL: Final = 0x001F
 INT_ENABLE: Final = 1 << 5
@@ -44,7 +46,9 @@ class Fifo:
     `fresh`: a flag that was set while it was not enabled gives its interrupt only while its level still holds.
     """
 
-    __slots__ = ("_fresh", "_interrupt", "_line", "_receive", "_register", "enabled", "requested", "words")
+    __slots__ = (
+        "_fresh", "_interrupt", "_line", "_receive", "_register", "_taken", "enabled", "requested", "short", "words",
+    )  # fmt: skip
 
     def __init__(self, register: Cell, interrupt: Callable[[], None], *, receive: bool, fresh: bool = False) -> None:
         self._fresh = fresh
@@ -55,6 +59,10 @@ class Fifo:
         #: FIFO mode is on (the FFENA bit, which lives in FFTX for both directions).
         self.enabled = False
         self.words: deque[int] = deque()
+        #: Words taken since the last interrupt; None: it has been acknowledged.
+        self._taken: int | None = None
+        #: How many interrupts in a row were acknowledged with fewer words taken than their level, and some left.
+        self.short = 0
         #: (): the DMA's level stands and something changes.
         self.requested: Signal[[]] = Signal()
 
@@ -71,9 +79,15 @@ class Fifo:
         """Whether the FIFO's own reset bit is released."""
         return bool(self._register.value & RUN)
 
+    @property
+    def path(self) -> str:
+        """Of its register."""
+        return self._register.path
+
     def reset(self) -> None:
         """Empty, as after a reset of the module; the owner resets the register."""
         self.words.clear()
+        self._taken, self.short = None, 0
         self.enabled = self._line = False
 
     def clear(self) -> None:
@@ -86,6 +100,10 @@ class Fifo:
         register = self._register
         register.store(word, lanes)
         if word & lanes & INT_CLEAR:
+            if self._taken is not None:
+                left = self._receive and self.words and 0 < self._taken < register.value & LEVEL
+                self.short = self.short + 1 if left else 0
+                self._taken = None
             register.value &= ~INT_FLAG
             self._line = False
         if self._receive and word & lanes & OVERFLOW_CLEAR:
@@ -113,9 +131,18 @@ class Fifo:
         self.refresh()
         return not lost
 
+    def left_behind(self) -> str:
+        """What `short` means, for a report."""
+        return (
+            f"{self.path}: {self.short} times in a row the routine has taken fewer words than the "
+            f"{self._register.value & LEVEL} at which its interrupt comes, and has left some for the next one"
+        )
+
     def pop(self) -> int:
         """Take the oldest word.  The caller has looked whether there is one."""
         word = self.words.popleft()
+        if self._taken is not None:
+            self._taken += 1
         self.refresh()
         return word
 
@@ -133,6 +160,7 @@ class Fifo:
         if line != self._line and (stands or not line or not self._fresh):
             self._line = line
             if line:
+                self._taken = 0
                 self._interrupt()
         if self.requested.listeners and self.at_level:
             self.requested.emit()

@@ -12,7 +12,7 @@ from typing import Final
 from emulator.c28x.findings import Cause
 from emulator.clock import Clock, Event
 from emulator.cpu import Cpu
-from emulator.peripherals.fifo import DEPTH, OVERFLOW, RUN, Fifo
+from emulator.peripherals.fifo import DEPTH, OVERFLOW, RUN, SHORT, Fifo
 from emulator.peripherals.sci_sampling import Character, Format, frame_waveform, low_pulse, matches, sample
 from emulator.registers.sci import SciRegs
 from emulator.signals import SerialFrame, SerialLine
@@ -273,6 +273,8 @@ class SciReceiver:
             self._not_received("the receive FIFO is empty")
         else:
             self._rxbuf.value = fifo.pop()
+            if fifo.short >= SHORT:
+                self._cpu.findings.report("fifo-level", fifo.left_behind(), object=fifo.path)
             if fifo.words:
                 self._raise(self._head_errors())
             else:

@@ -19,7 +19,7 @@ from typing import Final
 from emulator.c28x.findings import Cause
 from emulator.clock import CYCLES_PER_US, SYSCLK_HZ, Clock, Event, event_time
 from emulator.cpu import Cpu
-from emulator.peripherals.fifo import CHANNELS_RUN, ENHANCED, Fifo
+from emulator.peripherals.fifo import CHANNELS_RUN, ENHANCED, SHORT, Fifo
 from emulator.registers.spi import SpiRegs
 from emulator.signal import Signal
 from emulator.signals import SpiBus, Wire
@@ -244,6 +244,8 @@ class Spi:
         if self._rx_fifo.enabled:
             if self._rx_fifo.words:
                 self._rxbuf.value = self._rx_fifo.pop()
+                if self._rx_fifo.short >= SHORT:
+                    self._cpu.findings.report("fifo-level", self._rx_fifo.left_behind(), object=self._rx_fifo.path)
             else:
                 # CHOICE: an empty FIFO gives the last word again (unconfirmed).
                 self._not_received()

@@ -456,6 +456,22 @@ write there is lost.
         "TRM, DMA and system control: SECMSEL; DS, memory map",
     ),
     _rule(
+        "fifo-level",
+        Severity.WARNING,
+        "An interrupt of a receive FIFO comes at more words than its routine takes.",
+        """
+Words stay in the FIFO and are taken as the beginning of the next block, so that two blocks are mixed and each word
+is late.
+
+The interrupt comes at `RXFFIL` words. The finding is made at the read when the routine has acknowledged three times in
+a row with fewer words taken, and some left. A routine that takes as many as the level, or all of them (`RXFFST`), is
+right, and so is one that leaves all of them to a task.
+
+**Fix:** set `RXFFIL` to the number of words that the routine takes, or read until `RXFFST` is 0.
+""",
+        "TRM, SPI and SCI: FIFO interrupts",
+    ),
+    _rule(
         "dma-section",
         Severity.WARNING,
         "A buffer of the DMA has no section of its own, while another one has.",
