@@ -113,14 +113,16 @@ was 5 s or longer.
 """, "BIOS, GateMutexPri",
     ),
     _rule(
-        "gate-not-left", Severity.ERROR, "A function entered a gate and returned without leaving it.", """
+        "gate-not-left", Severity.ERROR, "A way through a function does not leave a gate that it has entered.", """
 The task keeps the gate. Its next `enter` is a nested one, so this task notices nothing; all other tasks wait for ever.
-The usual cause is a `return` before the `leave`.
+The usual cause is a `return` or a `continue` before the `leave`.
 
-A gate may be entered in one function and left in another. So the finding comes only when the function that entered has
-returned, and the task then waits for something else, enters the gate again, or ends.
+A gate may be entered in one function and left in another. So a run tells it only when the function that entered has
+returned, and the task then waits for something else, enters the gate again, or ends; or when a loop comes to the same
+`enter` again. At the end, the source is searched for a `return` or `continue` on which no `leave` stands, although the
+function has one elsewhere: no run needs to take that way.
 
-**Fix:** one way out of the function, and the `leave` there.
+**Fix:** one way out of the function or of the turn, and the `leave` there.
 """, "BIOS, GateMutexPri_enter: nested key",
     ),
     _rule(

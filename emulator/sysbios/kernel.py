@@ -395,9 +395,11 @@ class Kernel:
             if clock.next > clock.now:
                 if clock.next == NEVER:
                     raise KernelError("idle", "no task is ready and no event is left that could make one ready")
+                began = clock.now
                 pass_idle_ticks()
                 if clock.next > clock.now:
                     clock.now = clock.next
+                clock.waited += clock.now - began
             clock.run_due()
 
     # C functions

@@ -29,7 +29,7 @@ _STACK_WORDS: Final = 1024
 _BUSY: Final = 0.01
 #: How much longer the run in which ages are followed may be.
 _LONGER: Final = 3
-#: What it may compute: a kernel's idle time counts.
+#: What it may compute.
 _OBSERVED: Final = 2 * RUN
 
 

@@ -11,16 +11,17 @@ from functools import partial
 from typing import Any, Final
 
 from emulator.c28x.findings import Findings
+from emulator.c28x.sites import Place
+from emulator.c28x.tree import Return
 from emulator.clock import SYSCLK_HZ, ms
 from emulator.sysbios.core import HWI, SWI
 from emulator.sysbios.watch.calls import Calls
+from emulator.sysbios.watch.gate_exits import ENTER, exits
 from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.spots import Call, Spot, StatementSpots
 from emulator.sysbios.watch.threads import Gate, Thread, ThreadWatch
 from emulator.trace import Trace
 
-#: The calls by which a task comes to own a gate.
-ENTER: Final = ("GateMutexPri_enter", "GateMutex_enter")
 #: A gate that some statement enters has had its chance in a run of this length.
 LONG_ENOUGH: Final = 5 * SYSCLK_HZ
 
@@ -131,6 +132,20 @@ class Gates:
                     place, "gate-unused", f"{name} is created, but {why}", object=name, how="dynamic"
                 )
                 del self._created[gate]
+        self._exits()
+
+    def _exits(self) -> None:
+        """Ways through the source that do not leave a gate, of gates that no run showed to be kept."""
+        kept = {finding.object for finding in self._findings.of("gate-not-left")}
+        for f, (statement, path, entered) in exits(self._names.functions):
+            name, at = path.rpartition(".")[2], statement.where
+            if name not in kept:
+                on = "the function returns" if isinstance(statement, Return) else "the loop goes on"
+                self._findings.report_at(
+                    Place(at.file, at.line, f.name, f.c_file, at.column), "gate-not-left",
+                    f"{name} was entered in line {entered.line}, and {on} without leaving it", object=name,
+                    how="dynamic",
+                )  # fmt: skip
 
     # Listeners
 
@@ -146,6 +161,9 @@ class Gates:
         self._entering_now[thread] = (gate, spot)
         held = self._threads.gates(thread)
         if gate in held:
+            entry = self.entry(thread, gate)
+            if entry is not None and (entry.spot, entry.call) == (spot, self._spots.call()):
+                self._entered_again(thread, gate)
             self._forgotten(thread, "enters it again", only=gate)
             return
         for other in held:
@@ -227,6 +245,14 @@ class Gates:
                 f"leaving it: {thread.name} {when} while it holds it", object=name, how="dynamic",
                 details=(f"{when} in {self._spots.text(self._spots.here())}",),
             )  # fmt: skip
+
+    def _entered_again(self, thread: Thread, gate: Gate) -> None:
+        """A call comes to the same enter once more, in a loop."""
+        name = self._names.of(gate)
+        self._findings.report(
+            "gate-not-left", f"{thread} enters {name} again in the next turn of a loop, and has not left it: the enter "
+            "is a nested one, whose leave does not give the gate back", object=name,
+        )  # fmt: skip
 
     # Order
 

@@ -17,7 +17,8 @@ from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from emulator.sysbios.scheduler import BLOCKED, Task
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
-from emulator.sysbios.watch.gates import ENTER, Gates
+from emulator.sysbios.watch.gate_exits import ENTER
+from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.spots import Spot, StatementSpots
 from emulator.sysbios.watch.threads import Gate, Thread, ThreadWatch

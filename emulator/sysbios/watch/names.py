@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from emulator.c28x.link import Linked
-from emulator.c28x.tree import Call, Const, Convert, FunctionRef, Load, LValue, Stmt, Variable
+from emulator.c28x.tree import Call, Const, Convert, Function, FunctionRef, Load, LValue, Stmt, Variable
 from emulator.c28x.tree_queries import bare, within
 
 #: File-scope objects by their path; None: also ones that the source does not name.
@@ -35,43 +35,42 @@ class HandleNames:
         """Paths of the file-scope objects that hold `handle`."""
         return {path for path, obj in self._linked.objects.items() if any(value is handle for value in obj.data)}
 
+    @property
+    def functions(self) -> list[Function]:
+        """The functions of the image that have a body."""
+        return [f for module in self._linked.program.modules.values() for f in module.functions if f.body]
+
     def passed(self, function: str) -> Paths:
         """What any statement of the image passes to `function` first."""
-        modules = self._linked.program.modules.values()
-        return {path for module in modules for f in module.functions for path in first_arguments(f.body, function)}
+        return {path for f in self.functions for path in first_arguments(f.body, function)}
 
     @property
     def whole(self) -> bool:
         """Whether the image is a whole program: one with a `main`."""
-        modules = self._linked.program.modules.values()
-        return any(f.name == "main" and f.body for module in modules for f in module.functions)
+        return any(f.name == "main" for f in self.functions)
 
     def could(self, function: str, handle: Any) -> bool:
         """Whether a statement of the image can call `function` for `handle`; True too where nobody can tell.
 
         A function whose address is taken can be called for anything.
         """
-        objects = self.objects(handle)
-        if not objects:
-            return True
-        for module in self._linked.program.modules.values():
-            for f in module.functions:
-                for part in within(f.body):
-                    if isinstance(part, FunctionRef) and part.function.name == function:
-                        return True
-        passed = self.passed(function)
-        return None in passed or bool(passed & objects)
+        for f in self.functions:
+            for part in within(f.body):
+                if isinstance(part, FunctionRef) and part.function.name == function:
+                    return True
+        passed, objects = self.passed(function), self.objects(handle)
+        # A handle that no file-scope object holds may have been in any of them.
+        return None in passed or bool(passed & objects) or bool(passed and not objects)
 
     def posted_bits(self, event: Any) -> int:
         """The bits of `event` that some statement of the image can post; all where nobody can tell."""
         objects, bits = self.objects(event), 0
-        for module in self._linked.program.modules.values():
-            for f in module.functions:
-                posts = [call for call in calls(f.body) if call.function.name == "Event_post"]
-                for call, path in zip(posts, first_arguments(f.body, "Event_post"), strict=True):
-                    if path is None or path in objects:
-                        mask = bare(call.arguments[1])
-                        bits |= mask.value if isinstance(mask, Const) and isinstance(mask.value, int) else ~0
+        for f in self.functions:
+            posts = [call for call in calls(f.body) if call.function.name == "Event_post"]
+            for call, path in zip(posts, first_arguments(f.body, "Event_post"), strict=True):
+                if path is None or path in objects:
+                    mask = bare(call.arguments[1])
+                    bits |= mask.value if isinstance(mask, Const) and isinstance(mask.value, int) else ~0
         return bits
 
     def brings(self, event: Any) -> bool:

@@ -104,6 +104,8 @@ def told(tmp_path: Path, text: str) -> list[tuple[str, str]]:
     ("Beats = Beats + 1; }", "Beats = Beats + 1;\n while (Flag)\n ;\n }", "endless-poll", "while (Flag)"),
     ("Swi_post(soon);", "", "never-posted", "soon = Swi_create(beat, NULL, NULL);"),
     ("c.startFlag = TRUE;", "", "clock-not-started", "timer = Clock_create(tick, 10, &c, NULL);"),
+    # Nobody keeps its handle.
+    ("c.startFlag = TRUE;\n    timer = ", "", "clock-not-started", "Clock_create(tick, 10, &c, NULL);"),
 ])  # fmt: skip
 def test_what_no_statement_brings_is_told_where_it_is_waited_for(
     tmp_path: Path, was: str, now: str, rule: str, at: str

@@ -1,0 +1,107 @@
+"""Ways through a function on which a gate that was entered is not left: a `continue` or a `return` in between.
+
+Looked for in the source, because the way may not be taken in a run.  A gate that some function only leaves is entered
+and left by partners, on purpose: nothing is said of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Final, NamedTuple
+
+from emulator.c28x.tree import (
+    Break,
+    Continue,
+    FallThrough,
+    For,
+    Function,
+    If,
+    LeaveSwitch,
+    Return,
+    Stmt,
+    Switch,
+    Where,
+    While,
+)
+from emulator.sysbios.watch.names import calls, first_arguments
+
+#: The calls by which a task comes to own a gate, and gives it back.
+ENTER: Final = ("GateMutexPri_enter", "GateMutex_enter")
+LEAVE: Final = ("GateMutexPri_leave", "GateMutex_leave")
+
+#: Gates that are held: path of the file-scope object -> where they were entered.
+Held = dict[str, Where]
+
+
+class Exit(NamedTuple):
+    """A statement that goes on without leaving the gate in the file-scope object `path`."""
+
+    statement: Continue | Return
+    path: str
+    entered: Where
+
+
+def exits(functions: Iterable[Function]) -> Iterator[tuple[Function, Exit]]:
+    """Every way out of these functions, or into the next turn of a loop, that does not leave a gate."""
+    functions = list(functions)
+    entered = {f.path: _paths(f.body, ENTER) for f in functions}
+    left = {f.path: _paths(f.body, LEAVE) for f in functions}
+    shared = {path for f in functions for path in left[f.path] - entered[f.path]}
+    for f in functions:
+        own = (entered[f.path] & left[f.path]) - shared
+        if own and None not in shared:
+            found: list[Exit] = []
+            _walk(f.body, {}, {}, found)
+            yield from ((f, exit) for exit in found if exit.path in own)
+
+
+def _paths(body: list[Stmt], functions: tuple[str, ...]) -> set[str | None]:
+    return {path for function in functions for path in first_arguments(body, function)}
+
+
+def _walk(body: list[Stmt], held: Held, outside: Held, found: list[Exit]) -> Held | None:
+    """What is held behind `body`; None if no way comes there.  `outside`: what was held before the loop around it."""
+    held = dict(held)
+    for s in body:
+        match s:
+            case If(then=then, otherwise=otherwise):
+                ways = [_walk(then, held, outside, found), _walk(otherwise, held, outside, found)]
+            case Switch(cases=cases):
+                # What a case falls into begins with what the switch began with: it holds no more then.
+                ways = [_walk(case, held, outside, found) for _, case in cases] + [held]
+            case While(body=turn) | For(body=turn):
+                _walk(turn, held, held, found)
+                continue
+            case Continue():
+                found.extend(Exit(s, path, at) for path, at in held.items() if path not in outside)
+                return None
+            case Return():
+                _calls(s, held)
+                found.extend(Exit(s, path, at) for path, at in held.items())
+                return None
+            case Break():
+                return None
+            case LeaveSwitch() | FallThrough():
+                return held
+            case _:
+                _calls(s, held)
+                continue
+        through = [way for way in ways if way is not None]
+        if not through:
+            return None
+        # Held on one way only: nobody knows.
+        held = {path: at for path, at in through[0].items() if all(path in way for way in through)}
+    return held
+
+
+def _calls(s: Stmt, held: Held) -> None:
+    """What a statement without parts of its own enters and leaves."""
+    for call in calls([s]):
+        name = call.function.name
+        for path in first_arguments([s], name) if name in ENTER + LEAVE else ():
+            if path is None:
+                held.clear()
+            elif name in ENTER:
+                held[path] = s.where
+            else:
+                held.pop(path, None)
