@@ -67,7 +67,7 @@ class Bench(RunningBoard):
         self.map = world_map or load_map(setup.world)
         kind = kind or load(setup.board)
         if not issubclass(kind, RobotBoard):
-            raise ValueError(f"{kind.__name__} has no wheels and stands in no world: hil.running runs it")
+            raise ValueError(f"{kind.__name__} has no wheels and is in no world: hil.running runs it")
         board = made(kind, seed=setup.seed, ideal=not setup.realistic, xbee=setup.xbee, **optional(kind, setup.options))
         firmware = link(
             board, fill=setup.fill, divide=setup.divide, float_division=setup.float_division, fixes=setup.fixes,

@@ -265,7 +265,7 @@ def reference_read(rig: Rig, frame: bytes) -> Evidence:
     (TFG 3.2.3), to six digits.  Raises ValueError for another frame."""
     match = _WELL_FORMED.fullmatch(frame)
     if match is None or match[2] is None:
-        raise ValueError(f"{frame!r} is no SETR with two numbers")
+        raise ValueError(f"{frame!r} is not a SETR with two numbers")
     reference = rig.fw.new("REFERENCE", V=0.0, W=0.0)
     rig.fw.protocol.Obtain_Reference(rig.frame(frame.decode("latin-1")), reference)
     errors = [

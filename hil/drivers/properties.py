@@ -72,9 +72,9 @@ def _parsed(declared: UserDeclaration, function: Function) -> Property:
         try:
             ends = float(low), float(high)
         except ValueError:
-            raise declared.wrong(f"{words[-1]!r} is no range") from None
+            raise declared.wrong(f"{words[-1]!r} is not a range") from None
         if not dots or not ends[0] <= ends[1]:
-            raise declared.wrong(f"{words[-1]!r} is no range")
+            raise declared.wrong(f"{words[-1]!r} is not a range")
         return Property(declared, parameter, *ends)
     if declared.word == "monotone" and words[-1] not in ("rising", "falling"):
         raise declared.wrong(f"{words[-1]!r}")

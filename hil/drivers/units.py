@@ -80,7 +80,7 @@ class _Units:
     def _take(self, declared: UserDeclaration, functions: list[Function], objects: list[Variable]) -> None:
         words = declared.text.split()
         if not 1 <= len(words) <= 2:
-            raise declared.wrong(f"{declared.text!r} is no unit" if words else "the unit is missing")
+            raise declared.wrong(f"{declared.text!r} is not a unit" if words else "the unit is missing")
         name, unit = (words[0] if len(words) == 2 else ""), words[-1]
         function = next((f for f in functions if declared.is_about(f.where)), None)
         if function is not None and not name:

@@ -28,7 +28,7 @@ class _OfInput(Effect):
         super().__init__(mounted)
         found = re.fullmatch(r"([A-D])(\d{1,2})", self.text("input").upper())
         if found is None or int(found[2]) > 15:
-            raise ValueError(f"input: {self.text('input')!r} is none of A0 to D15")
+            raise ValueError(f"input: {self.text('input')!r} is not one of A0 to D15")
         self.adc, self.channel = found[1], int(found[2])
 
     def begin(self) -> None:

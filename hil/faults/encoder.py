@@ -95,7 +95,7 @@ class _Hampered(_OfWheel):
         """Raises ValueError for wheels that roll nowhere."""
         super().suits(machine)
         if getattr(machine, "world", None) is None:
-            raise ValueError("this board stands in no world")
+            raise ValueError("this board is in no world")
 
     def hamper(self, **how: float) -> None:
         """From now on; undone at the end."""

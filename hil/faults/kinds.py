@@ -47,7 +47,7 @@ class FaultParameter:
             if self.choices:
                 same = [choice for choice in self.choices if choice.lower() == value.lower()]
                 if not same:
-                    raise ValueError(f"{self.name}: {value!r} is none of {self.range}")
+                    raise ValueError(f"{self.name}: {value!r} is not one of {self.range}")
                 return same[0]
             return value
         try:
@@ -198,7 +198,7 @@ def parse(text: str) -> Fault:
     for part in filter(None, (part.strip() for part in rest.split(","))):
         name, equals, value = part.partition("=")
         if not equals:
-            raise ValueError(f"fault {text!r}: {part!r} is no NAME=VALUE")
+            raise ValueError(f"fault {text!r}: {part!r} is not NAME=VALUE")
         if name.strip() in given:
             raise ValueError(f"fault {text!r}: {name.strip()} is said twice")
         given[name.strip()] = value.strip()

@@ -37,7 +37,7 @@ class BitFlip(Effect):
                 for offset, _ in scalars(obj.declaration.ctype):
                     if path + part_name(obj.declaration.ctype, offset) == name:
                         return obj.base + offset
-        raise ValueError(f"word: {name!r} is no address and no variable of the firmware (module.name)")
+        raise ValueError(f"word: {name!r} is neither an address nor a variable of the firmware (module.name)")
 
     def begin(self) -> None:
         """It begins."""

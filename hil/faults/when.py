@@ -34,7 +34,7 @@ def check(text: str) -> None:
         "finding": bool(rest), "pose": bool(_POSE.fullmatch(rest)),
     }  # fmt: skip
     if not good.get(what):
-        raise ValueError(f"when: {text!r} is none of {_WORDS}")
+        raise ValueError(f"when: {text!r} is not one of {_WORDS}")
 
 
 def wait_for(text: str, machine: FaultTarget, then: Callable[[], None]) -> Callable[[], None]:
@@ -118,7 +118,7 @@ class _Pose(_OneShot):
         world = getattr(machine, "world", None)
         found = _POSE.fullmatch(text)
         if world is None or found is None:
-            raise ValueError(f"when: pose {text}: {type(machine.board).__name__} stands in no world")
+            raise ValueError(f"when: pose {text}: {type(machine.board).__name__} is in no world")
         self._world = world
         self._clock = machine.clock
         self._what, self._limit = found[1], float(found[3])

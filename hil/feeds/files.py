@@ -161,7 +161,7 @@ def _number(text: str, where: str) -> float:
     try:
         value = float(text.replace("_", "?"))
     except ValueError:
-        raise ValueError(f"{where}: {text!r} is no number") from None
+        raise ValueError(f"{where}: {text!r} is not a number") from None
     if not isfinite(value):
-        raise ValueError(f"{where}: {text} is no number that an input can have")
+        raise ValueError(f"{where}: {text} is not a number that an input can have")
     return value

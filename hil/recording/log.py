@@ -105,7 +105,7 @@ def unescape(text: str) -> bytes:
         if len(code) == 3:
             return chr(int(code[1:], 16))
         if code not in _UNESCAPES:
-            raise ValueError(f"{match[0]!r} is no escape")
+            raise ValueError(f"{match[0]!r} is not an escape")
         return chr(_UNESCAPES[code])
 
     return _ESCAPED.sub(byte, text).encode("latin-1")
@@ -176,7 +176,7 @@ def parse_log(data: bytes, name: str) -> Recording:
 def _check_first(line: bytes, name: str) -> None:
     words = line[:LONGEST_LINE].decode("ascii", "replace").split()
     if len(words) != 2 or words[0] != MAGIC:
-        raise ValueError(f"{name}: is no wire log (the first line would be '{MAGIC} {VERSION}')")
+        raise ValueError(f"{name}: not a wire log (the first line would be '{MAGIC} {VERSION}')")
     if words[1] != str(VERSION):
         raise ValueError(f"{name}: is a wire log of version {words[1][:20]}; this program reads version {VERSION}")
 

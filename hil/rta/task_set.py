@@ -122,7 +122,7 @@ class TaskSet:
         names = [task.name for task in self.tasks] + [interrupt.name for interrupt in self.interrupts]
         for name in names:
             if names.count(name) > 1:
-                raise ValueError(f"{name!r} stands there twice")
+                raise ValueError(f"{name!r} occurs twice")
 
     def by_priority(self) -> Sequence[TaskModel]:
         """The most urgent first."""

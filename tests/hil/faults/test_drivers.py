@@ -50,7 +50,7 @@ def test_a_program_meets_it(volts: Path, capsys: pytest.CaptureFixture[str]) -> 
 
 @pytest.mark.parametrize(("fault", "said"), [
     ("gyro-reset", "gyro-reset: Board must have one gyro for this, and has none"),
-    ("ram-bit-flip:word=volts.nothing", "ram-bit-flip: word: 'volts.nothing' is no address and no variable"),
+    ("ram-bit-flip:word=volts.nothing", "ram-bit-flip: word: 'volts.nothing' is neither an address nor a variable"),
 ])  # fmt: skip
 def test_what_does_not_suit_the_board_is_one_line(
     volts: Path, fault: str, said: str, capsys: pytest.CaptureFixture[str]

@@ -73,15 +73,15 @@ def test_check(capsys: pytest.CaptureFixture[str]) -> None:
     [
         ("gyro-rest", "no fault 'gyro-rest': there are adc-bit-stuck"),
         ("gyro-reset:at=x", "gyro-reset: at: 'x' must be a number"),
-        ("gyro-reset:at", "fault 'gyro-reset:at': 'at' is no NAME=VALUE"),
+        ("gyro-reset:at", "fault 'gyro-reset:at': 'at' is not NAME=VALUE"),
         ("adc-bit-stuck", "adc-bit-stuck: it needs input (ADC and channel, as A2: a text)"),
-        ("adc-bit-stuck:input=E1", "adc-bit-stuck: input: 'E1' is none of A0 to D15"),
+        ("adc-bit-stuck:input=E1", "adc-bit-stuck: input: 'E1' is not one of A0 to D15"),
         ("adc-bit-stuck:input=A1,bit=16", "adc-bit-stuck: bit: 16 must be 0 to 15"),
         ("gyro-reset:size=1", "gyro-reset: no parameter 'size': there are rate, at, when, for, seed"),
-        ("gyro-reset:when=moon", "when: 'moon' is none of frame N"),
+        ("gyro-reset:when=moon", "when: 'moon' is not one of frame N"),
         ("radio-loss", "radio-loss: this board has no radio (--xbee)"),
         ("sonar-deaf:sensor=UP", "sonar-deaf: no sonar 'UP': LEFT, FRONT, RIGHT"),
-        ("ram-bit-flip:word=nowhere", "ram-bit-flip: word: 'nowhere' is no address and no variable"),
+        ("ram-bit-flip:word=nowhere", "ram-bit-flip: word: 'nowhere' is neither an address nor a variable"),
     ],
 )
 def test_wrong_faults_are_one_line(text: str, said: str, capsys: pytest.CaptureFixture[str]) -> None:

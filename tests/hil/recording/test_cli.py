@@ -181,11 +181,11 @@ def test_a_comparison_is_a_table_a_picture_and_json(log: Path, capsys: pytest.Ca
     ("arguments", "complaint"),
     [
         (["replay", "nothing.wire"], "nothing.wire: No such file"),
-        (["replay", "noise"], "noise: is no wire log"),
+        (["replay", "noise"], "noise: not a wire log"),
         (["replay", "."], "not a plain file"),
         (["replay", "bare.wire", "--link", "COM3"], "belong to --to-console"),
         (["replay", "strange.wire"], "its setup has 'colour'"),
-        (["compare", "noise", "noise"], "noise: is no wire log"),
+        (["compare", "noise", "noise"], "noise: not a wire log"),
         (["compare", "bare.wire", "bare.wire"], "bare.wire: has no frames"),
         (["compare", "bare.wire", "bare.wire", "--plot", "x.doc"], "x.doc"),
         (["record", "/dev/nothing", "-o", "x.wire"], "cannot open the serial port /dev/nothing"),

@@ -175,7 +175,7 @@ def test_editors_and_people_may_touch_it() -> None:
 
 def test_what_is_no_log_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "x").write_bytes(b"\x89PNG\r\n")
-    with pytest.raises(ValueError, match="is no wire log"):
+    with pytest.raises(ValueError, match="not a wire log"):
         read_log(tmp_path / "x")
     (tmp_path / "x").write_bytes(b"hil-wire 2\n")
     with pytest.raises(ValueError, match=r"version 2; this program reads version 1"):

@@ -55,7 +55,7 @@ def test_sections_within_a_section() -> None:
         ("time_us = 20", 'time_us = 20, sections = [{ gate = "h", time_us = 21 }]',
          r"^t:16: sections: they take longer than the whole section"),
         ("time_us = 20", 'time_us = 20, sections = [{ gate = "g", time_us = 2 }]', r"^t:16: gate: 'g' is held already"),
-        ('name = "tick"', 'name = "a"', r"^t:4: name: 'a' stands there twice"),
+        ('name = "tick"', 'name = "a"', r"^t:4: name: 'a' occurs twice"),
         ("switch_us = 0.5", "switch_us = -1", r"^t:1: switch_us: -1 must be a time in microseconds, 0 or more"),
         ("switch_us = 0.5", "switch_us = nan", r"^t:1: switch_us: nan must be"),
         ("switch_us = 0.5", "switch_us =", r"^t:1: not TOML"),

@@ -139,7 +139,7 @@ def test_what_does_not_suit_the_board_says_why(engine: Engine) -> None:
     }  # fmt: skip
     for text, why in (
         ("gyro-reset", "gyro-reset: Station must have one gyro for this"), ("mend", "no fault 'mend'"),
-        ("adc-bit-stuck:input=E1", "'E1' is none of A0 to D15"),
+        ("adc-bit-stuck:input=E1", "'E1' is not one of A0 to D15"),
     ):  # fmt: skip
         with pytest.raises(ValueError, match=why):
             engine.act("break", text).result()

@@ -51,7 +51,7 @@ def character(token: Token) -> int:
 def _number(token: Token) -> Value:
     match = _INTEGER.fullmatch(token.text)
     if match is None:
-        raise token.error(f"{token.text[:40]} is no integer: a condition has integers only")
+        raise token.error(f"{token.text[:40]} is not an integer: a condition has integers only")
     digits, suffix = match.groups()
     base = 16 if digits[:2] in ("0x", "0X") else 2 if digits[:2] in ("0b", "0B") else 8 if digits[0] == "0" else 10
     if len(digits) > 80:

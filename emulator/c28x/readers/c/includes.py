@@ -86,7 +86,7 @@ class IncludePath:
     def _find(self, name: str, quoted: bool, folder: str | None) -> SourceText:
         name = name.replace("\\", "/")
         if not name or "\0" in name:
-            raise Refused("that is no file name")
+            raise Refused("that is not a file name")
         beside = quoted and folder is not None and self._standard(name.lower()) and self._lies_in(folder, name)
         if not beside and (text := self._builtin(name.lower())) is not None:
             return _ours(name, text)

@@ -61,7 +61,7 @@ def characters(text: str, where: Where) -> list[int]:
         if code < 0:
             known = _SIMPLE.get(escape)
             if known is None:
-                raise SourceError.at(where, f"\\{escape} is no escape of C")
+                raise SourceError.at(where, f"\\{escape} is not an escape of C")
             code = known
         codes.append(code & 0xFFFF)
     return codes

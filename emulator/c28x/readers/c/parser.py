@@ -226,7 +226,7 @@ def _number_kind(token: Token) -> str:
         return _NUMBER_KINDS[match.lastindex or 0]
     if re.fullmatch(rf"0[0-9]+{_SUFFIX}", text):
         raise token.error(f"{text} starts with 0: it is octal and has a digit 8 or 9")
-    raise token.error(f"{text} is no number of C")
+    raise token.error(f"{text} is not a number of C")
 
 
 def _is_far(tokens: Sequence[Token], index: int) -> bool:

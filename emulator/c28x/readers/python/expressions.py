@@ -145,7 +145,7 @@ class PythonExpressionReader:
                 return build.string(text, self.where(node))
             case ast.Tuple() | ast.List() | ast.Dict() if isinstance(ctype, StructType):
                 members = ", ".join(member.name for member in ctype.members)
-                raise self.error(node, f"a list is no value here: write {ctype}({members})")
+                raise self.error(node, f"a list is not a value here: write {ctype}({members})")
         return self.value(node)
 
     def effect(self, node: ast.expr) -> Expr:

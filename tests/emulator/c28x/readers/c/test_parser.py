@@ -178,7 +178,7 @@ def test_nothing_is_an_empty_file() -> None:
         ("int struct S x;", "t.c:1:12: two types in one declaration"),
         ("typedef int T; int T;", "t.c:1:20: non-typedef 'T' previously declared as typedef in this scope"),
         ("int x = 08;", "t.c:1:9: 08 starts with 0: it is octal and has a digit 8 or 9"),
-        ("int x = 1abc;", "t.c:1:9: 1abc is no number of C"),
+        ("int x = 1abc;", "t.c:1:9: 1abc is not a number of C"),
         ("int @;", "t.c:1:5: the character '@' (U+0040) has no place in C here"),
         ("int \0;", "t.c:1:5: the character '\\x00' (U+0000) has no place in C here"),
         ('char *s = "abc\n;', 't.c:1:11: the quote " has no end in its line'),
