@@ -26,6 +26,7 @@ from collections.abc import Callable
 from typing import Final, TypeVar
 
 from emulator.c28x.findings import Cause
+from emulator.c28x.sites import Place
 from emulator.clock import CYCLES_PER_MS, Clock, Event
 from emulator.cpu import Cpu
 from emulator.peripherals.i2c_data import I2cData
@@ -125,6 +126,8 @@ class I2c:
         #: A refused message holds the bus; when the program first looked at I2CSTR since then.
         self._forgotten = False
         self._seen_held_at: int | None = None
+        #: How many addresses in a row nobody has acknowledged.
+        self.refusals = 0
         #: SYSCLK cycles a module clock, and d; they follow I2CPSC when IRS is set.
         self._module_cycles, self._delay = 1, DELAYS[0]
         bus.taken_changed.connect(self._taken)
@@ -269,6 +272,14 @@ class I2c:
             self._doubts.receiver_in_loopback()
         self._shift(self._address_sent)
 
+    def report_retry(self, place: Place) -> None:
+        """Tell that the program ends in a loop, at `place`, that repeats its message until it works."""
+        self._findings.report_at(
+            place, "endless-retry",
+            f"repeated until it works: {self._regs.name} has sent {self.refusals} addresses in a row that nobody "
+            "acknowledged", object=self._regs.name, how="dynamic", task="main",
+        )  # fmt: skip
+
     def _shift(self, done: Callable[[], None]) -> None:
         self._state = BYTE
         self._event = self._clock.after(BYTE_BITS * self.bit_cycles, done)
@@ -278,8 +289,10 @@ class I2c:
         address = TEN_BITS | target >> 8 if mode & XA else target & 0x7F
         self._unanswered = False
         if not mode & DLB and not self._caused(self._bus.address, address, not self._transmitter):
+            self.refusals += 1
             self._refused()
             return
+        self.refusals = 0
         self._interrupts.clear(NACK)
         if self._repeat:
             self._interrupts.set(ARDY)

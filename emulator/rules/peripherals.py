@@ -821,6 +821,20 @@ next message.
         "AT24C256: page write",
     ),
     _rule(
+        "endless-retry",
+        Severity.WARNING,
+        "A transaction that a part refuses is repeated without a limit.",
+        """
+Without the part, or with a broken wire, the program never goes on: no control, no answer, no message about the fault.
+
+The finding is made when a run ends in a loop that repeats a transaction on the I2C until it works, which it has done
+for half of the run, and no address was acknowledged. It is at the loop.
+
+**Fix:** limit the number of attempts, go on without the part, and report the fault.
+""",
+        "TRM, I2C: NACK",
+    ),
+    _rule(
         "endless-poll",
         Severity.ERROR,
         "A polling loop waits for an event that cannot come.",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 from emulator.c28x.findings import Finding
@@ -18,19 +18,40 @@ from hil.drivers.budget import RUN, TimeBudget, computed
 from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
 from hil.drivers.stale import AgeWatch, watched
-from hil.drivers.waiting import Nobody, in_last_loop, meant_endless, vain_loop, waits_for_others, waits_for_tasks
+from hil.drivers.waiting import (
+    Nobody,
+    in_last_loop,
+    meant_endless,
+    retried,
+    retries,
+    vain_loop,
+    waits_for_others,
+    waits_for_tasks,
+)
 from hil.image import Build, Image
 from hil.machine import FirmwareStopped, fault_of_ours
 from hil.testing.stops import STOPS, announced
 
 #: Stack of a task that no text makes.
 _STACK_WORDS: Final = 1024
+#: So many addresses that nobody acknowledges are no part that is busy.
+_REFUSALS: Final = 8
 #: From this part of the CPU's time on a `main` does more than poll.
 _BUSY: Final = 0.01
 #: How much longer the run in which ages are followed may be.
 _LONGER: Final = 3
 #: What it may compute.
 _OBSERVED: Final = 2 * RUN
+
+
+@dataclass
+class Stood:
+    """Where a `main` stood when its time was over, the innermost place first, and the loops without a limit that it
+    has been in for half of its run; nothing if it ended by itself.
+    """
+
+    frames: list[Place] = field(default_factory=list)
+    loops: set[tuple[str, int]] | None = None
 
 
 class _Over(Exception):
@@ -97,12 +118,12 @@ def _begin(build: Build, roles: Roles) -> Image:
 
 def _go(
     image: Image, roles: Roles, until: Callable[[], int], budget: TimeBudget, progress: Callable[[float], None]
-) -> list[Place]:  # fmt: skip
+) -> Stood:  # fmt: skip
     """Run the program until `until()`, which may tell a later time when it comes; as `_bare`."""
     if roles.main is not None and not roles.begins_kernel:
-        return _bare(image, roles.main, until, budget, progress)
+        return _bare(image, roles, roles.main, until, budget, progress)
     _kernel(image, roles, until, budget, progress)
-    return []
+    return Stood()
 
 
 def _run(
@@ -111,7 +132,7 @@ def _run(
     image = _begin(build, roles)
     budget = TimeBudget(RUN)
     stop: BaseException | None = None
-    stood: list[Place] = []
+    stood = Stood()
     end = image.board.clock.now + round(for_s * SYSCLK_HZ)
     if patient:
         image.allow_loops(2 * end + SYSCLK_HZ)
@@ -132,7 +153,8 @@ def _run(
                 how="dynamic", task=busy.task,
             )  # fmt: skip
     nobody = _nobody(image)
-    vain = vain_loop(stood, roles, nobody)
+    _retried(image, stood, roles)
+    vain = vain_loop(stood.frames, roles, nobody)
     if vain is not None:
         image.board.findings.report_at(
             vain[0], "endless-poll", f"main waits for {vain[1]}, and no interrupt that could change it ever occurs",
@@ -163,6 +185,16 @@ def _run(
     return Ran(weighed, seconds(min(image.board.clock.now, end)), "" if said else str(stop), cut)
 
 
+def _retried(image: Image, stood: Stood, roles: Roles) -> None:
+    """Tell of a transaction that is repeated until it works, and that nobody answers."""
+    for letter, i2c in image.board.i2c.items() if stood.loops else ():
+        found = retried(stood.loops or (), f"I2c{letter.lower()}Regs", roles) if i2c.refusals >= _REFUSALS else None
+        if found is not None:
+            function, loop = found
+            at = loop.where
+            i2c.report_retry(Place(at.file, at.line, function.name, function.c_file, at.column))
+
+
 def _nobody(image: Image) -> Nobody:
     """Who ends no wait any more, at the end of a run."""
     board = image.board
@@ -172,17 +204,18 @@ def _nobody(image: Image) -> Nobody:
 
 
 def _bare(
-    image: Image, main: Function, until: Callable[[], int], budget: TimeBudget, progress: Callable[[float], None]
-) -> list[Place]:  # fmt: skip
+    image: Image, roles: Roles, main: Function, until: Callable[[], int], budget: TimeBudget,
+    progress: Callable[[float], None],
+) -> Stood:  # fmt: skip
     """A `main` without a kernel: it has the chip to itself until its time is over, or what it may compute.
 
-    A poll that it does nothing but is waited for beyond that, until it ends or is found to be endless.  Gives where it
-    stood then, the innermost place first; nothing if it ended by itself.
+    A poll that it does nothing but is waited for beyond that, until it ends or is found to be endless.
     """
-    stood: list[Place] = []
+    stood = Stood()
     clock, position, places = image.board.clock, image.board.findings.position, image.board.findings.places
     end = until()
     step = max(1, min((end - clock.now) // 50, SYSCLK_HZ // 50))
+    half = (clock.now + end) // 2
     latest = end + image.linked.runtime.poll_limit + step
     computed_before, executed_before = computed(image), clock.now - clock.waited
 
@@ -193,11 +226,14 @@ def _bare(
         executed = clock.now - clock.waited
         idle = executed - executed_before < step * _BUSY
         computed_before, executed_before = computed(image), executed
+        if clock.now >= half:
+            around = retries([places[at] for at, _ in position.frames()], roles.functions)
+            stood.loops = around if stood.loops is None else stood.loops & around
         polls = idle and places[position.innermost()].kind == "poll"
         if budget.over or clock.now >= (latest if polls else end):
-            stood.extend(places[at] for at, _ in position.frames())
+            stood.frames = [places[at] for at, _ in position.frames()]
             if image.board.connections is not None:
-                image.board.connections.started_up = in_last_loop(stood, main)
+                image.board.connections.started_up = in_last_loop(stood.frames, main)
             raise _Over
         progress(min(1.0, clock.now / end))
         clock.after(min(step, end - clock.now) if clock.now < end else step, look)

@@ -14,6 +14,8 @@ from emulator.c28x.tree import (
     Break,
     Call,
     CallPointer,
+    Compare,
+    Const,
     CopyStruct,
     Function,
     FunctionRef,
@@ -101,6 +103,32 @@ def loop_waits(place: Place, roles: Roles, *, main: bool = False, nobody: Nobody
             if main and any(variables & addressed(within(other.body)) for other in roles.functions):
                 return True
     return False
+
+
+def retries(frames: Sequence[Place], functions: Iterable[Function]) -> set[tuple[str, int]]:
+    """The loops around `frames` that repeat something until it works, without a limit: file, and line of the loop."""
+    functions = list(functions)
+    return {
+        (place.file, loop.line)
+        for place in frames for function in functions for loop in _loops_at(function, place)
+        if not isinstance(loop.test, Const) and not polls(loop)
+        and not any(isinstance(part, Compare) and part.op not in ("==", "!=") for part in parts(loop.test))
+        and not any(isinstance(s, Break | Return) for s in statements(loop.body))
+    }  # fmt: skip
+
+
+def retried(loops: Collection[tuple[str, int]], block: str, roles: Roles) -> tuple[Function, While] | None:
+    """One of `loops` (as `retries` gives them) that uses a register block, and its function."""
+    by_path = {function.path: function for function in roles.functions}
+    for function in roles.functions:
+        for loop in statements(function.body):
+            if isinstance(loop, While) and (loop.where.file, loop.line) in loops:
+                nodes = list(within([loop]))
+                for other in {f.path: f for first in called([loop]) for f in reached(first, by_path)}.values():
+                    nodes += within(other.body)
+                if any(isinstance(node, RegisterRef) and node.block == block for node in _registers(nodes)):
+                    return function, loop
+    return None
 
 
 def vain_loop(frames: Sequence[Place], roles: Roles, nobody: Nobody) -> tuple[Place, str] | None:

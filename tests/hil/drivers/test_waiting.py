@@ -169,3 +169,48 @@ void main(void)
 def test_a_wait_behind_a_refusal_that_nobody_looks_at_never_ends(tmp_path: Path, test: str, hangs: bool) -> None:
     findings = told(tmp_path, REFUSED.replace("TEST", test))
     assert [f.rule for f in findings] == ["endless-poll"] * hangs
+
+
+#: As `REFUSED`, but each attempt ends.
+ATTEMPT = """static Uint16 Try(void)
+{
+    Uint16 n;
+    I2caRegs.I2CSTR.bit.SCD = 1;
+    I2caRegs.I2CCNT = 1;
+    I2caRegs.I2CDXR.bit.DATA = 7;
+    I2caRegs.I2CMDR.all = 0x6E20;
+    for (n = 0; n < 500; n++) {
+        if (I2caRegs.I2CSTR.bit.NACK) {
+            I2caRegs.I2CMDR.bit.STP = 1;
+            I2caRegs.I2CSTR.bit.NACK = 1;
+            DELAY_US(100);
+            return 0;
+        }
+        if (I2caRegs.I2CSTR.bit.SCD)
+            return 1;
+        DELAY_US(1);
+    }
+    return 0;
+}
+void main(void)"""
+
+
+@pytest.mark.parametrize(("loop", "told_it"), [
+    ("while (!Try())\n        Refusals++;", True),
+    ("while (Refusals == 0)\n        Refusals = Try();", True),
+    ("for (tries = 0; tries < 100 && !Try(); tries++)\n        DELAY_US(10);", False),
+    ("while (!Try())\n        if (++tries > 20000)\n            break;", False),
+    ("Try();\n    while (GpioDataRegs.GPADAT.bit.GPIO19 == 0)\n        DELAY_US(10);", False),  # for a button
+])  # fmt: skip
+def test_a_transaction_is_repeated_without_a_limit(tmp_path: Path, loop: str, told_it: bool) -> None:
+    begin = REFUSED.index("    I2caRegs.I2CCNT = 1;")
+    end = REFUSED.index("    for (;;) {")
+    text = f"{REFUSED[:begin]}    {loop}\n{REFUSED[end:]}".replace("void main(void)", ATTEMPT)
+    text = text.replace("InitSysCtrl();", "Uint16 tries = 0;\n    InitSysCtrl();")
+    (tmp_path / "drv.c").write_text(text, encoding="utf-8")
+    wanted = DriverFiles([tmp_path / "drv.c"], calls=1, board=load("bare"), seconds=0.05)
+    findings = [f for f in check_files(wanted).findings if f.rule == "endless-retry"]
+    lines = text.splitlines()
+    assert [lines[f.place.line - 1].strip() for f in findings if f.place is not None] == [
+        loop.splitlines()[0]
+    ] * told_it  # fmt: skip
