@@ -43,14 +43,14 @@ def status_line(session: Session) -> str:
 
 
 def _findings(findings: Iterable[Finding]) -> str:
-    """How many, and how many of them are errors."""
+    """The number of findings, and how many of them are errors."""
     severities = [rule_of(finding.rule).severity for finding in findings]
     errors = severities.count(Severity.ERROR)
     return f"{len(severities)} ({errors} error{'s' * (errors != 1)})" if errors else str(len(severities))
 
 
 def _robot(machine: RobotMachine) -> str:
-    """State, pose, distances."""
+    """The robot's state, pose and distances, for the status line."""
     status = machine.status()
     front, right, left = status.distances_cm
     return (
@@ -60,7 +60,7 @@ def _robot(machine: RobotMachine) -> str:
 
 
 def summarize(session: Session, setup: Setup) -> dict[str, Any]:
-    """Everything a run came to, as plain data."""
+    """The summary of a run as plain data."""
     machine, pacer, port = session.machine, session.pacer, session.port
     began = {
         "virtual_s": session.elapsed_virtual_s,

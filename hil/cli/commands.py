@@ -52,12 +52,12 @@ class Unopened(TyperCommand):
 
     @property
     def function(self) -> Any:
-        """What the command calls."""
+        """The function behind the command."""
         return getattr(import_module(self.module), self._function)
 
     @cached_property
     def whole(self) -> TyperCommand:
-        """The command with all that it takes."""
+        """The command with its arguments and options."""
         alone = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
         settings = {"ignore_unknown_options": self.name in TAKE_WHAT_LOOKS_LIKE_OPTIONS}
         alone.command(self.name, cls=Command, context_settings=settings)(self.function)

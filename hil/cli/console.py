@@ -133,7 +133,7 @@ def _in_browser(port: str | None, host: str, number: int) -> None:
 def _play(
     path: Path, port: str | None, log: Path | None, folder_path: Path, python: str, setup: Setup, *, quiet: bool
 ) -> dict[str, Any]:
-    """From checks to farewell; what it came to."""
+    """Run the program of `--app`: checks, ports, program, end.  Returns its summary."""
     from hil.console.app import read_app
     from hil.console.folder import RunFolder
     from hil.console.launcher import Farewell, Process

@@ -36,7 +36,7 @@ def checked_faults(texts: Sequence[str] | None) -> tuple[str, ...]:
 
 
 def watched(texts: Sequence[str]) -> bool:
-    """Whether who meets one of them is known only of a watched image."""
+    """Whether one of them needs a watched image, to know which task met it."""
     if not texts:
         return False
     from hil.faults import parse
@@ -45,7 +45,7 @@ def watched(texts: Sequence[str]) -> bool:
 
 
 def complain_of_silent(machine: Machine) -> bool:
-    """Complain of each fault that never fired; whether there was one."""
+    """Print an error for each fault that never fired.  Returns whether there was one."""
     silent = [mounted.fault for mounted in getattr(machine, "faults", ()) if not mounted.count]
     for fault in silent:
         show.complain(f"the fault {fault} never fired")

@@ -65,7 +65,7 @@ def own_c(
     firmware: Sequence[Path] | None, project: Path | None, include: Sequence[Path] | None,
     define: Sequence[str] | None, *, robot: bool = True,
 ) -> OwnC:  # fmt: skip
-    """What the options mean; notes about what is left out go to stderr.
+    """The C files, folders and macros of the options; notes about files left out go to stderr.
 
     Files of a `robot` take the places of its modules, by their names; those of another board are a program.
 

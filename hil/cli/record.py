@@ -157,7 +157,7 @@ def replay(
 def _play_orders(
     recording: Recording, world: str | None, seed: int | None, output: Path | None, *, quiet: bool
 ) -> tuple[Verdict, Setup, list[Finding]]:
-    """What came of it, on which robot, and what was found on the way."""
+    """The verdict of the replay, the robot's setup, and the findings."""
     known = setup_of(recording)
     if known is None:
         show.say(f"hil: {recording.name}: does not say which robot it was; taking the standard one", to_stderr=True)

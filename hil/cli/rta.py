@@ -197,7 +197,7 @@ class _RunKind:
         return None if task is None or not task.activations else task.response * NS_PER_CYCLE
 
     def exceeded(self) -> list[dict[str, Any]]:
-        """Findings: what was seen and may not be."""
+        """The measured responses that exceed the computed ones, a sentence each."""
         found = []
         for name, response in self.responses.items():
             seen, computed = self.seen_ns(name), response.ready_to_end_ns
@@ -235,7 +235,7 @@ def _with_bar(run: Callable[[int, Callable[[float], None]], None], phasings: int
 
 
 def _counted(task_set: TaskSet, *, interrupts: bool, jitter: bool) -> TaskSet:
-    """The set without what the user does not want counted."""
+    """The task set without jitter or interrupts where the user has switched them off."""
     tasks, above = task_set.tasks, task_set.interrupts if interrupts else ()
     if not jitter:
         tasks = tuple(replace(task, arrival=replace(task.arrival, jitter_ns=0)) for task in tasks)
@@ -247,7 +247,7 @@ def _report(
     task_set: TaskSet, protocol: Protocol, runs: Sequence[_RunKind], starts: Sequence[Any], off_by: Mapping[str, str],
     not_run: str, *, json_output: bool,
 ) -> list[str]:
-    """Print everything; the tasks that may miss their deadlines."""
+    """Print the analysis.  Returns the tasks that may miss their deadlines."""
     from hil.rta.analysis import analyse, bounds, most_computation_ns, most_growth, start_up
 
     responses = analyse(task_set, protocol)

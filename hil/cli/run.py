@@ -404,7 +404,7 @@ def _refuse(kind: type[Board], of_robots: dict[str, Any]) -> None:
 
 
 def without_line(machine: Machine) -> bool:
-    """Whether nothing of it leads to a PC."""
+    """Whether the board has no serial line to a PC."""
     from hil.running import RunningBoard
 
     return isinstance(machine, RunningBoard) and machine.board.pc is None
@@ -414,7 +414,7 @@ def view_until_stopped(
     setup: Setup, read: dict[str, Any], pace: float | None, orders: list[TimedOrder],
     open_line: Callable[[Machine], SerialPort | None], host: str, number: int, say: Callable[[str], None],
 ) -> None:  # fmt: skip
-    """The page until Ctrl-C; `say` is told where it is."""
+    """Serve the page until Ctrl-C; `say` gets its address."""
     from hil.view.server import run_view
 
     with ExitStack() as stack:
@@ -481,7 +481,7 @@ class _Display:
         self.live = Live(console=terminal, auto_refresh=False, transient=True)
 
     def tick(self, session: Session) -> None:
-        """After each slice; costs a look at the clock."""
+        """Called after each slice; updates the line when its time has come."""
         if self._quiet:
             return
         now = time.monotonic()

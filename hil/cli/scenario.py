@@ -91,7 +91,7 @@ def _of(files: list[Path]) -> list[Path]:
 
 
 def _readable(paths: list[Path]) -> None:
-    """A file with a fault is told before the first one runs."""
+    """Read all files before the first one runs.  Raises ValueError for a wrong one."""
     from hil.reports.policy import Policy
     from hil.scenarios.scenario import load_scenario
 

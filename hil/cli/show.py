@@ -100,12 +100,12 @@ def user_errors() -> Iterator[None]:
 
 
 def of_standard_output(error: OSError) -> bool:
-    """Whether it is standard output that cannot be written: files are named by who writes them."""
+    """Whether it is standard output that cannot be written: errors of files carry a name."""
     return not error.filename and error.errno in (errno.ENOSPC, errno.EFBIG, errno.EIO, errno.EBADF)
 
 
 def defect(error: Exception, arguments: Iterable[str]) -> str:
-    """What is said of an exception that nobody here expected: what, in which command, where in our code, what to do."""
+    """The line about an unexpected exception: what, in which command, where in our code, what to do."""
     import traceback
 
     from hil.machine import FAULT_OF_OURS
@@ -128,7 +128,7 @@ def _in_ours(file: Path) -> Path | None:
 
 
 def complain(message: str) -> None:
-    """One line on stderr.  Of a word that nobody can read, somebody's 20,000 brackets, the two ends are shown."""
+    """Print one error line on stderr.  Of a word too long to read only the two ends are shown."""
     shortened = _ENDLESS.sub(lambda word: f"{word[0][:100]}[...]{word[0][-50:]}", " ".join(message.split("\n")))
     print(f"hil: error: {shortened}", file=sys.stderr, flush=True)
 
@@ -168,7 +168,7 @@ def console() -> Console:
 
 @contextmanager
 def progress(what: str, *, quiet: bool = False) -> Iterator[Callable[[float], None]]:
-    """A bar in a terminal, which is told the part that is done, 0..1; elsewhere, or `quiet`, nothing."""
+    """A progress bar in a terminal: call it with the share done, 0..1.  Elsewhere, or if `quiet`, it shows nothing."""
     from rich.progress import BarColumn, Progress, TextColumn
 
     terminal = console()

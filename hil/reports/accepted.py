@@ -30,7 +30,7 @@ def allowances(file: str) -> dict[UserDeclaration, tuple[str, str]]:
 
 
 def acceptance(finding: Finding) -> tuple[UserDeclaration, str] | None:
-    """What accepts a finding, and the reason; None: nothing does.  Raises ValueError as `allowances`."""
+    """The comment that accepts a finding, and its reason; None: no comment does.  Raises ValueError as `allowances`."""
     place = finding.place
     if place is None:
         return None
@@ -41,6 +41,6 @@ def acceptance(finding: Finding) -> tuple[UserDeclaration, str] | None:
 
 
 def idle(files: Iterable[str], used: Iterable[UserDeclaration]) -> list[UserDeclaration]:
-    """What the comments of `files` allow and nothing asked for."""
+    """The `allow` comments of `files` that no finding needed."""
     asked = set(used)
     return [declared for file in files for declared in allowances(file) if declared not in asked]

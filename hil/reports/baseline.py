@@ -99,7 +99,7 @@ class Baseline:
         return any(entry.fingerprint == fingerprint for entry in self.entries)
 
     def absent(self, present: Sequence[Known]) -> tuple[Known, ...]:
-        """What was known and is not among `present`."""
+        """The known findings that are not among `present`."""
         there = {entry.fingerprint for entry in present}
         return tuple(entry for entry in self.entries if entry.fingerprint not in there)
 

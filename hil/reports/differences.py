@@ -131,7 +131,7 @@ class Proof:
     parts: Mapping[Subject, RunDifferences]
 
     def reach_of(self, finding: Finding) -> RunDifferences | None:
-        """What the object of a finding reaches; None if it was not examined."""
+        """The outputs that a finding's object affects; None if it was not examined."""
         return self.parts.get(Subject.of(finding))
 
 

@@ -120,7 +120,7 @@ def _difference(difference: OutputDifference) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """What JSON can say; a number that is none becomes null."""
+    """A value that JSON can hold; NaN and infinity become null."""
     if isinstance(value, Mapping):
         return {str(key): _plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):

@@ -26,7 +26,7 @@ TARGET: Final = "TMS320F28377S"
 
 
 def versions() -> dict[str, str]:
-    """What made a report."""
+    """The versions of this tool and of Python."""
     return {"c2000-hil": version("c2000-hil"), "python": platform.python_version()}
 
 
@@ -226,7 +226,7 @@ def merged(findings: Iterable[Finding]) -> list[Finding]:
 
 
 def merged_by(found: Iterable[tuple[str, Finding]]) -> list[tuple[Finding, tuple[str, ...]]]:
-    """The same of pairs (who showed it, finding), with all that showed a defect."""
+    """As `merged`, for pairs of (who showed it, finding): each defect with all who showed it."""
     known: dict[tuple[object, ...], tuple[Finding, dict[str, None]]] = {}
     for who, finding in found:
         key = (finding.rule, finding.object, finding.place)

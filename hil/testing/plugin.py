@@ -116,7 +116,7 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
 
 
 def pytest_report_header(config: pytest.Config) -> str:
-    """What tests run under that say nothing else, and which build of the emulator."""
+    """The header line: default fill, seed and float division, and the build of the emulator."""
     from emulator.compiled import BUILDS, MODE
 
     fills = config.getoption("hil_fill") or config.getini("hil_fill") or [settings.FILL]
@@ -127,7 +127,7 @@ def pytest_report_header(config: pytest.Config) -> str:
 
 
 def pytest_report_collectionfinish(config: pytest.Config) -> list[str]:
-    """Which short names are somebody else's."""
+    """Say which short names belong to other plugins."""
     fixtures, markers = config.stash[TAKEN], config.stash[TAKEN_MARKERS]
     return [
         *(f"c2000-hil: the fixture {name} is another plugin's; this one's is hil_{name}" for name in fixtures),
@@ -223,7 +223,7 @@ class _Counting:
         self.config = config
 
     def pytest_sessionfinish(self) -> None:
-        """Hand over."""
+        """Hand the counts to the main process."""
         from hil.testing.session import session_of
 
         coverage = session_of(self.config).coverage

@@ -58,11 +58,11 @@ class Reach:
 
     @cached_property
     def threads(self) -> WriterAnalysis:
-        """Who calls and who writes what."""
+        """Who calls which function, and who writes which object, in these modules."""
         return WriterAnalysis(self._modules, set())
 
     def goes_elsewhere(self, part: Any) -> bool:
-        """Whether a part of a function is a call of what is not the firmware's own."""
+        """Whether a part of a function calls a function outside of the firmware."""
         if not isinstance(part, Call):
             return False
         known = part.function.path in self.threads.functions or part.function.name in QUIET
@@ -79,7 +79,7 @@ class Reach:
                     yield name, entry.id, getattr(routine, "__qualname__", "")
 
     def closed(self, number: int, *, running: tuple[str, ...] | None) -> str:
-        """Which bit keeps an interrupt from being taken; empty if none does.
+        """The enable bit that blocks an interrupt; empty if none does.
 
         `running`: the routines that run now, over the loop that waits.  INTM then says nothing about the loop, nor does
         the bit of IER that a routine finds cleared.
@@ -97,7 +97,7 @@ class Reach:
         return "INTM is set: no interrupt is taken before EINT" if board.cpu.intm and running is None else ""
 
     def routines(self, running: tuple[str, ...] | None) -> list[_Routine] | None:
-        """Those that may run, and those `running`; None if others may, or if it is not known what one does."""
+        """The routines that may run, and those `running`; None if others may, or if an effect is not known."""
         kernel = self._board.kernel
         if kernel.tasks.all or not all(self.closed(number, running=running) for number in kernel.hwis.table):
             return None
@@ -152,11 +152,11 @@ class Reach:
         return self.under_way(register.block)
 
     def _read_with_effect(self, routine: _Routine) -> set[str]:
-        """The blocks of the registers whose reading by the routine is more than looking."""
+        """The blocks of the registers that the routine reads with a side effect."""
         return {b for b, name in routine.read if not self._board.register(b, name).looked_at}
 
     def under_way(self, block: str) -> bool:
-        """Whether an event waits that may change a register of a block."""
+        """Whether an event is scheduled that may change a register of a block."""
         if self._dma_listens():
             return True
         owners = {owner for owner in map(_owner, self.waiting()) if owner is not None}
@@ -185,14 +185,14 @@ class Reach:
     # --- events ------------------------------------------------------------------------------------------------------
 
     def waiting(self) -> Iterator[Callable[..., Any]]:
-        """The callbacks of events that wait, but for those that end calls."""
+        """The callbacks of scheduled events, without those that end calls."""
         for callback in self._board.clock.waiting():
             function = getattr(callback, "func", callback)
             if getattr(function, "__module__", "") != "hil.testing.guard":
                 yield function
 
     def foreign(self) -> bool:
-        """Whether something waits that does not belong to the chip: it may do anything."""
+        """Whether an event is scheduled that does not belong to the chip; it may do anything."""
         return any(not str(getattr(c, "__module__", "")).startswith("emulator.") for c in self.waiting())
 
 
@@ -271,7 +271,7 @@ def _to_register(part: Any) -> bool:
 
 
 def _owner(callback: Callable[..., Any]) -> type[Any] | None:
-    """Whose event a callback is; None: it changes no register."""
+    """The class that a callback's event belongs to; None: the event changes no register."""
     if getattr(callback, "__module__", "") == "emulator.peripherals.pie":
         return None  # looks whether an acknowledge is missing
     return type(getattr(callback, "__self__", callback))

@@ -85,7 +85,7 @@ def misused(marker: pytest.Mark) -> ValueError:
 
 
 def fills(item: pytest.Item) -> list[str]:
-    """The fills that a test runs under, one after the other."""
+    """The fills of a test; it runs once under each."""
     return list(marked(item, "fill") or item.config.getoption("hil_fill") or item.config.getini("hil_fill") or [FILL])
 
 
@@ -110,7 +110,7 @@ def float_division(item: pytest.Item) -> str:
 
 
 def division_asked(config: pytest.Config) -> str:
-    """What the option or the ini key says about it; empty if neither does."""
+    """The build named by the option or the ini key; empty if neither is set."""
     return str(config.getoption("hil_float_division") or config.getini("hil_float_division") or "")
 
 

@@ -22,12 +22,12 @@ STOPS: Final[tuple[type[BaseException], ...]] = (*_ANNOUNCED, FirmwareStopped)
 
 
 def announced(stop: BaseException) -> tuple[str, ...]:
-    """The rules whose finding says in advance that the firmware stops like this."""
+    """The rules whose findings announce this kind of stop."""
     cause = stop.__cause__ if isinstance(stop, FirmwareStopped) and stop.__cause__ else stop
     return next((rules for kind, rules in _ANNOUNCED.items() if isinstance(cause, kind)), ())
 
 
 def sentence(stop: BaseException) -> str:
-    """The stop in one line, with who it was."""
+    """The stop in one line, with its thread."""
     who = "; ".join(getattr(stop, "__notes__", ()))
     return f"the firmware stopped: {stop}" + (f" ({who})" if who else "")

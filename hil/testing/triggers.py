@@ -51,7 +51,7 @@ class Subscription:
 
 
 def _nothing() -> None:
-    """Ends what is not connected."""
+    """Does nothing: for a trigger that had nothing to connect."""
 
 
 class Trigger(ABC):
@@ -62,7 +62,7 @@ class Trigger(ABC):
         """Call `fire(value)` when it happens; returns what ends the watch."""
 
     def instead(self) -> str:
-        """What is the case instead, in a few words."""
+        """The present state instead, in a few words, for the message of a time-out."""
         return ""
 
     def __or__(self, other: Trigger) -> Either:
@@ -86,7 +86,7 @@ class Either(Trigger):
         return end
 
     def instead(self) -> str:
-        """Of each that has something to say."""
+        """The state of each, where it has one."""
         return "; ".join(text for text in (t.instead() for t in self.triggers) if text)
 
     def __str__(self) -> str:
@@ -166,7 +166,7 @@ class TaskEvent(Trigger):
         return kind in self._kinds and fnmatchcase(name, self._name)
 
     def instead(self) -> str:
-        """Who is there at all."""
+        """The names of the threads that exist."""
         names = ", ".join(task.name for task in self._board.kernel.tasks.all)
         return f"tasks: {names}" if names else "no task exists"
 

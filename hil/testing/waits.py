@@ -97,13 +97,13 @@ class PollingLoop:
 
     @property
     def rule(self) -> str:
-        """What such a loop breaks: one that asks nobody computes alone."""
+        """The rule that such a loop breaks: `endless-loop` if it polls nothing, else `endless-poll`."""
         guard = self.loop.endless
         return "endless-loop" if guard is not None and guard.kind == "endless" else "endless-poll"
 
     @property
     def hopeless(self) -> bool:
-        """Whether nothing is left that could end the loop."""
+        """Whether nothing can end the loop any more."""
         if not self._exits or self._unclear or self._reach.foreign():
             return False
         routines = self._reach.routines(self.running)
@@ -135,14 +135,14 @@ class PollingLoop:
         return [self._functions[path] for path in sorted(paths)]
 
     def _conditions(self) -> Iterator[Expr | LValue]:
-        """What decides on the end: the test of the loop, and whatever way out or value its body chooses."""
+        """The conditions that decide whether the loop ends: its test, and those of exits and assignments in its body."""
         if not isinstance(self.loop.test, Const):
             yield self.loop.test
         yield from _decisions(self.loop.body)
         yield from _decisions(self.loop.step)
 
     def _looked_at(self) -> Iterator[Any]:
-        """The registers and objects that the conditions, and all that these are computed from, come down to."""
+        """The registers and objects that the conditions depend on, directly or through what they are computed from."""
         waiting: list[Any] = list(self._conditions())
         called = [s for function in self._inside[1:] for s in statements(function.body)]
         through: set[Variable | None] = {assigned(s) for s in called}
@@ -176,7 +176,7 @@ class PollingLoop:
                 yield part
 
     def _goes_on(self, variable: Variable) -> bool:
-        """Whether the loop makes an object's next value from the one it has: such a loop gets somewhere."""
+        """Whether the loop computes an object's next value from its present one: such a loop makes progress."""
         if variable.kind != "global" and variable not in {*self.function.locals, *self.function.parameters}:
             return False  # a called function begins anew each time
         reached: set[Variable] = set()
@@ -188,7 +188,7 @@ class PollingLoop:
         return variable in reached
 
     def _is_unclear(self) -> bool:
-        """Whether the loop may change what it waits for, or it is not known what that is."""
+        """Whether the loop may change what it waits for, or that is not known."""
         for part in self._exits:
             if isinstance(part, RegisterRef):
                 if part.block != _PINS and not self._board.register(part.block, part.register).looked_at:
@@ -218,7 +218,7 @@ class PollingLoop:
             yield f"it waits for {name}, which {path} writes: {self._when(path)}"
 
     def _when(self, path: str) -> str:
-        """When a function would run, and why it does not."""
+        """When a function would run, and what keeps it from running."""
         for name, number, routine in self._reach.vectors():
             if routine in self._functions and path in self._threads.below(routine):
                 called = "" if routine == path else f", called by {routine}"
@@ -233,7 +233,7 @@ class PollingLoop:
 
 
 def _decisions(body: Iterable[Stmt]) -> Iterator[Expr | LValue]:
-    """What statements decide by."""
+    """The conditions that statements decide by."""
     for s in statements(body):
         match s:
             case If(test=test) | While(test=test) | Switch(subject=test):
@@ -243,7 +243,7 @@ def _decisions(body: Iterable[Stmt]) -> Iterator[Expr | LValue]:
 
 
 def _turn_cycles(body: list[Stmt], functions: dict[str, Function], above: tuple[str, ...] = ()) -> int:
-    """No run of statements takes more cycles than this, delays left out; more than `_LONG` if it is not known."""
+    """The most cycles of one pass through statements, without delays; more than `_LONG`: not known."""
     cycles = 0
     for s in body:
         for part in (part for root in roots(s) for part in parts(root)):
