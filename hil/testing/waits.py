@@ -135,7 +135,7 @@ class PollingLoop:
         return [self._functions[path] for path in sorted(paths)]
 
     def _conditions(self) -> Iterator[Expr | LValue]:
-        """The conditions that decide whether the loop ends: its test, and those of exits and assignments in its body."""
+        """The conditions that decide whether the loop ends: its test, those of exits and assignments in its body."""
         if not isinstance(self.loop.test, Const):
             yield self.loop.test
         yield from _decisions(self.loop.body)
