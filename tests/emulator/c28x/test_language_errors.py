@@ -45,7 +45,7 @@ def body(*lines: str) -> str:
         ('x: "nosuch"\n', 3, "nosuch is not a C type"),
         ('x: "two words"\n', 3, "'two words' is not a C type"),
         ("x: array[int16, 0]\n", 3, "at least one element"),
-        ("x: array[int16, 1 << -1]\n", 3, "a shift by -1 is no constant"),
+        ("x: array[int16, 1 << -1]\n", 3, "a shift by -1 is not a constant"),
         ("class C:\n    pass\n", 3, "must derive from enum or struct"),
         ("def f(a) -> int16:\n    return 0\n", 3, "needs a type"),
         ("x: int16 = nosuch()\n", 3, "nosuch is not declared"),

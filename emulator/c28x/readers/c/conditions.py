@@ -36,7 +36,7 @@ def character(token: Token) -> int:
     body = token.text[token.text.index("'") + 1 : -1]
     found = re.findall(r"\\x([0-9a-fA-F]+)|\\([0-7]{1,3})|\\(.)|([^\\])", body)
     if not found:
-        raise token.error(f"{token.text} is no character constant")
+        raise token.error(f"{token.text} is not a character constant")
     hexadecimal, octal, escape, plain = found[-1]
     if hexadecimal:
         value = int(hexadecimal[-4:], 16)

@@ -170,7 +170,7 @@ class CDeclarationReader:
         """A register block, by the name that the device header gives it."""
         known = headers.instances().get(name)
         if known is None or known.layout is not ctype.layout:
-            raise SourceError.at(where, f"{name} is no register block of this chip that is modelled")
+            raise SourceError.at(where, f"{name} is not a modelled register block of this chip")
         self.module.symbols[name] = known
 
     def object(
@@ -351,7 +351,7 @@ def _typed(names: c_ast.ParamList, declared: list[c_ast.Decl]) -> c_ast.ParamLis
         given = c_ast.Decl(name.name, [], [], [], [], implicit, None, None, name.coord)
         typed.append(types.pop(name.name, given))
     for name, declaration in types.items():
-        raise SourceError.at(declaration.coord, f"{name} is no parameter of the function")
+        raise SourceError.at(declaration.coord, f"{name} is not a parameter of the function")
     return c_ast.ParamList(typed, names.coord)
 
 

@@ -263,7 +263,7 @@ class CExpressionReader:
             if isinstance(ctype, ArrayType):
                 base = self.as_value(base)
             elif not isinstance(ctype, PointerType):
-                raise SourceError.at(node.name.coord, f"'{shown}' is no pointer: write . instead of ->")
+                raise SourceError.at(node.name.coord, f"'{shown}' is not a pointer: write . instead of ->")
         elif isinstance(ctype, PointerType):
             raise SourceError.at(node.name.coord, f"'{shown}' is a {ctype}: write -> instead of .")
         elif isinstance(base, LValue | Expr) and not isinstance(ctype, StructType):

@@ -323,7 +323,7 @@ class Grammar(CParser):  # type: ignore[misc]
         if name is None or name.value == "__asm" or (opening is not None and opening.type not in _BEFORE_A_TYPE):
             return None
         message = "no typedef of that name was read (is its header included?)"
-        return name.token.error(f"{_shown(name)} is no type: {message}")
+        return name.token.error(f"{_shown(name)} is not a type: {message}")
 
     def _parse_error(self, msg: str, coord: Any) -> NoReturn:
         found = self._peek()

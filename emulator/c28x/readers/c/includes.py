@@ -166,10 +166,10 @@ class IncludePath:
             return known
         try:
             if not stat.S_ISREG(os.lstat(real).st_mode):
-                raise Refused(f"{shown} is no regular file")
+                raise Refused(f"{shown} is not a regular file")
             with open(os.open(real, _FLAGS), "rb") as file:
                 if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-                    raise Refused(f"{shown} is no regular file")
+                    raise Refused(f"{shown} is not a regular file")
                 data = file.read(self._file_bytes + 1)
         except OSError as error:
             raise Refused(f"{shown} cannot be read: {error.strerror}") from None

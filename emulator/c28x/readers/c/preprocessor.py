@@ -535,7 +535,7 @@ class _Preprocessor:
         elif text == "line" or name.kind == NUMBER:
             self.remarks.append(SourceRemark(name.where, "#line is ignored: places are those of this file"))
         elif text != "ident":
-            raise name.error(f"#{text[:40]} is no directive of C")
+            raise name.error(f"#{text[:40]} is not a directive of C")
 
     def _open(self, file: _OpenFile, line: list[Token]) -> None:
         name = line[1]

@@ -258,7 +258,7 @@ def _inline(first: CFile, second: CFile, name: str) -> bool:
     return True
 
 
-_NO_TYPE: Final = re.compile(r"'(\w+)' is no type")
+_NO_TYPE: Final = re.compile(r"'(\w+)' is not a type")
 
 
 def _hinted(error: SourceError) -> SourceError:

@@ -106,7 +106,7 @@ class CTypeReader:
                 return self.array(node)
             case c_ast.FuncDecl():
                 return self.prototype(node)
-        raise SourceError.at(node.coord, "this is no type")
+        raise SourceError.at(node.coord, "this is not a type")
 
     def named(self, names: list[str], where: Where) -> CType:
         """A basic type, or a typedef name."""
@@ -126,7 +126,7 @@ class CTypeReader:
             return Double64("long double")
         found = specified(words)
         if found is None:
-            raise SourceError.at(where, f"{' '.join(names)} is no type of C")
+            raise SourceError.at(where, f"{' '.join(names)} is not a type of C")
         return found
 
     def pointer(self, node: c_ast.PtrDecl) -> CType:
@@ -282,7 +282,7 @@ class CTypeReader:
             if isinstance(declaration, c_ast.Pragma):
                 continue
             if not isinstance(declaration, c_ast.Decl):
-                raise SourceError.at(declaration.coord, "this is no member")
+                raise SourceError.at(declaration.coord, "this is not a member")
             name, where = declaration.name or "", declaration.coord
             ctype = self.ctype(declaration)
             if isinstance(ctype, Prototype):

@@ -118,7 +118,8 @@ class PythonExpressionReader:
             ) if type(op) is type(inner):
                 sign = _UNARY[type(op)]
                 if self.types.text(node).startswith(2 * sign) and self.types.before(node) != sign:
-                    raise self.error(node, f"{2 * sign} is no operator here: write {shown(stepped)} {sign}= 1 before")
+                    instead = f"write {shown(stepped)} {sign}= 1 before"
+                    raise self.error(node, f"{2 * sign} is not an operator here: {instead}")
 
     def values(self, *nodes: ast.expr) -> list[Expr]:
         """The values of operands, evaluated from left to right."""

@@ -283,9 +283,9 @@ class PythonTypeReader:
             if type(op) not in _CONSTANT:
                 raise self.error(step, f"{shown(step)} is not an integer constant")
             if isinstance(op, ast.Div) and right == 0:
-                raise self.error(step, "a division by zero is no constant")
+                raise self.error(step, "a division by zero is not a constant")
             if isinstance(op, ast.LShift | ast.RShift) and not 0 <= right < 32:
-                raise self.error(step, f"a shift by {right} is no constant")
+                raise self.error(step, f"a shift by {right} is not a constant")
             value = _CONSTANT[type(op)](value, right)
             if value.bit_length() > 64:
                 raise self.error(step, "a constant that does not fit into 64 bits")

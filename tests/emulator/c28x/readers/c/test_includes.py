@@ -120,9 +120,9 @@ def test_only_regular_files_are_opened(tmp_path: Path) -> None:
     write(tmp_path, a_c='#include "pipe.h"\n', b_c='#include "folder.h"\n')
     os.mkfifo(tmp_path / "pipe.h")
     (tmp_path / "folder.h").mkdir()
-    assert refused(tmp_path / "a.c") == "DIR/a.c:1:10: DIR/pipe.h is no regular file"
-    assert refused(tmp_path / "b.c") == "DIR/b.c:1:10: DIR/folder.h is no regular file"
-    assert refused(tmp_path / "pipe.h") == "DIR/pipe.h:1: DIR/pipe.h is no regular file"
+    assert refused(tmp_path / "a.c") == "DIR/a.c:1:10: DIR/pipe.h is not a regular file"
+    assert refused(tmp_path / "b.c") == "DIR/b.c:1:10: DIR/folder.h is not a regular file"
+    assert refused(tmp_path / "pipe.h") == "DIR/pipe.h:1: DIR/pipe.h is not a regular file"
     assert "cannot be read" in refused(tmp_path / "absent.c")
 
 

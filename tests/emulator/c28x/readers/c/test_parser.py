@@ -205,7 +205,7 @@ def test_an_error_says_where_what_stands_there_and_what_was_expected(text: str, 
 )
 def test_a_type_that_is_not_known_is_named(text: str, column: int) -> None:
     assert refused(text) == (
-        f"t.c:1:{column}: 'uint33' is no type: no typedef of that name was read (is its header included?)"
+        f"t.c:1:{column}: 'uint33' is not a type: no typedef of that name was read (is its header included?)"
     )
 
 

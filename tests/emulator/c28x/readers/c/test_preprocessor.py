@@ -174,7 +174,7 @@ def test_a_second_definition_that_says_something_else_is_a_remark() -> None:
         ("#define f(a) ## a", "## needs a token on each side"),
         ("#define f a ##", "## needs a token on each side"),
         ("#define f __VA_ARGS__", "__VA_ARGS__ stands only in a macro whose parameters end in ..."),
-        ("#nonsense", "#nonsense is no directive of C"),
+        ("#nonsense", "#nonsense is not a directive of C"),
         ("#error out of order: don't", "#error out of order: don't"),
         ("#endif", "#endif without #if"),
         ("#else", "#else without #if"),

@@ -33,7 +33,7 @@ CASES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("enumerator beyond its type", "enum { A = @32767 + 1 };\n", ("A", "32767 + 1", "16", "32767L")),
     ("enumerator shifted out", "enum { A = @2 << 15 };\n", ("A", "2 << 15", "2L")),
     ("enumeration that is nowhere", "@enum nosuch x;\n", ("nosuch", "not defined")),
-    ("declaration before a body of no parameter", "int f(a) int a; int @b; { return a; }\n", ("b", "no parameter")),
+    ("declaration before a body of no parameter", "int f(a) int a; int @b; { return a; }\n", ("b", "not a parameter")),
     ("flexible array member", "struct t { int n; int @body[]; };\n", ("body", "length", "give")),
     ("variable length", body("int w[@n];", "return 0;"), ("length", "constant")),
     ("statement expression", body("return (@{ n; });"), ("{",)),
