@@ -388,6 +388,9 @@ class Connections:
         for letter, lines in SPI_PIE.items():
             if (group, n) in lines:
                 return self._no_word(letter, receive=(group, n) == lines[0])
+        for letter, lines in CAN_PIE.items():
+            if (group, n) in lines:
+                return self._no_can_line(letter, lines.index((group, n)))
         if (group, n) == (1, 7):
             return self._no_timer(0)
         if group == 4 and n <= ECAP_COUNT:
@@ -403,6 +406,14 @@ class Connections:
         register = f"Adc{letter.lower()}Regs." + ("ADCINTSEL1N2" if k < 3 else "ADCINTSEL3N4")
         if self._stuck(register, f"INT{k}E", bool):
             return Missing(f"{register}.INT{k}E = 0", register, f"INT{k}E")
+        return None
+
+    def _no_can_line(self, letter: str, line: int) -> Missing | None:
+        """Why a CAN never gives an interrupt on its line 0 or 1; None if it can."""
+        block = f"Can{letter.lower()}Regs"
+        for register, field in ((f"{block}.CAN_CTL", f"IE{line}"), (f"{block}.CAN_GLB_INT_EN", f"GLBINT{line}_EN")):
+            if self._stuck(register, field, bool):
+                return Missing(f"{register}.{field} = 0", register, field)
         return None
 
     def _no_level(self, letter: str) -> Missing | None:

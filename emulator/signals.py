@@ -13,7 +13,7 @@ from functools import partial
 from math import inf
 from typing import Final, Protocol
 
-from emulator.clock import NEVER
+from emulator.clock import NEVER, SYSCLK_HZ
 from emulator.signal import Signal
 
 
@@ -440,6 +440,19 @@ class SerialFrame:
     stop_bits: int = 1
     framing_error: bool = False
     drift: float = 1.0
+
+    def rates_differ(self, bit_cycles: float) -> str:
+        """Both speeds in words, if a receiver of `bit_cycles` a bit cannot follow the sender; else empty.
+
+        The stop bit (the tenth) is looked at 9.5 bits behind the edge that begins the frame: half a bit off there is
+        too much.  What an oscillator's drift does to the bits is no fault of the rates that were set.
+        """
+        set_cycles = self.bit_cycles / self.drift
+        stop_at = 1.5 + self.data_bits + (self.parity is not None)
+        if abs(set_cycles / bit_cycles - 1) < 0.5 / stop_at:
+            return ""
+        sent, heard = (round(SYSCLK_HZ / cycles) for cycles in (set_cycles, bit_cycles))
+        return f"a character was sent with {sent} baud, but this end receives with {heard}"
 
 
 class SerialLine:

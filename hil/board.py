@@ -354,7 +354,8 @@ class Board(System):
             if gpio not in self.serial_pins:
                 reached = ", ".join(map(str, sorted(self.serial_pins)))
                 raise ValueError(f"{name} at GPIO{gpio}: no SCI reaches it, but GPIO {reached}")
-        line = WireLink(self.clock, self.serial_pins[tx_gpio], self.serial_pins[rx_gpio], baud=baud)
+        lines = self.serial_pins[tx_gpio], self.serial_pins[rx_gpio]
+        line = WireLink(self.clock, *lines, baud=baud, report=self.reports)
         self.pc = Pc(tx_gpio, rx_gpio, baud, line)
         return self.add(name, line, pins={"RX": f"GPIO{tx_gpio}", "TX": f"GPIO{rx_gpio}"})
 

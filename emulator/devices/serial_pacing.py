@@ -86,19 +86,6 @@ class LinePacer:
         self._line.send(frame)
 
 
-def rates_differ(frame: SerialFrame, bit_cycles: float) -> str:
-    """Both speeds in words, if a receiver of `bit_cycles` a bit cannot follow the sender; else empty.
-
-    The tenth bit is looked at 9.5 bits behind the edge that begins the frame: half a bit off there is too much.
-    What an oscillator's drift does to the bits is no fault of the rates that were set.
-    """
-    set_cycles = frame.bit_cycles / frame.drift
-    if abs(set_cycles / bit_cycles - 1) < 0.5 / (FRAME_BITS - 0.5):
-        return ""
-    sent, heard = (round(SYSCLK_HZ / cycles) for cycles in (set_cycles, bit_cycles))
-    return f"a character was sent with {sent} baud, but this end receives with {heard}"
-
-
 def received(frame: SerialFrame, bit_cycles: float) -> tuple[int, bool]:
     """The byte that a receiver with its own bit time takes from a frame, and whether its stop bit was high.
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from emulator.clock import SYSCLK_HZ, Clock
-from emulator.devices.serial_pacing import LinePacer, rates_differ, received
+from emulator.devices.serial_pacing import LinePacer, received
 from emulator.signal import Signal
 from emulator.signals import SerialFrame, SerialLine
 
@@ -51,7 +51,7 @@ class WireLink:
         self._pacer.send(data)
 
     def _from_robot(self, frame: SerialFrame) -> None:
-        if self._report is not None and (rates := rates_differ(frame, self._bit_cycles)):
+        if self._report is not None and (rates := frame.rates_differ(self._bit_cycles)):
             self._report("serial-rate", f"the PC: {rates}")
         byte, stop = received(frame, self._bit_cycles)
         if stop:

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from typing import Final
 
 from emulator.clock import SYSCLK_HZ, Clock, Event
-from emulator.devices.serial_pacing import FRAME_BITS, LinePacer, rates_differ, received
+from emulator.devices.serial_pacing import FRAME_BITS, LinePacer, received
 from emulator.devices.xbee_command import CommandMode
 from emulator.devices.xbee_parameters import BAUDS, NOMINAL_BAUDS, XBeeSettings
 from emulator.devices.xbee_radio import RadioChannel
@@ -101,7 +101,7 @@ class XBeeModule:
     # From the host
 
     def _from_host(self, frame: SerialFrame) -> None:
-        if self._report is not None and (rates := rates_differ(frame, self._bit_cycles)):
+        if self._report is not None and (rates := frame.rates_differ(self._bit_cycles)):
             self._report("serial-rate", f"XBee {self.name}: {rates}")
         byte, stop = received(frame, self._bit_cycles)
         if not stop:

@@ -15,6 +15,7 @@ Sources: TRM SCI chapter; HDR F2837xS_sci.h.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Final
 
 from emulator.c28x.findings import Cause
@@ -23,6 +24,7 @@ from emulator.cpu import Cpu
 from emulator.peripherals.fifo import CHANNELS_RUN, DEPTH, ENHANCED, Fifo
 from emulator.peripherals.sci_receiver import SciReceiver
 from emulator.peripherals.sci_sampling import SAMPLES_PER_BIT, Format
+from emulator.registers.cell import Cell
 from emulator.registers.sci import SciRegs
 from emulator.signals import SerialFrame, SerialLine
 
@@ -95,6 +97,8 @@ class Sci:
         self._start = 0
         self._sent_format = self.format()
 
+        for baud in (self._hbaud, self._lbaud):
+            regs.bind(baud.name, write=partial(self._write_baud, baud))
         regs.bind("SCICCR", write=self._write_SCICCR)
         regs.bind("SCICTL1", write=self._write_SCICTL1)
         regs.bind("SCICTL2", read=self._read_SCICTL2)
@@ -130,6 +134,10 @@ class Sci:
         return own.frame_bits * int(own.bit_cycles)
 
     # --- registers -------------------------------------------------------------------------------------------------
+
+    def _write_baud(self, register: Cell, word: int, lanes: int) -> None:
+        register.store(word, lanes)
+        self._receiver.rate_set_by = self._cpu.findings.mark()
 
     def _write_SCICCR(self, word: int, lanes: int) -> None:
         self._ccr.store(word, lanes)

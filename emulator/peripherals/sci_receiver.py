@@ -70,6 +70,8 @@ class SciReceiver:
         self._blocked = False
         #: The pin is disconnected from the line.
         self.loopback = False
+        #: The statement that set the baud registers.
+        self.rate_set_by: Cause | None = None
         #: SCIRST holds the FIFO channel.
         self.channel_held = False
         #: Until then (cycles) a character that began earlier is being sampled.
@@ -136,10 +138,19 @@ class SciReceiver:
         if frame.start >= self._busy_until and matches(frame, own):
             self._deliver(frame.data, 0)
             return
+        if rates := frame.rates_differ(own.bit_cycles):
+            self._tell_rates(rates)
         hunt = max(0.0, self._busy_until - frame.start)
         for character in sample(frame_waveform(frame), own, hunt):
             self._busy_until = frame.start + character.end
             self._deliver(character.data, _errors(character))
+
+    def _tell_rates(self, rates: str) -> None:
+        """A character of another speed: told at the statement that set this end's."""
+        findings = self._cpu.findings
+        before, findings.cause = findings.cause, self.rate_set_by
+        findings.report("serial-rate", f"{self._regs.name}: {rates}", object=self._regs.registers["SCILBAUD"].path)
+        findings.cause = before
 
     # --- the line --------------------------------------------------------------------------------------------------
 

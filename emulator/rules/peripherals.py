@@ -193,8 +193,8 @@ connections are checked:
 * DAC: it gets codes and drives no pin.
 * I2C and SCI: the module stays in reset, or an interrupt needs more characters than the FIFO holds.
 * SPI: the interrupt of a direction is not enabled.
-* CAN: the controller stays in Init, a message object that is set up is never valid, nothing requests its transmission,
-  or in loopback its filter passes none of the controller's own frames.
+* CAN: an interrupt line is not enabled, the controller stays in Init, a message object that is set up is never valid,
+  nothing requests its transmission, or in loopback its filter passes none of the controller's own frames.
 * Pins: the chip itself drives a pin, and the input qualification of the pin needs longer pulses.
 
 The check is made at the end of a run. It reports a setting only if no statement of the program could set it. A program

@@ -394,6 +394,17 @@ void main(void)
     }
 }
 """
+#: Line 0 of the controller is let through to a routine, which the program may enable in two places.
+GOT = """    EALLOW;
+    PieVectTable.CANA0_INT = &got;
+    EDIS;
+    CanaRegs.{};
+    CanaRegs.{};
+    PieCtrlRegs.PIEIER9.bit.INTx5 = 1;
+    IER |= M_INT9;
+    EINT;
+    for (;;) {{
+"""
 
 
 @pytest.mark.parametrize(("was", "now", "rule", "why"), [
@@ -408,6 +419,11 @@ void main(void)
      "    CanaRegs.CAN_IF2MCTL.all = 0x0088uL;\n    CanaRegs.CAN_IF2CMD.all = 0x00B00004uL;\n    Wait();\n"
      "    CanaRegs.CAN_IF2ARB.all = 0x80000000uL | (0x77uL << 18);\n    CanaRegs.CAN_IF2CMD.all = 0x00B00005uL;\n",
      "", ""),
+    # Its interrupt goes nowhere.
+    ("    for (;;) {\n", GOT.format("CAN_GLB_INT_EN.bit.GLBINT0_EN = 1", "CAN_CTL.bit.IE0 = 1"), "", ""),
+    ("    for (;;) {\n", GOT.format("CAN_CTL.bit.IE0 = 1", "CAN_CTL.bit.IE0 = 1"), "not-connected", "GLBINT0_EN = 0"),
+    ("    for (;;) {\n", GOT.format("CAN_GLB_INT_EN.bit.GLBINT0_EN = 1", "CAN_GLB_INT_EN.bit.GLBINT0_EN = 1"),
+     "not-connected", "CAN_CTL.IE0 = 0"),
     # Whether its data are new is not asked.
     ("if (CanaRegs.CAN_NDAT_21 & 8uL) {\n            CanaRegs.CAN_IF2CMD.all = 0x00070004uL",
      "{\n            CanaRegs.CAN_IF2CMD.all = 0x00030004uL", "", ""),
@@ -415,6 +431,9 @@ void main(void)
 def test_a_can_controller_that_is_not_set_up_whole(tmp_path: Path, was: str, now: str, rule: str, why: str) -> None:
     assert not was or CAN.count(was) == 1
     text = CAN.replace(was, now) if was else CAN
+    if "&got" in now:
+        got = "interrupt void got(void) { PieCtrlRegs.PIEACK.all = PIEACK_GROUP9; }\n"
+        text = text.replace("void main", f"{got}void main")
     found = [f for name in ("not-connected", "flag-not-cleared") for f in told(tmp_path, text, name, seconds=0.01)]
     assert [f.rule for f in found] == [rule] * bool(rule)
     assert all(why in f.message and f.place is not None for f in found)

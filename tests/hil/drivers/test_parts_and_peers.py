@@ -71,6 +71,28 @@ def test_a_program_without_a_board_of_its_own_may_have_another_peer(tmp_path: Pa
     assert [finding.how for finding in found(tmp_path, serial(115200), "serial-rate")] == ["generated"]
 
 
+BOARD = """from hil.board import Board
+
+class Own(Board):
+    def solder(self):
+        line = self.to_pc(tx_gpio=89, rx_gpio=90, baud=57600)
+        self.clock.after(2_000_000, lambda: line.feed(b"hi"))
+"""
+
+
+@pytest.mark.parametrize(("baud", "told"), [(57600, False), (115200, True)])
+def test_the_chip_hears_its_own_rate_too(tmp_path: Path, baud: int, told: bool) -> None:
+    (tmp_path / "own.py").write_text(BOARD, encoding="utf-8")
+    begin, _, _ = serial(baud).partition("    for (;;)")
+    text = begin.replace("GPIO_SetupPinMux(89,", "GPIO_SetupPinMux(90, GPIO_MUX_CPU1, 6);\n    GPIO_SetupPinMux(89,")
+    text += "    for (;;) {\n    if (ScicRegs.SCIRXST.bit.RXRDY)\n        Seen = ScicRegs.SCIRXBUF.all;\n    }\n}\n"
+    (tmp_path / "drv.c").write_text(text, encoding="utf-8")
+    board = load(str(tmp_path / "own.py"))
+    checked = check_files(DriverFiles([tmp_path / "drv.c"], seconds=0.02, board=board, board_named=True))
+    places = [finding.place for finding in checked.findings if finding.rule == "serial-rate" and finding.place]
+    assert ["SCILBAUD" in text.splitlines()[place.line - 1] for place in places] == [True] * told
+
+
 def test_a_bus_of_two_wires_has_400_khz_at_most() -> None:
     ((driver, _, lines, result),) = measured(chosen("i2c-bus-faster-than-400-khz"))
     assert [(rule, "625 kHz" in text) for line, rule, text in result.told if line in lines] == [("i2c-clock", True)]
