@@ -597,6 +597,9 @@ class LeaveSwitch(Stmt):
 class FallThrough(Stmt):
     """The end of a case that goes on with the next one."""
 
+    #: The source says so, by a word of its own or a comment.
+    said: bool = field(default=True, kw_only=True, compare=False)
+
 
 @dataclass
 class Declare(Stmt):

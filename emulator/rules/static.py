@@ -87,6 +87,9 @@ In `case SLOW: speed = 100; case FAST: speed = 400; break;` a `break` is missing
 finding is made only if the next case sets the same object, member or field before anything can read the first value.
 Cases that fall through and add to each other are not reported.
 
+Without a comment that says so (`/* fall through */`) a case is reported too that calls the same as the next one again,
+and the only one of a switch without a `break` if it stores the same value in another object than the next case.
+
 **Fix:** `break`.
 """,
         "ISO C 6.8.4.2; CERT MSC17-C",

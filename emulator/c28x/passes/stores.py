@@ -8,6 +8,7 @@ may have seen the value there.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import Final
 
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.values import volatile
@@ -26,19 +27,27 @@ from emulator.c28x.tree import (
     Switch,
     Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import OBSERVABLE, bare, blocks, parts, roots, source_text, statements
+from emulator.c28x.tree_queries import OBSERVABLE, bare, blocks, calls, parts, roots, source_text, statements
 
 #: Blocks of which a second write to the same field is another event: what is sent, set, cleared or acknowledged.
 _EVENTS = ("Sci", "Spi", "I2c", "Mcb", "Can", "Usb", "Gpio", "Pie", "Lin")
+
+#: Among more cases than these that end, one that does not is an exception.
+LEAST_ENDED: Final = 2
 
 
 def check_stores(function: Function, report: StaticReport) -> None:
     """Report the stores of a function that are overwritten unseen."""
     for s in statements(function.body):
         if isinstance(s, Switch):
+            falling = [body for _, body in s.cases if len(body) > 1 and isinstance(body[-1], FallThrough)]
+            ended = sum(bool(body) and not isinstance(body[-1], FallThrough) for _, body in s.cases)
             for (_, body), (_, following) in zip(s.cases, s.cases[1:], strict=False):
-                if body and isinstance(body[-1], FallThrough):
+                if body and isinstance(end := body[-1], FallThrough):
                     _falls(function, body[:-1], following, report)
+                    if not end.said:
+                        only = len(falling) == 1 and ended > LEAST_ENDED
+                        _unsaid(function, body[:-1], following, report, only=only)
     for body in _bodies(function.body):
         for i, s in enumerate(body):
             if isinstance(s, Assign) and isinstance(s.target, LValue) and _seen_by_others(s.target):
@@ -73,6 +82,26 @@ def _falls(function: Function, body: list[Stmt], following: list[Stmt], report: 
             first = f"{_name(s)} is set to {source_text(s.value)}"
             message = f"{first}, and the next case sets it again: a break is missing"
             report.report(function, s.where, "case-falls", message, object=text)
+
+
+def _unsaid(
+    function: Function, body: list[Stmt], following: list[Stmt], report: StaticReport, *, only: bool
+) -> None:  # fmt: skip
+    """A case that falls through without a word of the source, into one that is not its continuation: it does the same
+    again, or (`only`: among many that end) the same to another object.
+    """
+    again = next((s for s in body if isinstance(s, Assign | Evaluate) and calls(s.value) and s in following), None)
+    if again is not None:
+        message = f"the next case does {source_text(again.value)} again, and no comment says so: a break is missing"
+        report.report(function, body[-1].where, "case-falls", message, object=source_text(again.value))
+        return
+    match body, following:
+        case [Assign(target=LValue() as one, value=value)], [Assign(target=LValue() as other, value=same), *_] if (
+            only and value == same and one != other and not isinstance(bare(value), Const)
+        ):
+            text = source_text(value)
+            message = f"{text} goes to {one.text}, and in the next case to {other.text}, and no comment says so: "
+            report.report(function, body[-1].where, "case-falls", message + "a break is missing", object=one.text)
 
 
 def _name(s: Assign) -> str:

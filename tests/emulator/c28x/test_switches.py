@@ -156,3 +156,54 @@ def test_a_function_of_too_many_statements_names_the_first_one_too_many() -> Non
     line, column, message = refused("int f(int a)\n{\n" + "    a = a + 1;\n" * 20_001 + "    return a;\n}\n")
     assert (line, column) == (20_003, 5)
     assert message == "f has more than 20,000 statements: write several functions"
+
+
+OBEY = """int kp, ki, stops, rests;
+int limited(int v) { return v > 100 ? 100 : v; }
+void obey(int what, int value)
+{
+    switch (what) {
+    case 'P':
+        kp = value;
+        break;
+    case 'I':
+        ki = value;
+        break;
+    case 'L':
+        kp = limited(value);
+        rests = 0;
+        break;
+    case 'R':
+        rests++;
+        kp = limited(value);
+        break;
+    default:
+        stops++;
+        break;
+    }
+}
+"""
+
+
+@pytest.mark.parametrize(("was", "now", "line"), [
+    ("", "", 0),
+    # The one case of many without a break, and it does what the next one does to another object.
+    ("kp = value;\n        break;", "kp = value;", 7),
+    # The next case calls the same again.
+    ("rests = 0;\n        break;", "rests = 0;", 14),
+    # A comment says so; the value is another one; another case goes on too; nothing is done twice.
+    ("kp = value;\n        break;", "kp = value;\n        /* falls through */", 0),
+    ("kp = value;\n        break;", "kp = value; // no break", 0),
+    ("rests = 0;\n        break;", "rests = 0; /* fallthrough */", 0),
+    ("kp = value;\n        break;", "kp = 2 * value;", 0),
+    ("kp = limited(value);\n        rests = 0;\n        break;", "kp++;", 0),
+])  # fmt: skip
+def test_a_case_that_goes_on_without_a_word(was: str, now: str, line: int) -> None:
+    assert not was or OBEY.count(was) == 1
+    findings = findings_of(OBEY.replace(was, now) if was else OBEY)
+    assert [found for found in findings if found[0] == "case-falls"] == [("case-falls", line)] * bool(line)
+
+
+def test_several_cases_that_go_on_add_up() -> None:
+    text = OBEY.replace("kp = value;\n        break;", "kp = value;").replace("ki = value;\n        break;", "ki++;")
+    assert "case-falls" not in {rule for rule, _ in findings_of(text)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import partial
 from typing import Any, Final, Protocol
@@ -31,6 +32,8 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import leaves, parts
 
+#: What a comment says of a case that goes on with the next one, as compilers and people write it.
+_FALLS: Final = re.compile(r"(?i)(//|/\*).*(fall|thro?ugh|no\W*break|drops|goes on|next case)")
 _STEPS: Final = {"p++": 1, "++": 1, "p--": -1, "--": -1}
 
 
@@ -337,12 +340,13 @@ class CStatementReader:
                 labels = []
         if labels is None or labels:  # labels at the very end have nothing to do
             groups.append((labels, [], items[-1].coord))
-        return [self.case(*group, last=i == len(groups) - 1) for i, group in enumerate(groups)]
+        behind = [where for _, _, where in groups[1:]]
+        return [self.case(*group, behind=next_) for group, next_ in zip(groups, [*behind, None], strict=True)]
 
     def case(
-        self, labels: list[int] | None, statements: list[Any], where: Where, *, last: bool
+        self, labels: list[int] | None, statements: list[Any], where: Where, *, behind: Where | None
     ) -> tuple[list[int] | None, list[Stmt]]:  # fmt: skip
-        """One case: a `break` at its end is its end; without one it falls through."""
+        """One case: a `break` at its end is its end; without one it falls through to the case `behind`."""
         b = self.b
         ended = False
         with b.aside() as body:
@@ -354,10 +358,20 @@ class CStatementReader:
                     ended = self.block_case(statement)
                 else:
                     self.statement(statement)
-        if not last and not ended and not leaves(body) and not (body and isinstance(body[-1], LeaveSwitch)):
+        if behind is not None and not ended and not leaves(body) and not (body and isinstance(body[-1], LeaveSwitch)):
             end = statements[-1].coord if statements else where
-            body.append(FallThrough(end))
+            body.append(FallThrough(end, said=self.falls(end, behind)))
         return labels, body
+
+    def falls(self, end: Where, behind: Where) -> bool:
+        """Whether a comment between the end of a case and the next one says that it falls through.
+
+        CHOICE: unknown text, a header's or a macro's, is taken to say so.
+        """
+        module = self.b.module
+        if end.file != module.file or behind.file != module.file or end.macro or behind.macro:
+            return True
+        return _FALLS.search("\n".join(module.text.splitlines()[end.line - 1 : behind.line])) is not None
 
     def block_case(self, node: c_ast.Compound) -> bool:
         """`case 1: { ... break; }`: whether the block ends with a `break`."""
