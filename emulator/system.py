@@ -49,7 +49,7 @@ class System(Chip):
         self.kernel = Kernel(
             self.clock, self.cpu, self.findings, self.trace, pie_set_vector=self.pie.set_vector,
             pie_enable=self._pie_enable, pie_acknowledge=self._pie_acknowledge, start_tick=self._start_tick,
-            stack_memory=self.memory, memory=self.memory, string_at=self.memory.string_at,
+            memory=self.memory, string_at=self.memory.string_at,
             cost_scale=kernel_cost_scale, heap_words=heap_words, start_up=self._start_up,
         )  # fmt: skip
 

@@ -44,7 +44,7 @@ from emulator.sysbios.memory import MemoryModule
 from emulator.sysbios.queue import QueueModule
 from emulator.sysbios.scheduler import Task
 from emulator.sysbios.semaphore import Semaphore, SemaphoreModule
-from emulator.sysbios.stack import SYSTEM_STACK_INIT, StackMemory, StackSpace
+from emulator.sysbios.stack import SYSTEM_STACK_INIT, StackSpace
 from emulator.sysbios.swi import Swi
 from emulator.sysbios.system import SystemModule
 from emulator.sysbios.task import TaskModule
@@ -89,7 +89,6 @@ class Kernel:
         pie_enable: Callable[[int, bool], bool],
         pie_acknowledge: Callable[[int], None],
         start_tick: StartTick,
-        stack_memory: StackMemory | None = None,
         memory: Memory | None = None,
         string_at: Callable[[int], str | None] = lambda address: None,
         task_stack_base: int = 0x8000,
@@ -112,7 +111,7 @@ class Kernel:
         base, words = system_stack
         stack = (base, base + words)
         self.tasks = TaskModule(
-            core, StackSpace(core, task_stack_base, stack_memory, check=check_stacks), system_stack=stack,
+            core, StackSpace(core, task_stack_base, memory, check=check_stacks), system_stack=stack,
             object_base=task_object_base, fail=self._fail, exit_program=self._exit, host=self._falls_back_to,
             # The idle task is a static one: it is counted before main begins.
             vital_tasks=int(idle_vital), timeout_mask=0xFFFF if narrow_timeouts else 0xFFFFFFFF,
@@ -173,8 +172,8 @@ class Kernel:
         #: Told once by `shutdown`, before the tasks are ended: what only the end of a run shows is looked at then.
         self.ending: Signal[[]] = Signal()
         self._ended = False
-        if stack_memory is not None:
-            stack_memory.fill(base, words, SYSTEM_STACK_INIT)
+        if memory is not None:
+            memory.fill(base, words, SYSTEM_STACK_INIT)
         clock.serve_with(self._attention)
 
     def _externs(self) -> dict[str, Function]:

@@ -12,8 +12,9 @@ Sources
 
 from __future__ import annotations
 
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
+from emulator.c28x.memory import Memory
 from emulator.cpu import INTERRUPT_CONTEXT_WORDS
 from emulator.sysbios.core import KernelCore, KernelError
 
@@ -34,23 +35,6 @@ INTERRUPT_ROOM: Final = INTERRUPT_CONTEXT_WORDS + DISPATCHER_WORDS
 REGISTER_WORDS: Final = 14
 #: CHOICE: a code address in the initial frame reads as the start of flash.
 CODE_ADDRESS_HIGH: Final = 0x0008
-
-
-class StackMemory(Protocol):
-    """What the stacks need of the C memory."""
-
-    #: Words that belong to no object, and the locals of functions that run.
-    words: dict[int, int]
-    live_locals: list[Any]
-
-    def find(self, addr: int) -> Any:
-        """The object that covers an address, or None."""
-
-    def read_word(self, addr: int) -> int:
-        """The word at an address."""
-
-    def fill(self, base: int, words: int, value: int) -> None:
-        """Set `words` words."""
 
 
 class Stack:
@@ -74,7 +58,7 @@ class Stack:
 class StackSpace:
     """Hands out stacks and checks them."""
 
-    def __init__(self, core: KernelCore, base: int, memory: StackMemory | None, *, check: bool) -> None:
+    def __init__(self, core: KernelCore, base: int, memory: Memory | None, *, check: bool) -> None:
         self._core = core
         self._memory = memory
         self._next = base
@@ -120,7 +104,7 @@ class StackSpace:
             self._freed.append((stack.base, stack.words))
 
     @staticmethod
-    def _fill(memory: StackMemory, base: int, words: int, arguments: tuple[int, int]) -> None:
+    def _fill(memory: Memory, base: int, words: int, arguments: tuple[int, int]) -> None:
         memory.fill(base, words, STACK_INIT)
         if words < REGISTERS_AT + REGISTER_WORDS:
             return

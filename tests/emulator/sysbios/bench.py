@@ -90,25 +90,6 @@ def string(text: str) -> Buffer:
     return Buffer([ord(c) for c in text] + [0])
 
 
-class Words:
-    """Stack memory."""
-
-    def __init__(self) -> None:
-        self.words: dict[int, int] = {}
-        self.live_locals: list[Any] = []
-
-    def find(self, addr: int) -> Any:
-        """No object lives here."""
-        return None
-
-    def read_word(self, addr: int) -> int:
-        return self.words.get(addr, 0)
-
-    def fill(self, base: int, words: int, value: int) -> None:
-        for addr in range(base, base + words):
-            self.words[addr] = value
-
-
 class Pie:
     """What the kernel asks of the PIE."""
 

@@ -85,7 +85,7 @@ class CProgram:
 
     def __init__(self, text: str, *, watch: bool = True, **switches: Any) -> None:
         memory = Memory()
-        self.bench = b = Bench(cost_scale=1.0, stack_memory=memory, memory=memory, **switches)
+        self.bench = b = Bench(cost_scale=1.0, memory=memory, **switches)
         self.findings = b.findings
         runtime = Runtime(b.clock, b.cpu, b.findings, memory)
         rts = Rts(runtime)

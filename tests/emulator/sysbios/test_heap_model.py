@@ -44,7 +44,7 @@ class Model:
 
 def machine() -> tuple[Bench, Memory]:
     memory = Memory()
-    return Bench(memory=memory, stack_memory=memory, heap_words=WORDS), memory
+    return Bench(memory=memory, heap_words=WORDS), memory
 
 
 #: An allocation: function, words, alignment (0 is the default).  Or the number of a block to give back, or to resize.

@@ -6,8 +6,12 @@ from typing import Any
 
 import pytest
 
+from emulator.c28x.ctypes import UINT, ArrayType
+from emulator.c28x.memory import Memory, Object
+from emulator.c28x.tree import Declaration
 from emulator.sysbios.core import KernelError
-from tests.emulator.sysbios.bench import TICK, Bench, Struct, Words
+from emulator.sysbios.stack import DEFAULT_WORDS
+from tests.emulator.sysbios.bench import TICK, Bench, Struct
 
 
 def idle_task(_a: int, _b: int) -> None:
@@ -15,8 +19,8 @@ def idle_task(_a: int, _b: int) -> None:
 
 
 def test_stacks_are_consecutive_even_and_filled_with_00be() -> None:
-    words = Words()
-    b = Bench(stack_memory=words)
+    words = Memory()
+    b = Bench(memory=words)
     made: list[Any] = []
     b.boot(lambda: made.extend(b.task(idle_task, 1, stackSize=n, arg0=0x12345678, arg1=3) for n in (255, 512, 0)))
     # 255 words are rounded up to 256; 0 means the default of 256.
@@ -98,8 +102,8 @@ def test_a_given_stack_is_used_and_cut_to_even_words() -> None:
 
 
 def test_a_lost_top_word_is_an_overflow_at_the_next_switch() -> None:
-    words = Words()
-    b = Bench(stack_memory=words)
+    words = Memory()
+    b = Bench(memory=words)
 
     def task(_a: int, _b: int) -> None:
         words.words[0x80FF] = 0x1234
@@ -118,8 +122,8 @@ def test_a_lost_top_word_is_an_overflow_at_the_next_switch() -> None:
 
 
 def test_a_top_word_overwritten_with_its_own_fill_goes_unnoticed() -> None:
-    words = Words()
-    b = Bench(stack_memory=words)
+    words = Memory()
+    b = Bench(memory=words)
 
     def task(_a: int, _b: int) -> None:
         words.words[0x80FF] = 190
@@ -184,8 +188,8 @@ def test_params_without_init_are_noticed() -> None:
 
 
 def test_used_words_count_from_the_highest_touched_word() -> None:
-    words = Words()
-    b = Bench(stack_memory=words)
+    words = Memory()
+    b = Bench(memory=words)
     made: list[Any] = []
     b.boot(lambda: made.append(b.task(idle_task, 1)))
     stacks = b.kernel.tasks.stacks
@@ -194,27 +198,21 @@ def test_used_words_count_from_the_highest_touched_word() -> None:
     assert stacks.used(made[0].stack) == 0x51
 
 
-class Local:
-    """A local whose address was taken: the memory asks it, not the plain words."""
-
-    def __init__(self, base: int, words: int) -> None:
-        self.base, self.words = base, words
+def two_words(base: int) -> Object:
+    """An object of two words that hold something else than the fill."""
+    return Object(Declaration("buffer", ArrayType("uint16 [2]", UINT, 2), "", "", 0), base, [0x1234, 0x1234])
 
 
 @pytest.mark.parametrize(("base", "covers"), [(0x80FE, True), (0x80FF, True), (0x80FD, False), (0x8100, False)])
 def test_a_local_on_the_top_word_is_what_the_check_reads(base: int, covers: bool) -> None:
     """The top word of 0x8000..0x80FF is 0x80FF; a local of two words covers it from 0x80FE and from 0x80FF."""
 
-    class Covered(Words):
-        def read_word(self, addr: int) -> int:
-            return 0x1234 if self.live_locals and addr == 0x80FF else super().read_word(addr)
-
-    words = Covered()
-    b = Bench(stack_memory=words)
+    words = Memory()
+    b = Bench(memory=words)
 
     def task(_a: int, _b: int) -> None:
         b.kernel.Task_sleep(1)
-        words.live_locals.append(Local(base, 2))
+        words.live_locals.append(two_words(base))
         b.kernel.Task_sleep(1)
         b.note("not seen")
 
@@ -228,14 +226,9 @@ def test_a_local_on_the_top_word_is_what_the_check_reads(base: int, covers: bool
 
 
 def test_an_object_of_the_linker_on_the_top_word_is_what_the_check_reads() -> None:
-    class Placed(Words):
-        def find(self, addr: int) -> Any:
-            return Local(0x80FE, 2) if 0x80FE <= addr < 0x8100 else None
-
-        def read_word(self, addr: int) -> int:
-            return 0x1234 if self.find(addr) is not None else super().read_word(addr)
-
-    b = Bench(stack_memory=Placed())
+    memory = Memory()
+    placed = memory.place(two_words(0).declaration, data=[0x1234, 0x1234])
+    b = Bench(memory=memory, task_stack_base=placed.base + placed.words - DEFAULT_WORDS)
 
     def task(_a: int, _b: int) -> None:
         b.kernel.Task_sleep(1)

@@ -65,7 +65,7 @@ def main() -> void:
 
 def test_a_task_released_by_a_clock_runs_as_written() -> None:
     memory = Memory()
-    b = Bench(cost_scale=1.0, stack_memory=memory)
+    b = Bench(cost_scale=1.0, memory=memory)
     b.listen()
     runtime = Runtime(b.clock, b.cpu, b.findings, memory)
     program = Program()

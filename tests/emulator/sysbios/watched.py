@@ -117,7 +117,7 @@ class Watched(_Found):
 
     def __init__(self, source: str, *, watch: bool = True) -> None:
         memory = Memory()
-        self.bench = b = Bench(cost_scale=1.0, stack_memory=memory)
+        self.bench = b = Bench(cost_scale=1.0, memory=memory)
         b.listen()
         self.events = b.events
         self.findings = b.findings
