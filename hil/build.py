@@ -203,6 +203,9 @@ def _compile(extensions: list[Any], work: Path, made: Path, progress: Callable[[
 
     class SideBySide(build_ext):
         def build_extensions(self) -> None:
+            if self.compiler.compiler_type == "unix":
+                for extension in extensions:  # else a product and a sum become one operation where there is one (ARM)
+                    extension.extra_compile_args.append("-ffp-contract=off")
             _build_extensions(self, progress)
 
     command = SideBySide(Distribution({"name": GROUP, "ext_modules": extensions}))

@@ -23,8 +23,14 @@ _CELL: Final = memoryview(bytearray(4)).cast("f")
 def f32(value: float) -> float:
     """`value` rounded to float32, nearest even, denormals flushed to +0 (the sign of a flushed zero: CHOICE).
 
-    The cell is scratch: it carries nothing from one call to the next.  `TINY` is spelt out, which saves its look-up.
+    Veltkamp's splitting (Dekker, Numerische Mathematik 18, 1971) with 2**29 + 1 leaves 24 of a double's 53 bits: three
+    operations of the machine.  Near zero and near overflow, and for what is no number, C's own conversion decides, in a
+    cell that carries nothing from one call to the next.  Constants are spelt out, which saves their look-up.
     """
+    spread = value * 536870913.0
+    rounded = spread - (spread - value)
+    if 2.0**-125 <= rounded < 2.0**128 or -(2.0**128) < rounded <= -(2.0**-125):
+        return rounded
     _CELL[0] = value
     rounded = _CELL[0]
     if rounded >= 2.0**-126 or not rounded:

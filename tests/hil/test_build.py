@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -139,6 +140,22 @@ def test_without_a_c_compiler_nothing_is_translated_and_the_build_before_stays(
     assert "\n" not in str(told.value)
     assert compiled.look(store_of(tree), tree)[0] == "fresh"
     assert [each.name for each in store_of(tree).parent.iterdir()] == [store_of(tree).name]
+
+
+def test_no_compiler_makes_one_operation_of_a_product_and_a_sum(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the machine has such an operation it rounds once: other bytes than Python's."""
+    setuptools = pytest.importorskip("setuptools", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
+    seen: list[tuple[str, list[str]]] = []
+
+    def seen_by(command: Any, _progress: object) -> None:
+        seen.extend((command.compiler.compiler_type, each.extra_compile_args) for each in command.extensions)
+
+    monkeypatch.setattr(build, "_build_extensions", seen_by)
+    build._compile([setuptools.Extension("one", ["one.c"])], tmp_path, tmp_path / "made", lambda fraction: None)
+    ((kind, options),) = seen
+    assert kind != "unix" or "-ffp-contract=off" in options
 
 
 def test_why_lists_every_function_that_is_not_compiled_each_with_its_reason(

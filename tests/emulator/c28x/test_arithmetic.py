@@ -37,6 +37,13 @@ def test_f32_rounds_like_numpy_and_flushes_denormals(x: float) -> None:
     assert numpy_f32(x) == f32(x)
 
 
+@given(st.integers(1 << 23, (1 << 24) - 1), st.integers(-155, 105), st.integers(-2, 2), st.sampled_from([-1, 1]))
+def test_f32_halfway_between_two_float32_is_the_even_one(mantissa: int, exponent: int, beside: int, sign: int) -> None:
+    """And on either side of the middle the nearer one, from denormals to overflow."""
+    x = sign * math.ldexp((2 * mantissa + 1 << 28) + beside, exponent - 29)
+    assert numpy_f32(x) == f32(x)
+
+
 def test_f32_keeps_nan_and_infinity() -> None:
     assert math.isnan(f32(math.nan))
     assert f32(1e300) == math.inf
