@@ -51,25 +51,18 @@ def soak(
             TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed:.0f} of {task.total:.0f} s"),
             console=terminal, transient=True, disable=json_output or not terminal.is_terminal,
         )  # fmt: skip
-        ended = False
-
-        def end() -> None:
-            nonlocal ended
-            ended = True
-
-        with bar, show.ended_by_signals(end):
+        with bar:
             task = bar.add_task("soak", total=for_s)
 
-            def told(soaked: Soaked) -> bool:
+            def told(soaked: Soaked) -> None:
                 bar.update(task, completed=soaked.seconds, description=f"{sum(soaked.mounted.values())} faults")
-                return not ended
 
-            soaked = run(for_s, seed=seed, fixes=() if faithful else ("all",), world=world, go_on=told)
+            soaked = run(for_s, seed=seed, fixes=() if faithful else ("all",), world=world, told=told)
         if json_output:
             show.print_json(soaked.as_dict())
         else:
             _print(soaked)
-    if ended:
+    if soaked.interrupted:
         raise typer.Exit(EXIT_INTERRUPTED)
 
 

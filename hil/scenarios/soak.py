@@ -67,6 +67,8 @@ class Soaked:
     switched_on: int = 0
     #: (time, objects of Python after a collection), every EVERY_S.
     objects: list[tuple[float, int]] = field(default_factory=list)
+    #: Whether Ctrl-C ended it.
+    interrupted: bool = False
     #: Of all bytes and of all kernel events, over every time that it was switched on.
     uart_sha256: str = ""
     trace_sha256: str = ""
@@ -85,21 +87,21 @@ class Soaked:
 
 def soak(
     most_s: float, *, seed: int = 1, fixes: tuple[str, ...] = ("all",), world: str = WORLD, xbee: bool = True,
-    go_on: Callable[[Soaked], bool] = lambda soaked: True,
+    told: Callable[[Soaked], object] = lambda soaked: None,
 ) -> Soaked:  # fmt: skip
-    """Let a robot drive for so much virtual time, as long as `go_on`, which is asked after each round.
+    """Let a robot drive for so much virtual time, or until Ctrl-C.  `told` hears after each round how it stands.
 
     The same arguments give the same result, to the byte.  Raises ValueError for a setup that there is not; what this
     tool does wrong comes through.
     """
-    return _Soak(Setup(world=world, seed=seed, fixes=fixes, xbee=xbee), most_s, go_on).run()
+    return _Soak(Setup(world=world, seed=seed, fixes=fixes, xbee=xbee), most_s, told).run()
 
 
 class _Soak:
-    def __init__(self, setup: Setup, most_s: float, go_on: Callable[[Soaked], bool]) -> None:
+    def __init__(self, setup: Setup, most_s: float, tell: Callable[[Soaked], object]) -> None:
         self._setup = setup
         self._most_s = most_s
-        self._go_on = go_on
+        self._tell = tell
         self._over = False
         self._next_count_s = EVERY_S
         self._rng = Random(f"{setup.seed}:soak")
@@ -109,11 +111,14 @@ class _Soak:
     def run(self) -> Soaked:
         """Until the time is over."""
         told, setup = self._told, self._setup
-        while not self._over:
-            told.switched_on += 1
-            self._until_it_is_switched_off(setup)
-            # Another robot: its noise is not the same again.
-            setup = replace(setup, seed=setup.seed + 1)
+        try:
+            while not self._over:
+                told.switched_on += 1
+                self._until_it_is_switched_off(setup)
+                # Another robot: its noise is not the same again.
+                setup = replace(setup, seed=setup.seed + 1)
+        except KeyboardInterrupt:
+            told.interrupted = True
         told.uart_sha256, told.trace_sha256 = self._uart.hexdigest(), self._trace.hexdigest()
         return told
 
@@ -129,10 +134,14 @@ class _Soak:
                 back = self._round(bench)
                 told.seconds = before_s + seconds(bench.clock.now)
                 self._count_objects()
-                self._over = told.seconds >= self._most_s or not self._go_on(told)
+                self._over = told.seconds >= self._most_s
+                self._tell(told)
         except FirmwareStopped as reason:
             told.seconds = before_s + seconds(bench.clock.now)
             told.ended.append(f"{told.seconds:.3f} s: {reason}")
+        except KeyboardInterrupt:
+            told.seconds = before_s + seconds(bench.clock.now)
+            told.interrupted = self._over = True
         finally:
             bench.close()
         told.travelled_m += bench.world.travelled_m

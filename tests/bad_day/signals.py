@@ -25,7 +25,8 @@ COMMANDS = (
     ("campaign", "--runs", "50"), ("campaign", "--runs", "50", "--faithful", "--jobs", "1"),
     ("scenario", "--shipped", "--jobs", "2"), ("run", "--no-port", "--pace", "max", "--page", "run.html"),
     ("run", "--no-port", "--pace", "max", "--order", "mission", "--plot", "run.gif"),
-    ("faults", "--table"), ("scenario", "--shipped"), ("tune",), ("compare-filters",), ("calibrate",), ("explain",),
+    ("faults", "--table"), ("scenario", "--shipped"), ("tune",), ("compare-filters",), ("calibrate", "--emulate"),
+    ("explain",),
     ("run", "--view", "--view-port", "0", "--no-open"),
 )  # fmt: skip
 #: Says when Python itself has started: before that, a signal is Python's to tell.
@@ -77,7 +78,7 @@ def case(seed: int) -> str:
         if alone:
             os.close(nobody)
         begun_s = _cpu_s(process.pid)
-        process.send_signal(number)
+        os.kill(process.pid, number)  # Popen would reap one that has ended, and `wait4` asks what it has used
         signal.signal(signal.SIGALRM, lambda *_: process.kill())
         signal.setitimer(signal.ITIMER_REAL, PATIENCE_S)
         _, waited, used = os.wait4(process.pid, 0)

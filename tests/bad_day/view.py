@@ -164,9 +164,18 @@ class _Visit:
         return self
 
     async def fed(self) -> bool:
-        """Whether it is drawn anew again and again, rather than to be loaded anew, or nothing for a minute."""
+        """Whether it is drawn again and again, rather than nothing for a minute.
+
+        A page that is asked to be loaded anew is, as by a browser: a slow computer has given it up before it came.
+        """
         with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(self._known.wait(), 60)
+            async with asyncio.timeout(PATIENCE_S):
+                await self._known.wait()
+                while self._updates < 3 and self.status == 200:
+                    await self.end()
+                    self._known.clear()
+                    await self.begin()
+                    await self._known.wait()
         return self._updates >= 3
 
     def _updated(self, _elements: object) -> None:

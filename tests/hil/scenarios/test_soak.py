@@ -17,7 +17,7 @@ from hil.faults import Fault, mount
 from hil.faults.all import FAULTS
 from hil.faults.kinds import FaultKind
 from hil.machine import Setup
-from hil.scenarios.soak import _value, soak
+from hil.scenarios.soak import Soaked, _value, soak
 
 
 @pytest.fixture(scope="module")
@@ -56,10 +56,15 @@ def test_a_robot_that_does_not_come_back_is_switched_off_and_on(tmp_path: Path) 
     assert told.switched_on > 1
 
 
-def test_it_ends_when_it_is_told_to(capsys: pytest.CaptureFixture[str]) -> None:
-    told = soak(1e6, seed=1, go_on=lambda soaked: sum(soaked.mounted.values()) < 1)
+def test_an_interrupted_one_tells_what_it_has(capsys: pytest.CaptureFixture[str]) -> None:
+    def ctrl_c(_soaked: Soaked) -> None:
+        raise KeyboardInterrupt
+
+    told = soak(1e6, seed=1, told=ctrl_c)
+    assert told.interrupted
     assert sum(told.mounted.values()) == 1
-    assert told.seconds < 60
+    assert 0 < told.seconds < 60
+    assert told.travelled_m > 0
     assert invoke(["soak", "--for", "5", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["seconds"] > 5
 
