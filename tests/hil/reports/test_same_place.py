@@ -226,8 +226,10 @@ def test_a_finding_of_a_driver_has_one_place_in_all_commands(
     assert expected <= of_sarif(Path("tests.sarif"))
 
 
-def test_the_view_shows_a_finding_where_all_others_do() -> None:
+def test_the_view_and_the_console_show_a_finding_where_all_others_do() -> None:
     pytest.importorskip("nicegui")
+    pytest.importorskip("textual")
+    from hil.terminal.findings import _row
     from hil.view.findings_panel import row_of
 
     bench = Bench("corridor", seed=1)
@@ -237,3 +239,5 @@ def test_the_view_shows_a_finding_where_all_others_do() -> None:
         (told,) = of_json([finding_of(finding) | {"how": "dynamic"}])
         _, what, where, _ = row_of(finding).cells
         assert (what.text, what.more, f"{where.text} ({where.title})") == row(told)
+        _, rule, *_, place = (cell.plain for cell in _row(finding))
+        assert (rule, told.object, place) == row(told)
