@@ -344,6 +344,7 @@ class Chip:
             self.clock, self.cpu, self._block(name, SpiRegs), bus, *self._interrupts(name),
             select=self.crossbar.level_out(PIN_FUNCTIONS[f"SPISTE{letter}"], bus.name, 1),
             lspclk_divider=self._lspclk,
+            held=partial(self.pie.flag_left, *SPI_PIE[letter][0], f"{name}.SPIFFRX.RXFFINT"),
         )  # fmt: skip
         self.sysctrl.dividers_changed.connect(spi.clock_changed)
         return spi
@@ -389,6 +390,7 @@ class Chip:
         return Sci(
             self.clock, self.cpu, self._block(name, SciRegs), tx, rx, *self._interrupts(name),
             lspclk_divider=self._lspclk,
+            held=partial(self.pie.flag_left, *SCI_PIE[letter][0], f"{name}.SCIFFRX.RXFFINT"),
         )  # fmt: skip
 
     def _xint(self, n: int) -> Xint:
@@ -489,6 +491,7 @@ class Chip:
         eqep = EQep(
             self.clock, self.cpu, self._block(name, EQepRegs), inside, *self._interrupts(name),
             error=partial(self._eqep_error, n),
+            held=partial(self.pie.flag_left, *BLOCKS[name].pie[0], f"{name}.QFLG.INT", at_once=True),
         )  # fmt: skip
         self.crossbar.level_in(PIN_FUNCTIONS[f"EQEP{n}I"], eqep.index_level)
         self.crossbar.level_in(PIN_FUNCTIONS[f"EQEP{n}S"], eqep.strobe_level)

@@ -67,7 +67,7 @@ class ECap:
     def __init__(self, clock: Clock, cpu: Cpu, regs: ECapRegs, interrupt: Callable[[], None], *,
                  listen: Callable[[bool], None] = lambda _on: None,
                  sync_out: Callable[[], None] = lambda: None,
-                 held: Callable[[], None] = lambda: None) -> None:  # fmt: skip
+                 held: Callable[[], object] = lambda: None) -> None:  # fmt: skip
         self._clock, self._findings, self._regs = clock, cpu.findings, regs
         self._interrupt, self._listen, self._sync_out, self._held = interrupt, listen, sync_out, held
         registers = regs.registers

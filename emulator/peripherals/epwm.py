@@ -65,10 +65,10 @@ class EPwm:
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs, output_a: PwmWire, output_b: PwmWire, *, number: int,
                  interrupt: Callable[[], None], soc_a: Callable[[], None], soc_b: Callable[[], None],
-                 trip_interrupt: Callable[[], None] = lambda: None, trip_held: Callable[[], None] = lambda: None,
+                 trip_interrupt: Callable[[], None] = lambda: None, trip_held: Callable[[], object] = lambda: None,
                  trip_listen: Callable[[int, bool], None] = lambda _n, _on: None,
                  tripin_listen: Callable[[int, bool], None] = lambda _n, _on: None,
-                 held: Callable[[], None] = lambda: None, epwmclk_divider: Callable[[], int] = lambda: 2,
+                 held: Callable[[], object] = lambda: None, epwmclk_divider: Callable[[], int] = lambda: 2,
                  stopped_loads: bool = True) -> None:  # fmt: skip
         self.clock = clock
         self.cpu = cpu

@@ -58,7 +58,7 @@ class EventTrigger:
 
     def __init__(self, clock: Clock, regs: EPwmRegs, time_base: TimeBase,
                  phases: Callable[[], dict[str, Phases]], interrupt: Callable[[], None],
-                 held: Callable[[], None], soc_a: Callable[[], None], soc_b: Callable[[], None]) -> None:  # fmt: skip
+                 held: Callable[[], object], soc_a: Callable[[], None], soc_b: Callable[[], None]) -> None:  # fmt: skip
         """`held()` is called at an event that ETFLG.INT keeps from being an interrupt."""
         self._clock = clock
         self._held = held

@@ -62,7 +62,7 @@ class TripZone:
 
     def __init__(self, clock: Clock, regs: EPwmRegs, changed: Callable[[], None], interrupt: Callable[[], None],
                  next_point: Callable[[int], int | None], listen: Callable[[int, bool], None],
-                 held: Callable[[], None] = lambda: None,
+                 held: Callable[[], object] = lambda: None,
                  stale: Callable[[], None] = lambda: None) -> None:  # fmt: skip
         self._clock, self._held, self._stale = clock, held, stale
         self._regs = regs

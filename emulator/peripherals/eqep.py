@@ -47,7 +47,7 @@ class EQep:
     `interrupt` is pulsed on the module's PIE line; `error(on)` tells when QFLG.PHE is set and cleared.
     `unit_period_extra` is added to QUPRD for the length of a unit: CHOICE: 0, so that QUPRD = 2,000,000 is 100 Hz as in
     TI's examples; whether silicon adds 1 is unconfirmed.  `sticky_direction_error` is the CHOICE of `Capture` what a
-    change of direction spoils.
+    change of direction spoils.  `held()`: events come while QFLG.INT stands; whether somebody tells who left it.
     """
 
     __slots__ = (
@@ -58,7 +58,8 @@ class EQep:
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EQepRegs, quadrature: QuadratureWire,
                  interrupt: Callable[[], None], *, error: Callable[[bool], None] = lambda _on: None,
-                 unit_period_extra: int = 0, sticky_direction_error: bool = False) -> None:  # fmt: skip
+                 unit_period_extra: int = 0, sticky_direction_error: bool = False,
+                 held: Callable[[], bool] = lambda: False) -> None:  # fmt: skip
         self.clock = clock
         self.cpu = cpu
         self.regs = regs
@@ -75,7 +76,7 @@ class EQep:
         # `sync` is looked up at each call: the plant sets it after the chip is built.
         self._watchdog = EqepWatchdog(clock, regs, lambda: quadrature.sync(), lambda: self._raise(QFLG.WTO.mask))
         self._capture = Capture(clock, regs, lambda: quadrature.sync(), sticky=sticky_direction_error)
-        self._doubts = EQepDoubts(cpu, regs, quadrature)
+        self._doubts = EQepDoubts(cpu, regs, quadrature, held)
         quadrature.moved.connect(self._on_edges)
         quadrature.clashed.connect(self._on_clash)
         self.reset()

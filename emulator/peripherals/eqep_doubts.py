@@ -5,6 +5,7 @@ Part of `eqep.py`.  Nothing here changes what a register reads.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Final
 
 from emulator.cpu import Cpu
@@ -19,10 +20,12 @@ _UNIT_RUNS: Final = QEPCTL.UTE.mask | QEPCTL.QPEN.mask
 class EQepDoubts:
     """The findings of one module."""
 
-    __slots__ = ("_cpu", "_quadrature", "_regs", "_seen", "_stale", "_unserved")
+    __slots__ = ("_cpu", "_held", "_quadrature", "_regs", "_seen", "_stale", "_unserved")
 
-    def __init__(self, cpu: Cpu, regs: EQepRegs, quadrature: QuadratureWire) -> None:
-        self._cpu, self._regs, self._quadrature = cpu, regs, quadrature
+    def __init__(
+        self, cpu: Cpu, regs: EQepRegs, quadrature: QuadratureWire, held: Callable[[], bool] = lambda: False
+    ) -> None:
+        self._cpu, self._regs, self._quadrature, self._held = cpu, regs, quadrature, held
         self.cleared(_INT | _UTO)
 
     def cleared(self, flags: int) -> None:
@@ -88,9 +91,11 @@ class EQepDoubts:
         self._seen = True
 
     def event(self, flags: int) -> None:
-        """Events of `flags`, enabled in QEINT, came while QFLG.INT was set.  The second in a row is reported."""
+        """Events of `flags`, enabled in QEINT, came while QFLG.INT was set.  The second in a row is reported, unless
+        `held()` knows the routine that left it.
+        """
         self._unserved += 1
-        if self._unserved > 1:
+        if self._unserved > 1 and not self._held():
             path = f"{self._regs.name}.QFLG.INT"
             self._cpu.findings.report(
                 "flag-not-cleared",

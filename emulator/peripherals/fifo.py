@@ -44,14 +44,19 @@ class Fifo:
     """One direction.  `receive` decides between "at least" and "at most" for the interrupt level.
 
     `fresh`: a flag that was set while it was not enabled gives its interrupt only while its level still holds.
+    `held()`: a word has come at the level, and gives no interrupt because the flag of the last one still stands.
     """
 
     __slots__ = (
-        "_fresh", "_interrupt", "_line", "_receive", "_register", "_taken", "enabled", "requested", "short", "words",
+        "_fresh", "_held", "_interrupt", "_line", "_receive", "_register", "_taken", "enabled", "requested", "short",
+        "words",
     )  # fmt: skip
 
-    def __init__(self, register: Cell, interrupt: Callable[[], None], *, receive: bool, fresh: bool = False) -> None:
-        self._fresh = fresh
+    def __init__(
+        self, register: Cell, interrupt: Callable[[], None], *, receive: bool, fresh: bool = False,
+        held: Callable[[], object] | None = None,
+    ) -> None:  # fmt: skip
+        self._fresh, self._held = fresh, held
         self._register = register
         self._interrupt = interrupt
         self._receive = receive
@@ -128,7 +133,10 @@ class Fifo:
             self.words.popleft()
             register.value |= OVERFLOW
         self.words.append(word)
+        stood = self._line
         self.refresh()
+        if stood and self._line and self._held is not None and len(self.words) >= register.value & LEVEL:
+            self._held()
         return not lost
 
     def left_behind(self) -> str:

@@ -106,19 +106,21 @@ class Pie:
 
         return pulse
 
-    def flag_left(self, group: int, n: int, flag: str) -> None:
+    def flag_left(self, group: int, n: int, flag: str, *, at_once: bool = False) -> bool:
         """The source of interrupt `group`.`n` gives no pulse for an event because its `flag` still stands.
 
-        Told where the routine of that interrupt has run since the last pulse and left the flag for long.
+        Told where the routine of that interrupt has run since the last pulse and left the flag for long, or `at_once`;
+        False if there is no such routine.
         """
         vector = vector_id(group, n)
         since = self._served.get(vector)
         handler, begins = self._vectors.get(vector, (None, None))
         if since is None or begins is None or handler is None:
-            return
+            return False
         self._kept_back[group, n] = flag, begins
-        if self._clock.now >= since + LONG_CYCLES:
+        if at_once or self._clock.now >= since + LONG_CYCLES:
             self._tell_kept_back(flag, begins, group, n)
+        return True
 
     def finish(self) -> None:
         """The run ends: who has kept an interrupt back for half as long is told too."""

@@ -51,7 +51,7 @@ class Sci:
 
     `rx_interrupt` and `tx_interrupt` are pulses into the PIE, `lspclk_divider()` is SYSCLK cycles a LSPCLK cycle.
     `break_bits`: how long the line stays low after a missing stop bit before BRKDT (CHOICE: 10; later manuals of the
-    family say 9.625).
+    family say 9.625).  `held()`: as of `Fifo`, of the receiver's.
     """
 
     def __init__(
@@ -66,6 +66,7 @@ class Sci:
         *,
         lspclk_divider: Callable[[], int] = lambda: 4,
         break_bits: float = 10.0,
+        held: Callable[[], object] | None = None,
     ) -> None:
         self._clock = clock
         self._cpu = cpu
@@ -86,7 +87,7 @@ class Sci:
         #: The last answer of `format`, for speed, and what it was made from.
         self._format_key: tuple[int, int, int] | None = None
         self._format: Format
-        self._receiver = SciReceiver(clock, cpu, regs, rx, rx_interrupt, self.format, break_bits)
+        self._receiver = SciReceiver(clock, cpu, regs, rx, rx_interrupt, self.format, break_bits, held)
         #: Without FIFO: SCITXBUF holds a character that waits for the shifter.
         #: The statement that gave the latest character: what is said of its frame stands there.
         self._cause: Cause | None = None

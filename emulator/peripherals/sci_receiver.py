@@ -49,6 +49,7 @@ class SciReceiver:
         interrupt: Callable[[], None],
         own_format: Callable[[], Format],
         break_bits: float,
+        held: Callable[[], object] | None = None,
     ) -> None:
         self._clock = clock
         self._cpu = cpu
@@ -63,7 +64,7 @@ class SciReceiver:
         self._ffrx = register["SCIFFRX"]
         self._rxst = register["SCIRXST"]
         self._rxbuf = register["SCIRXBUF"]
-        self.fifo = Fifo(register["SCIFFRX"], interrupt, receive=True)
+        self.fifo = Fifo(register["SCIFFRX"], interrupt, receive=True, held=held)
         #: SWRESET is 1.
         self._running = False
         #: A break was detected: deaf until SWRESET.

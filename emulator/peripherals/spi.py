@@ -50,6 +50,7 @@ class Spi:
     `rx_interrupt` and `tx_interrupt` are pulses into the PIE; without FIFO all interrupts leave on the RX line.
     `select(level)` drives SPISTE.
     `lspclk_divider()` is SYSCLK cycles a LSPCLK cycle; code that changes it calls `clock_changed`.
+    `held()`: as of `Fifo`, of the receiver's.
     """
 
     def __init__(
@@ -63,6 +64,7 @@ class Spi:
         *,
         select: Callable[[int], None] = lambda _level: None,
         lspclk_divider: Callable[[], int] = lambda: 4,
+        held: Callable[[], object] | None = None,
     ) -> None:
         self._clock = clock
         self._cpu = cpu
@@ -82,7 +84,7 @@ class Spi:
         self._fftx = register["SPIFFTX"]
         self._ffct = register["SPIFFCT"]
         self._tx_fifo = Fifo(self._fftx, tx_interrupt, receive=False)
-        self._rx_fifo = Fifo(register["SPIFFRX"], rx_interrupt, receive=True)
+        self._rx_fifo = Fifo(register["SPIFFRX"], rx_interrupt, receive=True, held=held)
         #: The end of the word that is being shifted.
         self._shift: Event | None = None
         self._length = 16

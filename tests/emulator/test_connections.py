@@ -261,6 +261,15 @@ def test_the_acknowledge_that_is_missing_is_named_not_the_flag_that_it_holds(tmp
     assert finding.place.function == "converted"
 
 
+def test_the_flag_of_an_eqep_is_told_where_its_routine_begins(tmp_path: Path) -> None:
+    text = RIGHT.replace("    EQep1Regs.QCLR.bit.INT = 1;\n", "")
+    assert text != RIGHT
+    (finding,) = told(tmp_path, text, "flag-not-cleared")
+    assert finding.object == "EQep1Regs.QFLG.INT"
+    assert finding.place is not None
+    assert finding.place.function == "unit"
+
+
 def test_a_part_of_a_program_is_told_nothing(tmp_path: Path) -> None:
     """What starts the counter may stand in another file."""
     text = RIGHT.replace("EPwm1Regs.TBCTL.bit.CTRMODE = 0;", "").replace("for (;;)", "")

@@ -1,4 +1,4 @@
-"""The level of a receive FIFO and what its interrupt routine takes: `fifo-level`."""
+"""The level of a receive FIFO, what its interrupt routine takes (`fifo-level`), and the flag that it leaves."""
 
 from __future__ import annotations
 
@@ -82,3 +82,19 @@ def test_a_routine_that_leaves_words_to_the_next_interrupt(
     findings = [f for f in checked.findings if f.rule == "fifo-level"]
     assert [f.object for f in findings] == [fifo] * short
     assert all(f.place is not None and f"= {buffer}" in text.splitlines()[f.place.line - 1] for f in findings)
+
+
+@pytest.mark.parametrize("module", [SPI, SCI], ids=["SPI", "SCI"])
+@pytest.mark.parametrize("clears", [True, False])
+def test_a_flag_that_the_routine_leaves_is_told_where_it_begins(
+    tmp_path: Path, module: tuple[str, ...], clears: bool
+) -> None:
+    buffer, fifo, group, vector, setting, output = module
+    text = PROGRAM % (6, "k < 6", buffer, fifo, fifo, group, vector, setting, output)
+    if not clears:
+        text = text.replace(f"    {fifo}.bit.RXFFINTCLR = 1;\n", "")
+    (tmp_path / "drv.c").write_text(text, encoding="utf-8")
+    checked = check_files(DriverFiles([tmp_path / "drv.c"], calls=1, board=load("bare"), seconds=0.06))
+    findings = [f for f in checked.findings if f.rule == "flag-not-cleared"]
+    assert [f.object for f in findings] == ([] if clears else [f"{fifo}.RXFFINT"])
+    assert all(f.place is not None and f.place.function == "rx" for f in findings)
