@@ -623,7 +623,8 @@ class Runtime:
             if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + words > p.obj.words:
                 self.examine(p, 0, site, verb)
         obj = source.obj
-        if obj is not None and obj.declaration.function and obj.data and all(value is None for value in obj.data):
+        local = obj is not None and obj.declaration.function and site.kind != "parameter"
+        if obj is not None and local and obj.data and all(value is None for value in obj.data):
             path = obj.declaration.path
             self.hit(site, "uninitialised", f"{path} is copied before anything was written to it")
         self.memory.copy(target, source, words)

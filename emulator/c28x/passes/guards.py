@@ -192,7 +192,9 @@ class Guards:
             case CopyStruct(target=target, source=source):
                 self.way(target)
                 self.way(source)
-                s.guard = Guard("pointer", self.site(INT, target.text or "structure", at=target.where))
+                # What a caller has passed is told where the caller copies it.
+                kind = "parameter" if isinstance(source.root, Variable) and source.root.kind == "parameter" else ""
+                s.guard = Guard("pointer", self.site(INT, target.text or "structure", at=target.where, kind=kind))
             case Declare(value=list() as values):
                 for value in different(values):
                     self.value(value)
