@@ -142,7 +142,7 @@ class TerminalApp(App[None]):
         yield Footer(show_command_palette=False)
 
     def on_mount(self) -> None:
-        """Begin to look; leave cleanly when the system asks."""
+        """Start the updates; handle signals so that the console leaves cleanly."""
         self._look()
         self.set_interval(LOOK_S, self._look)
         # Windows' loop has no signal handlers, nor has one outside the main thread.
@@ -232,7 +232,7 @@ class TerminalApp(App[None]):
     # Orders
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Keys mean what the screen shows: no order while numbers are typed, arrows drive while tele is on."""
+        """Which keys act now: no order while numbers are typed; arrows drive while telemanipulation is on."""
         typing = isinstance(self.focused, Input)
         if action == "drive":
             return not typing and self.link is not None and self.link.tele is not None
@@ -245,7 +245,7 @@ class TerminalApp(App[None]):
         self._say(self.link is not None and self.link.order(keyword), keyword)
 
     def action_stop(self) -> None:
-        """Before everything that waits."""
+        """Send STOP before everything that is queued."""
         self._say(self.link is not None and self.link.stop(), "stop")
 
     def action_tele(self) -> None:
@@ -315,14 +315,14 @@ class TerminalApp(App[None]):
         self._view.refresh()
 
     def _leave(self) -> None:
-        """The system wants the end, perhaps because the terminal is gone: the robot first."""
+        """Leave on a signal, perhaps because the terminal has gone: stop the robot first."""
         if self.link is not None:
             self.link.close()
         self.exit()
 
 
 def _update(widget: Static, text: str) -> None:
-    """What does not change costs a slow connection nothing."""
+    """Write a text only if it has changed: a slow connection pays for each."""
     if widget.content != text:
         widget.update(text)
 

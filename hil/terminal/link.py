@@ -121,7 +121,7 @@ class Link:
         return self._send(order(keyword))
 
     def stop(self) -> bool:
-        """``#STOP``, before anything that waits: that is forgotten."""
+        """Send ``#STOP`` at once; what is queued is dropped."""
         with self._changed:
             self._orders.clear()
         return self._send(order("stop"))

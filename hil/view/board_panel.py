@@ -104,7 +104,7 @@ class FaceRow:
             self._set(value)
 
     def _set(self, value: float) -> None:
-        """Have slider and field show a value, which is no wish of the person."""
+        """Show a value in slider and field, without setting it."""
         self._shown = value
         if self._slider is not None:
             self._slider.value = value
@@ -138,6 +138,6 @@ def said(value: float, unit: str) -> str:
 
 
 def _step(face: Face) -> float:
-    """Whole steps where a face is one or the other."""
+    """The step of the slider; 1 for a face that is yes or no."""
     span = face.high - face.low
     return 1.0 if span == 1.0 and face.low == int(face.low) else span / STEPS

@@ -68,7 +68,7 @@ class Checkpoint:
 
 
 def hands(bench: RunningBoard, stage: StageProtocol | None) -> Mapping[str, Hand]:
-    """What can be done to a machine from outside, by name."""
+    """The actions on a machine from outside, by name."""
     return {
         "order": bench.feed, "put": bench.put, "break": bench.mount_faults, "mend": bench.remove_fault,
         **({} if stage is None else stage.hands),
@@ -153,13 +153,13 @@ class RewindableRun:
         self.bench.run_until(cycles)
 
     def reach(self, cycles: int, progress: Progress) -> None:
-        """Run at full speed, telling a share of the way from power-up."""
+        """Run at full speed; the progress is told as a share of the way from power-up."""
         while self.clock.now < cycles:
             self.run_until(min(cycles, self.clock.now + STRIDE_CYCLES))
             progress(min(1.0, self.clock.now / max(1, cycles)))
 
     def again(self) -> RewindableRun:
-        """A new run, not powered up, that will do what this one did and would have done."""
+        """A new run, not powered up, with this one's past and planned inputs ahead of it."""
         return RewindableRun(self.setup, [*self.done, *self.ahead], read=self.bench.read)
 
     def close(self) -> None:
@@ -205,7 +205,7 @@ class Moments:
         self.begin_at(ready_cycles)
 
     def begin_at(self, ready_cycles: int) -> None:
-        """There is nothing but the end of start-up."""
+        """Start with a single moment: the end of start-up."""
         self._ready_cycles = ready_cycles
         self.all: list[Checkpoint] = [Checkpoint(ready_cycles, "ready")]
 
@@ -220,7 +220,7 @@ class Moments:
             del self.all[next((at for at, each in enumerate(self.all) if not each.label), oldest)]
 
     def note_order(self, each: RecordedInput) -> None:
-        """Remember the time just before an order, but for those that come ten a second."""
+        """Remember the moment before an order, except for references of driving, ten a second."""
         if each.do == "order" and each.values[0] in NAMED_ORDERS:
             self.note(each.cycles, each.values[0].decode("ascii").strip())
 

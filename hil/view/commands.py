@@ -30,7 +30,7 @@ class Commands:
         self._closed = False
 
     def put(self, work: Callable[[], Any], *, changes: bool = False) -> Future[Any]:
-        """Have `work()` done; its result or error is in the future, which is cancelled once nobody does anything."""
+        """Queue `work()`.  The future gets its result or error; it is cancelled when the queue has ended."""
         done: Future[Any] = Future()
         self._queue.put(_Command(done, work, changes))
         if self._closed:
@@ -38,7 +38,7 @@ class Commands:
         return done
 
     def serve(self, *, at_rest: bool, wait: bool = False) -> int:
-        """Do what was put in, waiting a while for the first if `wait`; how much was done.
+        """Run the queued commands; with `wait`, wait a while for the first.  Returns how many ran.
 
         Not `at_rest`, what changes the run is kept until it is.
         """
@@ -59,7 +59,7 @@ class Commands:
                 count += _do(command)
 
     def cancel(self) -> None:
-        """Nobody will do what is left, nor what is still put in."""
+        """Cancel all queued commands, and those that are queued later."""
         self._closed = True
         waiting, self._deferred = self._deferred, []
         with suppress(queue.Empty):

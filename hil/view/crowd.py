@@ -60,7 +60,7 @@ class Crowd:
         return len(others) - len(left) < MOST_PAGES and len(others) < 2 * MOST_PAGES
 
     def _gone(self, client: Client) -> None:
-        """Have the memory of a page back: a cycle, and `hil.collector` makes Python look for those rarely."""
+        """Free the memory of a page that has gone: it is a cycle, and `hil.collector` makes Python collect rarely."""
         if client in self._came and not self._collecting:
             self._collecting = True  # once for all that go together
             asyncio.get_running_loop().call_later(1, self._collect)

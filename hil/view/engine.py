@@ -89,7 +89,7 @@ class Engine:
         return self._commands.put(self._machine.resume)
 
     def pause(self) -> Future[None]:
-        """Stop the time."""
+        """Pause virtual time."""
         return self._commands.put(self._machine.pause)
 
     def step(self, kind: Step) -> Future[None]:
@@ -97,7 +97,7 @@ class Engine:
         return self._commands.put(lambda: self._machine.step(kind))
 
     def go_to(self, cycles: int) -> Future[None]:
-        """Be at another time: execute again from power-up; a later time is run to at full speed.  Paused there.
+        """Go to another time and pause there: to an earlier one from power-up on, to a later one at full speed.
 
         Done when it is there, or was given up.
         """
@@ -107,7 +107,7 @@ class Engine:
         return arrived
 
     def go_to_finding(self, finding: Finding) -> Future[None]:
-        """Be where a finding was found first: in the middle of its statement, with its locals, held.
+        """Go to where a finding was found first, and hold the firmware in its statement, with its locals.
 
         Done when it is on the last stretch to it, or was given up.
         """
@@ -138,7 +138,7 @@ class Engine:
 
     @property
     def trails(self) -> Any:
-        """What the stage has of long paths (`hil.view.stage.StageProtocol.trails`)."""
+        """The long paths of the stage (`hil.view.stage.StageProtocol.trails`)."""
         return self._machine.showing.trails
 
     @property
@@ -173,7 +173,7 @@ class Engine:
 
     @property
     def unsuitable(self) -> dict[str, str]:
-        """Kinds of faults that it cannot have, and why."""
+        """The kinds of faults that this board cannot have, and why."""
         return self._machine.showing.unsuitable
 
     @property
@@ -193,10 +193,10 @@ class Engine:
 
     @property
     def error(self) -> BaseException | None:
-        """What ended the thread, if not `close`."""
+        """The exception that ended the thread; None if `close` did, or if it runs."""
         return self._machine.error
 
     @property
     def taps(self) -> Taps:
-        """Of the present machine; only for work that is submitted."""
+        """The taps of the present machine; only for submitted work."""
         return self._machine.taps

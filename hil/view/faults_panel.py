@@ -98,7 +98,7 @@ class FaultRow:
             )  # fmt: skip
 
     def show(self, fired: Fired, phase: Phase) -> None:
-        """What came of it by now."""
+        """Show how often it fired, and what it met, so far."""
         text = f"{phase.value}; {str(fired).removeprefix(f'{self.fault}: ')}"
         if text != self._text:
             self._text = self._told.text = text

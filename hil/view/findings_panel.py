@@ -24,7 +24,7 @@ COLUMNS: Final = ("severity", "finding", "where", "first")
 
 
 def severity_of(finding: Finding) -> str:
-    """That of its rule; "" of a rule that nobody knows."""
+    """The severity of its rule; "" for an unknown rule."""
     rule = RULES.get(finding.rule)
     return rule.severity.value if rule is not None else ""
 
@@ -49,12 +49,12 @@ def counted(counts: Mapping[str, int]) -> str:
 
 
 def key_of(finding: Finding) -> str:
-    """What tells a finding from all others, when the run is executed again too."""
+    """A key that identifies a finding, also when the run is executed again."""
     return "\n".join((finding.rule, str(finding.place), finding.object, str(finding.time_cycles)))
 
 
 def rank_of(finding: Finding) -> int:
-    """The worst are 0."""
+    """The rank of its severity; 0 is the worst."""
     severity = severity_of(finding)
     return next((rank for rank, each in enumerate(WORST_FIRST) if each.value == severity), len(WORST_FIRST))
 
@@ -144,7 +144,7 @@ class FindingsPanel:
             self._none.visible = bool(text)
 
     def show(self, finding: Finding) -> None:
-        """Choose a finding, be it one that lies ahead."""
+        """Choose a finding, also one later than the present time."""
         self._table.choose(key_of(finding))
         self._tell(finding)
 

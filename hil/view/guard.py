@@ -63,7 +63,7 @@ class RequestGuard:
         await self._app(scope, receive, self._with_cookie(send) if self._token_given(scope) else send)
 
     def _refusal(self, scope: Scope, headers: dict[str, str]) -> str:
-        """Why not; empty if it may pass."""
+        """Why a request is refused; empty if it may pass."""
         host = headers.get("host", "")
         if not self._is_ours(host):
             return f"this is not {host or 'a host without a name'}"
@@ -114,7 +114,7 @@ class RequestGuard:
 
 
 def _again(first: MutableMapping[str, Any], receive: Receive) -> Receive:
-    """`receive`, with a message that was taken already before all others."""
+    """`receive`, with a message that was already taken put back in front."""
     taken = [first]
 
     async def receiving() -> MutableMapping[str, Any]:

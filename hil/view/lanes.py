@@ -26,7 +26,7 @@ Place = Callable[[int], float]
 
 
 def place(begin: int, end: int) -> Place:
-    """Where a time of the span in sight is."""
+    """The x coordinate of a time within the span in sight."""
     width = max(1, end - begin)
     return lambda cycles: LEFT + (WIDTH - LEFT) * (min(max(cycles, begin), end) - begin) / width
 
@@ -153,13 +153,13 @@ def _words(words: list[DecodedWord], x: Place, *, as_text: bool) -> str:
 
 
 def _spoken(word: DecodedWord) -> tuple[str, ...]:
-    """What a word of a bus says, the longest first."""
+    """The texts for a word of a bus, the longest first."""
     value = f"{word.value:02X}"
     return (f"{value} {word.meaning}", word.meaning, value) if word.meaning else (value,)
 
 
 def _fitting(versions: Sequence[str], room: int) -> str:
-    """The first that there is room for; of a long text its beginning."""
+    """The first text that fits; of a text that is too long its beginning."""
     for text in versions:
         if len(text) <= room:
             return text

@@ -84,7 +84,7 @@ class LineLog:
 
     @property
     def counts(self) -> str:
-        """What passed, in words."""
+        """Frames and bytes that passed, in words."""
         damaged = f" and {self.malformed} damaged" if self.malformed else ""
         return (
             f"{self._decoder.frames} frames{damaged}, {self.bytes_from_robot} bytes from the robot, "
@@ -146,7 +146,7 @@ class RobotLine(Protocol):
 
     @property
     def flowing(self) -> bool:
-        """Whether orders sent now are taken one after the other, soon."""
+        """Whether orders sent now are received soon, one after the other."""
 
     def write(self, data: bytes) -> None:
         """Send bytes to the robot."""

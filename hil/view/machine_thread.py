@@ -146,7 +146,7 @@ class MachineThread:
         self._port = self._open_port(self.run.bench)
 
     def _take(self, run: RewindableRun) -> None:
-        """A machine that has not been powered up yet, with everything that looks at it."""
+        """Take a machine that is not powered up yet, and attach all observers."""
         self.run = run
         self.taps = Taps(run.bench)
         self.taps.set(recording=self.record_writers)
@@ -179,7 +179,7 @@ class MachineThread:
     # Running
 
     def _stretch(self) -> None:
-        """Run until something else is wanted."""
+        """Run until a command asks for something else."""
         self.showing.where = None
         if self._wanted is not None:
             self._stepper.arm(self._wanted)
@@ -314,7 +314,7 @@ class MachineThread:
     # Commands: done by `commands`, in this thread
 
     def _serve(self, *, wait: bool = False) -> None:
-        """Do what was asked for; at rest, what waited for it too."""
+        """Run queued commands; at rest also those that wait for rest."""
         if self._commands.serve(at_rest=not self._holding, wait=wait):
             self.showing.make_due()
         if not self._running and not self._stepper.armed:
@@ -347,7 +347,7 @@ class MachineThread:
         self.showing.message = ""
 
     def pause(self) -> None:
-        """Stop the time."""
+        """Pause virtual time."""
         if self.showing.where is not None and self._holding:
             return  # it stands already
         self._running = False
@@ -368,7 +368,7 @@ class MachineThread:
             self._release = True
 
     def travel_to(self, cycles: int, arrived: Future[None]) -> None:
-        """Be at another time; `arrived` is told when it is there, or was given up."""
+        """Go to another time; `arrived` is called when it is there, or has given up."""
         self._arrivals.append(arrived)
         self._running = False
         self._wanted = None
@@ -378,7 +378,7 @@ class MachineThread:
         self._sought = None
 
     def travel_to_finding(self, finding: Finding, arrived: Future[None]) -> None:
-        """Stand where something was found; `arrived` is told when the last stretch to it begins."""
+        """Go to where something was found; `arrived` is called when the last stretch to it begins."""
         self.travel_to(finding.time_cycles - BEFORE_CYCLES, arrived)
         self._sought = finding
 

@@ -63,7 +63,7 @@ class Page:
         ui.keyboard(self._key, ignore=["input", "select", "textarea"])
 
     def corner(self) -> None:
-        """Help and light."""
+        """The buttons for help and for light or dark."""
         with ui.row().classes("corner no-wrap gap-1"):
             ui.button("keys ?", on_click=self._help.open).props("no-caps dense flat").mark("keys")
             ui.button("light / dark").props("no-caps dense flat").mark("light").on("click", js_handler="hilOtherLight")
@@ -177,7 +177,7 @@ class BoardPage:
             self._show_findings()
 
     def _show_second(self) -> None:
-        """There is room: elements that nobody sees would be drawn with all others."""
+        """Build the second panel once there is room for it: elements out of sight would be updated too."""
         if self._second is None:
             with self._beside:
                 self._second = Tabs(self._twice, "more panels", chosen="Findings").classed("second")
@@ -240,7 +240,7 @@ def heard(text: str, level: int = 2) -> None:
 
 
 def _board_panel(engine: Engine) -> BoardPanel:
-    """Of a board made for it: the run's own belongs to the machine's thread."""
+    """The panel of the board, on a board made for it: the run's own belongs to the machine's thread."""
     return BoardPanel(engine, made(engine.kind, seed=engine.setup.seed, ideal=not engine.setup.realistic))
 
 

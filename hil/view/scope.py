@@ -321,7 +321,7 @@ class ScopePanel:
         self._pointer = self._grip = None
 
     def _show(self, end: int) -> None:
-        """Hold the picture that ends then, and look at once."""
+        """Hold the picture that ends at a time, and draw it at once."""
         self._still.value = True
         self._end = min(max(0, end), self._engine.snapshot.cycles)
         self._turn = EVERY - 1
@@ -345,7 +345,7 @@ def probes_period(engine: Engine) -> float:
 
 
 def _height(axes: int) -> int:
-    """Of the chart, in pixels."""
+    """The height of the chart in pixels."""
     return 250 if axes <= 1 else ABOVE + BELOW + AXIS * axes
 
 

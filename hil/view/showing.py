@@ -73,7 +73,7 @@ class Showing:
         self.where = None
 
     def make_due(self) -> None:
-        """Something was done that should be seen at once."""
+        """Make the next snapshot due at once, because something was done."""
         self._snapshot_due = 0.0
 
     def due(self) -> bool:
@@ -110,13 +110,13 @@ class Showing:
             self.known_cycles = max(self.known_cycles, *(each.cycles for each in marks), 0)
 
     def forget_after(self, cycles: int) -> None:
-        """Something else is done at this time than before."""
+        """Forget what was known after this time: another input was given."""
         self.known_cycles = cycles
         self.known_findings = tuple(each for each in self.known_findings if each.time_cycles <= cycles)
 
 
 def marks_of(run: RewindableRun) -> tuple[Mark, ...]:
-    """What the scrub bar tells of a run besides its findings."""
+    """The marks of a run on the scrub bar, besides its findings."""
     done = [
         Mark(each.cycles, MarkKind.ORDER if each.do == "order" else MarkKind.HAND, each.text)
         for each in (*run.done, *run.ahead)

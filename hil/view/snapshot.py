@@ -57,7 +57,7 @@ class Snapshot:
 
     @property
     def takes_orders(self) -> bool:
-        """Whether what is sent now is taken soon: at a small pace the line is slower than a hand."""
+        """Whether orders sent now are received soon.  At a slow pace the line is slower than a hand."""
         return self.mode is Mode.RUNNING and self.pending_to_robot < HOLD_BACK_BYTES
 
     @property

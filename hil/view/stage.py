@@ -37,7 +37,7 @@ class StageProtocol(Protocol):
         """What the page sees of it at one moment, some 20 a second: never changed afterwards."""
 
     def trails(self) -> Any:
-        """What is long and seldom looked at: four times a second."""
+        """The long paths, which are updated only four times a second."""
 
     def tell(self) -> Mapping[str, Any]:
         """What a trace records of it, by name (`hil.instruments.scene`), as plain data."""
@@ -53,7 +53,7 @@ class PanelsProtocol(Protocol):
     tabs: Mapping[str, Callable[[], None]]
 
     def top(self) -> None:
-        """What everybody must find, at the top of the page."""
+        """The controls at the top of the page, such as STOP."""
 
     def picture(self) -> None:
         """The picture, in the place of the parts."""

@@ -149,7 +149,7 @@ class Stepper:
         self._rest(StepEnd(text, None, findings.context(), self._bench.clock.now))
 
     def _where(self, text: str, place: Place | None = None, callers: Sequence[Place] = ()) -> StepEnd:
-        """Here; `place` and `callers`: what is known better than where the firmware stands."""
+        """Where the firmware stands; `place` and `callers` override what its position says."""
         findings, position = self._bench.findings, self._position
         if place is None:
             place, *callers = findings.path(position.at, position.calls)

@@ -167,6 +167,6 @@ def _values(title: str, lines: list[str]) -> None:
 
 
 def _paces(pace: float | None) -> tuple[dict[str, str], str]:
-    """What can be chosen, and what is chosen: the pace of the command line may be any number."""
+    """The paces on offer, and the present one: that of the command line may be any number."""
     key = "max" if pace is None else f"{pace:g}"
     return ({key: f"{key} x"} if key not in PACES else {}) | PACES, key

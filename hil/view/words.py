@@ -36,7 +36,7 @@ class RegisterDevice(Protocol):
     register_names: Mapping[int, str]
 
     def after(self, address: int) -> int:
-        """The address that follows in a burst."""
+        """The register address after this one in a burst."""
 
 
 class SpiTransfer:
