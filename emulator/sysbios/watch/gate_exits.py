@@ -33,7 +33,7 @@ LEAVE: Final = ("GateMutexPri_leave", "GateMutex_leave")
 Held = dict[str, Where]
 
 
-class Exit(NamedTuple):
+class GateExit(NamedTuple):
     """A statement that goes on without leaving the gate in the file-scope object `path`."""
 
     statement: Continue | Return
@@ -41,7 +41,7 @@ class Exit(NamedTuple):
     entered: Where
 
 
-def exits(functions: Iterable[Function]) -> Iterator[tuple[Function, Exit]]:
+def exits(functions: Iterable[Function]) -> Iterator[tuple[Function, GateExit]]:
     """Every way out of these functions, or into the next turn of a loop, that does not leave a gate."""
     functions = list(functions)
     entered = {f.path: _paths(f.body, ENTER) for f in functions}
@@ -50,7 +50,7 @@ def exits(functions: Iterable[Function]) -> Iterator[tuple[Function, Exit]]:
     for f in functions:
         own = (entered[f.path] & left[f.path]) - shared
         if own and None not in shared:
-            found: list[Exit] = []
+            found: list[GateExit] = []
             _walk(f.body, {}, {}, found)
             yield from ((f, exit) for exit in found if exit.path in own)
 
@@ -59,7 +59,7 @@ def _paths(body: list[Stmt], functions: tuple[str, ...]) -> set[str | None]:
     return {path for function in functions for path in first_arguments(body, function)}
 
 
-def _walk(body: list[Stmt], held: Held, outside: Held, found: list[Exit]) -> Held | None:
+def _walk(body: list[Stmt], held: Held, outside: Held, found: list[GateExit]) -> Held | None:
     """What is held behind `body`; None if no way comes there.  `outside`: what was held before the loop around it."""
     held = dict(held)
     for s in body:
@@ -73,11 +73,11 @@ def _walk(body: list[Stmt], held: Held, outside: Held, found: list[Exit]) -> Hel
                 _walk(turn, held, held, found)
                 continue
             case Continue():
-                found.extend(Exit(s, path, at) for path, at in held.items() if path not in outside)
+                found.extend(GateExit(s, path, at) for path, at in held.items() if path not in outside)
                 return None
             case Return():
                 _calls(s, held)
-                found.extend(Exit(s, path, at) for path, at in held.items())
+                found.extend(GateExit(s, path, at) for path, at in held.items())
                 return None
             case Break():
                 return None
