@@ -114,6 +114,7 @@ class Connections:
         self._trip_actions()
         self._forced_trips()
         self._post_processing()
+        self._fifo_flags()
         self._pairs()
         self._chip.pie.finish()
         self._i2c()
@@ -171,8 +172,12 @@ class Connections:
         """
         if right(self._value(register, field)):
             return False
+        return not self._writes_again(register, right, field)
+
+    def _writes_again(self, register: str, right: Callable[[int], bool], field: str) -> bool:
+        """As `_could`, but where the start-up is over none of its statements counts."""
         block, name = _split(register)
-        return not self._source.could(block, name, self._mask(register, field), right, again=self.started_up)
+        return self._source.could(block, name, self._mask(register, field), right, again=self.started_up)
 
     def _tell(self, waits: Place | None, message: str, missing: Missing, object: str, *, whole: bool = False) -> None:
         """Tell that something waits (at a place of the source) for what never comes."""
@@ -788,14 +793,31 @@ class Connections:
                 if self._never_starts(block, soc):
                     missing = Missing(f"{config}.CONFIG = {soc}: nothing starts SOC{soc}", config, "CONFIG")
                     self._tell(place, f"event {event} of {block} interrupts, and never comes", missing, config)
-                elif routine and self._value(f"{block}.ADCEVTSTAT", event) and not self._could(
+                elif routine and self._value(f"{block}.ADCEVTSTAT", event) and not self._writes_again(
                     f"{block}.ADCEVTCLR", bool, event
                 ):  # fmt: skip
-                    self._chip.findings.report_at(
-                        routine, "flag-not-cleared",
-                        f"{flag} is set, and no statement sets ADCEVTCLR.{event}: its interrupt comes once only",
-                        object=flag, how="dynamic", task=f"Isr:{routine.function}",
-                    )  # fmt: skip
+                    self._once_only(routine, flag, f"ADCEVTCLR.{event}")
+
+    def _once_only(self, routine: Place, flag: str, clear: str) -> None:
+        """Tell that a flag stands, which would have to be cleared before its interrupt comes again."""
+        self._chip.findings.report_at(
+            routine, "flag-not-cleared", f"{flag} is set, and no statement sets {clear}: its interrupt comes once only",
+            object=flag, how="dynamic", task=f"Isr:{routine.function}",
+        )  # fmt: skip
+
+    def _fifo_flags(self) -> None:
+        """Interrupts of FIFOs whose routine has run and left the flag, which no statement clears."""
+        modules = [("Sci", letter, lines) for letter, lines in SCI_PIE.items()]
+        modules += [("Spi", letter, lines) for letter, lines in SPI_PIE.items()]
+        for module, letter, lines in modules:
+            for way, line in zip(("RX", "TX"), lines, strict=True):
+                register = f"{module}{letter.lower()}Regs.{module.upper()}FF{way}"
+                routine = self._chip.pie.left_by(*line)
+                enabled = self._value(register, f"{way}FFIENA") and self._value(register, f"{way}FFINT")
+                # A program may take the enable away instead, and give it again.
+                switched = self._writes_again(register, lambda enable: not enable, f"{way}FFIENA")
+                if routine and enabled and not switched and not self._writes_again(register, bool, f"{way}FFINTCLR"):
+                    self._once_only(routine, f"{register}.{way}FFINT", f"{way}FFINTCLR")
 
     def _never_starts(self, block: str, soc: int) -> bool:
         """Whether nothing can start a SOC: no trigger, no ADCINT, no burst, no statement."""

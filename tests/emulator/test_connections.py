@@ -610,3 +610,57 @@ def test_what_comes_of_a_setting_is_told_at_it(tmp_path: Path, was: str, now: st
     (finding,) = told(tmp_path, text, rule)
     assert finding.place is not None
     assert at in text.splitlines()[finding.place.line - 1]
+
+
+#: SCI-A hears itself; each character interrupts.
+HEARD = """#include "F28x_Project.h"
+volatile Uint16 Heard;
+interrupt void heard(void)
+{
+    while (SciaRegs.SCIFFRX.bit.RXFFST > 0)
+        Heard = SciaRegs.SCIRXBUF.all;
+    SciaRegs.SCIFFRX.bit.RXFFINTCLR = 1;
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP9;
+}
+void main(void)
+{
+    InitSysCtrl();
+    DINT;
+    InitPieCtrl();
+    IER = 0x0000;
+    IFR = 0x0000;
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.SCIA_RX_INT = &heard;
+    EDIS;
+    SciaRegs.SCICCR.all = 0x0017;
+    SciaRegs.SCIHBAUD.all = 0;
+    SciaRegs.SCILBAUD.all = 53;
+    SciaRegs.SCIFFTX.all = 0xE040;
+    SciaRegs.SCIFFRX.all = 0x2061;
+    SciaRegs.SCICTL1.all = 0x0023;
+    PieCtrlRegs.PIEIER9.bit.INTx1 = 1;
+    IER |= M_INT9;
+    EINT;
+    for (;;) {
+        SciaRegs.SCITXBUF.all = 'x';
+        DELAY_US(300);
+    }
+}
+"""
+CLEARED = "    SciaRegs.SCIFFRX.bit.RXFFINTCLR = 1;\n"
+
+
+@pytest.mark.parametrize(("was", "now", "at"), [
+    ("", "", None),
+    # The start-up clears it, once.
+    (CLEARED, "", "interrupt void heard"),
+    # The enable is taken away and given again, which brings the interrupt as well.
+    (CLEARED, CLEARED.replace("RXFFINTCLR = 1", "RXFFIENA = 0; SciaRegs.SCIFFRX.bit.RXFFIENA = 1"), None),
+])  # fmt: skip
+def test_a_flag_that_only_the_start_up_clears_gives_one_interrupt(
+    tmp_path: Path, was: str, now: str, at: str | None
+) -> None:
+    text = HEARD.replace(was, now) if was else HEARD
+    places = [f.place for f in told(tmp_path, text, "flag-not-cleared", seconds=0.01)]
+    assert [place and at and at in text.splitlines()[place.line - 1] for place in places] == [True] * (at is not None)
