@@ -114,7 +114,6 @@ class Connections:
         self._trip_actions()
         self._forced_trips()
         self._post_processing()
-        self._fifo_flags()
         self._pairs()
         self._chip.pie.finish()
         self._i2c()
@@ -796,28 +795,11 @@ class Connections:
                 elif routine and self._value(f"{block}.ADCEVTSTAT", event) and not self._writes_again(
                     f"{block}.ADCEVTCLR", bool, event
                 ):  # fmt: skip
-                    self._once_only(routine, flag, f"ADCEVTCLR.{event}")
-
-    def _once_only(self, routine: Place, flag: str, clear: str) -> None:
-        """Tell that a flag stands, which would have to be cleared before its interrupt comes again."""
-        self._chip.findings.report_at(
-            routine, "flag-not-cleared", f"{flag} is set, and no statement sets {clear}: its interrupt comes once only",
-            object=flag, how="dynamic", task=f"Isr:{routine.function}",
-        )  # fmt: skip
-
-    def _fifo_flags(self) -> None:
-        """Interrupts of FIFOs whose routine has run and left the flag, which no statement clears."""
-        modules = [("Sci", letter, lines) for letter, lines in SCI_PIE.items()]
-        modules += [("Spi", letter, lines) for letter, lines in SPI_PIE.items()]
-        for module, letter, lines in modules:
-            for way, line in zip(("RX", "TX"), lines, strict=True):
-                register = f"{module}{letter.lower()}Regs.{module.upper()}FF{way}"
-                routine = self._chip.pie.left_by(*line)
-                enabled = self._value(register, f"{way}FFIENA") and self._value(register, f"{way}FFINT")
-                # A program may take the enable away instead, and give it again.
-                switched = self._writes_again(register, lambda enable: not enable, f"{way}FFIENA")
-                if routine and enabled and not switched and not self._writes_again(register, bool, f"{way}FFINTCLR"):
-                    self._once_only(routine, f"{register}.{way}FFINT", f"{way}FFINTCLR")
+                    self._chip.findings.report_at(
+                        routine, "flag-not-cleared",
+                        f"{flag} is set, and no statement sets ADCEVTCLR.{event}: its interrupt comes once only",
+                        object=flag, how="dynamic", task=f"Isr:{routine.function}",
+                    )  # fmt: skip
 
     def _never_starts(self, block: str, soc: int) -> bool:
         """Whether nothing can start a SOC: no trigger, no ADCINT, no burst, no statement."""

@@ -662,5 +662,5 @@ def test_a_flag_that_only_the_start_up_clears_gives_one_interrupt(
     tmp_path: Path, was: str, now: str, at: str | None
 ) -> None:
     text = HEARD.replace(was, now) if was else HEARD
-    places = [f.place for f in told(tmp_path, text, "flag-not-cleared", seconds=0.01)]
+    places = [f.place for f in told(tmp_path, text, "flag-not-cleared", seconds=0.06)]
     assert [place and at and at in text.splitlines()[place.line - 1] for place in places] == [True] * (at is not None)
