@@ -109,12 +109,13 @@ class Lis3dh:
         self.offset_g = [0.0 if ideal else rng.uniform(-OFFSET_G, OFFSET_G) for _ in range(3)]
         self._rate = 1.0 if ideal else 1.0 + rng.uniform(-ODR_SPREAD, ODR_SPREAD)
         self._event: Event | None = None
-        #: What the framing looks at: SDO always answers, and no axis is idle in a way that is told.
+        #: What the framing looks at: SDO always answers; the disabled axis that a transaction read, if it read no other
+        #: (else -1).
         self.four_wire = True
         self.idle_axis = -1
-        spi = SpiFrame(self, self._report, "LIS3DH")
-        self.select = spi.select
-        self.exchange = spi.exchange
+        self._enabled_read = False
+        self._spi = SpiFrame(self, self._report, "LIS3DH")
+        self.exchange = self._spi.exchange
         self.greatest_clock_hz = GREATEST_CLOCK_HZ
         self.reset()
 
@@ -141,6 +142,11 @@ class Lis3dh:
         """What moves it from now on."""
         self.motion_source = source
 
+    def select(self, level: int) -> None:
+        """Chip select: 0 opens a transaction, 1 ends it."""
+        self._spi.select(level)
+        self._enabled_read = False
+
     # What CTRL_REG1 and CTRL_REG4 say
 
     @property
@@ -164,7 +170,18 @@ class Lis3dh:
         return (address + 1) & 0x3F
 
     def deselected(self) -> None:
-        """The chip select rose; nothing hangs on it."""
+        """The transaction read only axes that are disabled."""
+        name = "XYZ"[self.idle_axis]
+        self._idle(self.idle_axis, f"{name}en", "the axis is disabled")
+        self.idle_axis = -1
+
+    def _idle(self, axis: int, field: str, why: str) -> None:
+        """An output was read that nothing fills."""
+        self._report(
+            "not-configured",
+            f"LIS3DH.OUT_{'XYZ'[axis]} was read while CTRL_REG1.{field} = 0: {why}, and the value is old",
+            object=f"LIS3DH.CTRL_REG1.{field}",
+        )  # fmt: skip
 
     def read_register(self, address: int) -> int:
         """One byte, with its side effects."""
@@ -206,6 +223,12 @@ class Lis3dh:
 
     def _read_output(self, index: int) -> int:
         axis, high = index >> 1, index & 1
+        if not self.registers[CTRL_REG1] >> 4:
+            self._idle(axis, "ODR", "the device is in power-down")
+        elif self.registers[CTRL_REG1] >> axis & 1:
+            self._enabled_read, self.idle_axis = True, -1
+        elif not self._enabled_read:
+            self.idle_axis = axis
         word = self._words[axis]
         self._halves[axis] |= 1 << high
         if self._halves[axis] == 3:

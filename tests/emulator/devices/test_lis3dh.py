@@ -204,3 +204,28 @@ def test_no_words_upset_it(steps: list[tuple[int, int, int]]) -> None:
     assert bench.read(0x0F) == [0x33]
     assert all(0 <= byte <= 0xFF for byte in bench.part.registers)
     assert len(bench.part.registers) == 64
+
+
+def test_an_output_that_nothing_fills_is_told() -> None:
+    bench = Bench()
+    bench.words()
+    assert {rule for rule, _ in bench.reports} == {"not-configured"}
+    assert all("CTRL_REG1.ODR = 0: the device is in power-down" in message for _, message in bench.reports)
+    bench.reports.clear()
+    bench.write(0x20, 0x53)  # 100 Hz, x and y
+    bench.run(100)
+    bench.read(0x2C, 2)
+    assert bench.reports == [
+        ("not-configured", "LIS3DH.OUT_Z was read while CTRL_REG1.Zen = 0: the axis is disabled, and the value is old")
+    ]
+
+
+def test_a_burst_over_an_axis_that_is_off_is_told_nothing() -> None:
+    bench = Bench()
+    bench.write(0x20, 0x54)  # 100 Hz, z alone
+    bench.run(100)
+    bench.words()
+    bench.write(0x20, 0x57)
+    bench.run(100)
+    bench.words()
+    assert bench.reports == []
