@@ -62,12 +62,12 @@ class HandleNames:
         # A handle that no file-scope object holds may have been in any of them.
         return None in passed or bool(passed & objects) or bool(passed and not objects)
 
-    def posted_bits(self, event: Any) -> int:
-        """The bits of `event` that some statement of the image can post; all where nobody can tell."""
-        objects, bits = self.objects(event), 0
+    def bits(self, function: str, handle: Any) -> int:
+        """The bits that statements of the image can pass to `function` behind `handle`; all where nobody can tell."""
+        objects, bits = self.objects(handle), 0
         for f in self.functions:
-            posts = [call for call in calls(f.body) if call.function.name == "Event_post"]
-            for call, path in zip(posts, first_arguments(f.body, "Event_post"), strict=True):
+            made = [call for call in calls(f.body) if call.function.name == function]
+            for call, path in zip(made, first_arguments(f.body, function), strict=True):
                 if path is None or path in objects:
                     mask = bare(call.arguments[1])
                     bits |= mask.value if isinstance(mask, Const) and isinstance(mask.value, int) else ~0

@@ -128,16 +128,21 @@ class Standstill:
                 )  # fmt: skip
 
         for swi, spot in self._swis.items():
-            place = self._spots.place(spot)
-            if place is not None and not any(self._names.could(post, swi) for post in POSTS_OF_SWI):
+            place, posts = self._spots.place(spot), [post for post in POSTS_OF_SWI if self._names.could(post, swi)]
+            why = "" if posts else "no statement posts it"
+            # Swi_andn posts when no bit of the trigger is left.
+            left = swi.initial_trigger & ~self._names.bits("Swi_andn", swi) if posts == ["Swi_andn"] else 0
+            if left:
+                why = f"no Swi_andn takes bits {left:#x} off its trigger {swi.initial_trigger:#x}"
+            if place is not None and why:
                 self._findings.report_at(
-                    place, "never-posted", f"the Swi {self._names.of(swi)} is created, and no statement posts it: its "
-                    "function never runs", object=self._names.of(swi), how="dynamic",
+                    place, "never-posted", f"the Swi {self._names.of(swi)} is created, and {why}: its function never "
+                    "runs", object=self._names.of(swi), how="dynamic",
                 )  # fmt: skip
 
     def _never(self, thread: Thread, event: Event, name: str, place: Place) -> None:
         """Tell of bits of an event that no statement posts."""
-        posted = self._names.posted_bits(event)
+        posted = self._names.bits("Event_post", event)
         both, either = self._wanted.get(thread, (0, 0))
         if both & ~posted or (either and not both and not either & posted):
             missing = both & ~posted or either

@@ -73,11 +73,19 @@ Int main(Void)
     return 0;
 }
 """
+#: The Swi waits for bits 0 and 1 of its trigger; the clock takes off bit 0, something else the bits of {}.
+TRIGGERED = """Swi_Params s;
+    Swi_Params_init(&s);
+    s.trigger = 3;
+    soon = Swi_create(beat, &s, NULL);
+    if (Done == 7) Swi_andn(soon, {});"""
 RULES = ("never-posted", "clock-not-started", "post-lost", "endless-poll")
 
 
 def told(tmp_path: Path, text: str) -> list[tuple[str, str]]:
     """The rules that the check of a program names, each with the statement."""
+    if "s.trigger" in text:
+        text = text.replace("Swi_post(soon);", "Swi_andn(soon, 1);")
     (tmp_path / "drv.c").write_text(text, encoding="utf-8")
     checked = check_files(DriverFiles([tmp_path / "drv.c"], calls=1, board=load("bare"), seconds=0.1))
     lines = text.splitlines()
@@ -103,6 +111,8 @@ def told(tmp_path: Path, text: str) -> list[tuple[str, str]]:
     # The Swi waits for what the worker sets, which cannot run before it ends.
     ("Beats = Beats + 1; }", "Beats = Beats + 1;\n while (Flag)\n ;\n }", "endless-poll", "while (Flag)"),
     ("Swi_post(soon);", "", "never-posted", "soon = Swi_create(beat, NULL, NULL);"),
+    # A trigger of two bits, of which one stays.
+    ("soon = Swi_create(beat, NULL, NULL);", TRIGGERED.format(1), "never-posted", "soon = Swi_create(beat, &s, NULL);"),
     ("c.startFlag = TRUE;", "", "clock-not-started", "timer = Clock_create(tick, 10, &c, NULL);"),
     # Nobody keeps its handle.
     ("c.startFlag = TRUE;\n    timer = ", "", "clock-not-started", "Clock_create(tick, 10, &c, NULL);"),
@@ -127,6 +137,8 @@ def test_what_no_statement_brings_is_told_where_it_is_waited_for(
     ("Event_post(event, Event_Id_00);", "Event_post(event, Done);"),
     ("Event_pend(event, Event_Id_NONE, Event_Id_00,", "Event_pend(event, Event_Id_NONE, Event_Id_00 + Event_Id_05,"),
     ("Swi_post(soon);", "if (Done == 7) Swi_inc(soon);"),
+    ("soon = Swi_create(beat, NULL, NULL);", TRIGGERED.format(2)),
+    ("soon = Swi_create(beat, NULL, NULL);", TRIGGERED.format("Done")),
     ("Swi_post(soon);", "Swi_Handle copy = soon; if (Done == 7) Swi_post(copy);"),
     # With a timeout the task goes on.
     ("Mailbox_post(box, &m, BIOS_NO_WAIT);", ""),
