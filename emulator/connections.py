@@ -536,14 +536,23 @@ class Connections:
                 self._tell(reads[0], message, missing, second)
 
     def _channels(self) -> None:
-        """Channels of the DMA that have stopped behind a transfer while the program waits for ever."""
+        """Channels of the DMA that have stopped behind a transfer while the program waits for ever, or gives them the
+        addresses of the next one.
+        """
         for n in range(1, DMA_CHANNELS + 1):
             mode, control = f"DmaRegs.CH{n}.MODE", f"DmaRegs.CH{n}.CONTROL"
             place = self._wanting(mode, "CONTINUOUS")
             if place is None or self._value(control, "RUNSTS") or not self._could(control, bool, "RUN"):
                 continue
-            if self._stuck(mode, "CONTINUOUS", bool) and self._waits_for_ever():
-                why = f"{mode}.CONTINUOUS = 0, and no statement sets {control}.RUN again"
+            if not self._stuck(mode, "CONTINUOUS", bool):
+                continue
+            why = f"{mode}.CONTINUOUS = 0, and no statement sets {control}.RUN again"
+            addresses = [f"DmaRegs.CH{n}.{side}_ADDR_SHADOW" for side in ("SRC", "DST")]
+            given = next((a for a in addresses if self._writes_again(a, lambda _address: True, "")), None)
+            if given and self.started_up and not self._writes_again(control, bool, "RUN"):
+                message = f"channel {n} of the DMA stopped, is given the next addresses, and is not started"
+                self._tell(self._source.last(*_split(given)), message, Missing(why, given), mode)
+            elif self._waits_for_ever():
                 missing = Missing(why, mode, "CONTINUOUS")
                 message = f"channel {n} of the DMA stopped after a transfer, and the program waits for ever"
                 self._tell(place, message, missing, mode)

@@ -664,3 +664,61 @@ def test_a_flag_that_only_the_start_up_clears_gives_one_interrupt(
     text = HEARD.replace(was, now) if was else HEARD
     places = [f.place for f in told(tmp_path, text, "flag-not-cleared", seconds=0.06)]
     assert [place and at and at in text.splitlines()[place.line - 1] for place in places] == [True] * (at is not None)
+
+
+#: The DMA takes a result at each tick of timer 0; behind a buffer its interrupt names the other one.
+BUFFERS = """#include "F28x_Project.h"
+#pragma DATA_SECTION(Buffers, "ramgs0");
+Uint16 Buffers[2][8];
+volatile Uint16 Filled;
+interrupt void full(void)
+{
+    Filled ^= 1;
+    EALLOW;
+    DmaRegs.CH1.DST_BEG_ADDR_SHADOW = (Uint32)&Buffers[Filled][0];
+    DmaRegs.CH1.DST_ADDR_SHADOW = (Uint32)&Buffers[Filled][0];
+    DmaRegs.CH1.CONTROL.bit.RUN = 1;
+    EDIS;
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP7;
+}
+void main(void)
+{
+    InitSysCtrl();
+    DINT;
+    InitPieCtrl();
+    IER = 0x0000;
+    IFR = 0x0000;
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.DMA_CH1_INT = &full;
+    EDIS;
+    Filled = 0;
+    DMAInitialize();
+    DMACH1AddrConfig(&Buffers[0][0], &AdcaResultRegs.ADCRESULT0);
+    DMACH1BurstConfig(0, 0, 0);
+    DMACH1TransferConfig(7, 0, 1);
+    DMACH1WrapConfig(0xFFFF, 0, 0xFFFF, 0);
+    DMACH1ModeConfig(DMA_TINT0, PERINT_ENABLE, ONESHOT_DISABLE, CONT_DISABLE, SYNC_DISABLE, SYNC_SRC,
+                     OVRFLOW_DISABLE, SIXTEEN_BIT, CHINT_END, CHINT_ENABLE);
+    StartDMACH1();
+    InitCpuTimers();
+    ConfigCpuTimer(&CpuTimer0, 200, 50);
+    CpuTimer0Regs.TCR.all = 0x4000;
+    PieCtrlRegs.PIEIER7.bit.INTx1 = 1;
+    IER |= M_INT7;
+    EINT;
+    for (;;) { DELAY_US(10); }
+}
+"""
+
+
+@pytest.mark.parametrize(("was", "now", "at"), [
+    ("", "", None),
+    ("    DmaRegs.CH1.CONTROL.bit.RUN = 1;\n", "", "DST_ADDR_SHADOW"),
+    # It runs on by itself, from the addresses that it then has.
+    ("    DmaRegs.CH1.CONTROL.bit.RUN = 1;\n", "    DmaRegs.CH1.MODE.bit.CONTINUOUS = 1;\n", None),
+])  # fmt: skip
+def test_a_channel_that_gets_new_addresses_is_started(tmp_path: Path, was: str, now: str, at: str | None) -> None:
+    text = BUFFERS.replace(was, now) if was else BUFFERS
+    places = [finding.place for finding in told(tmp_path, text, seconds=0.01)]
+    assert [place and at and at in text.splitlines()[place.line - 1] for place in places] == [True] * (at is not None)
