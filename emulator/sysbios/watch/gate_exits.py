@@ -1,7 +1,7 @@
 """Ways through a function on which a gate that was entered is not left: a `continue` or a `return` in between.
 
 Looked for in the source, because the way may not be taken in a run.  A gate that some function only leaves is entered
-and left by partners, on purpose: nothing is said of it.
+and left by partners, on purpose: nothing is said of it.  Nor of `main`: before tasks run, a gate keeps nobody out.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def exits(functions: Iterable[Function]) -> Iterator[tuple[Function, GateExit]]:
     shared = {path for f in functions for path in left[f.path] - entered[f.path]}
     for f in functions:
         own = (entered[f.path] & left[f.path]) - shared
-        if own and None not in shared:
+        if f.name != "main" and own and None not in shared:
             found: list[GateExit] = []
             _walk(f.body, {}, {}, found)
             yield from ((f, exit) for exit in found if exit.path in own)
