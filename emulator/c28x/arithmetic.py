@@ -23,9 +23,9 @@ _CELL: Final = memoryview(bytearray(4)).cast("f")
 def f32(value: float) -> float:
     """`value` rounded to float32, nearest even, denormals flushed to +0 (the sign of a flushed zero: CHOICE).
 
-    Veltkamp's splitting (Dekker, Numerische Mathematik 18, 1971) with 2**29 + 1 leaves 24 of a double's 53 bits: three
-    operations of the machine.  Near zero and near overflow, and for what is no number, C's own conversion decides, in a
-    cell that carries nothing from one call to the next.  Constants are spelt out, which saves their look-up.
+    Veltkamp's splitting (Dekker, Numerische Mathematik 18, 1971) with 2**29 + 1 leaves 24 of a double's 53 bits, in
+    three machine operations.  Near zero, near overflow and for NaN, the C conversion of `_CELL` rounds; every call
+    writes `_CELL` before it reads it.  The constants are written as literals, which saves their look-up.
     """
     spread = value * 536870913.0
     rounded = spread - (spread - value)
@@ -81,10 +81,10 @@ def reciprocal_seed(b: float) -> float:
 
 
 def divide_newton_raphson(a: float, b: float) -> float:
-    """The quotient as the chip's run-time library makes it: seed, two Newton-Raphson steps, one product.
+    """The quotient as the chip's run-time library computes it: seed, two Newton-Raphson steps, one product.
 
     Each step rounds; there is no final correction, so about half of the quotients differ from IEEE by up to 3 ulp.
-    Published hardware results that it reproduces stand in tests/emulator/c28x/test_arithmetic.py.
+    It reproduces published hardware results: see tests/emulator/c28x/test_arithmetic.py.
     """
     y = reciprocal_seed(b)
     if y == 0.0:
@@ -115,10 +115,11 @@ def saturate(value: float, low: int, high: int) -> int:
 
 
 def low_bits(value: float, low: int, high: int) -> int:
-    """Float to int as the low bits of a 32-bit conversion; NaN gives 0, and so does what does not fit a long.
+    """Float to int: the low bits of a 32-bit conversion.  NaN and values outside the range of `long` give 0.
 
-    What an 8-bit target with a 32-bit library conversion does (out of range it gives 0x80000000, of either sign); used
-    to compare with vectors made that way.
+    A value above that range is clamped to 32 unsigned bits first where the target is unsigned.  An 8-bit target with a
+    32-bit library conversion does so (its conversion gives 0x80000000 for all values out of range).  It is used to
+    compare with test vectors that were computed on such a target.
     """
     wide = 0 if value != value or not -2147483648.0 <= value < 2147483648.0 else int(value)
     if low == 0 and value == value and value >= 2147483648.0:

@@ -1,8 +1,8 @@
 """Compiled programs kept on disk, so that what has not changed is not translated again.
 
-The key of a program is everything that it was made of: what was asked for, the `CompileOptions`, and the translator.
-It is taken only if every source file still has the content that it had, and reading a register is still what it was.
-If an entry cannot be read or written, the program is compiled.
+The key of a program contains the request, the `CompileOptions` and the state of the translator.  A kept program is used
+only if every source file is unchanged, and reading each register still has the same effect.  If an entry cannot be read
+or written, the program is compiled.
 
 The folder is the user's own cache (`HIL_CACHE`, else `XDG_CACHE_HOME`, else `~/.cache`); its files are trusted as the
 user's programs are.  `HIL_CACHE=off` keeps nothing.
@@ -31,10 +31,10 @@ from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import EnumType, Module, Symbol
 from emulator.c28x.tree import Function
 
-#: Programs kept in the folder: those used last.
+#: How many programs the folder keeps: the most recently used ones.
 KEPT: Final = 64
 PACKAGE: Final = Path(__file__).resolve().parent.parent
-#: Folders that a translation depends on besides the firmware, and whether with all below them.
+#: Folders that a translation depends on besides the firmware, and whether their subfolders count too.
 TRANSLATOR: Final = (("", False), ("c28x", True), ("registers", False), ("sysbios", False))
 
 
@@ -46,9 +46,9 @@ File = tuple[str, int, int]
 def compiled(
     asked: dict[str, Any], options: CompileOptions, looked_at: Callable[[str, str], bool], *, keep: bool = True
 ) -> Compiled:
-    """The program `Program(**asked)`, compiled: from the cache if it is there, else made and put there.
+    """The program `Program(**asked)`, compiled: from the cache, or compiled now and stored there.
 
-    `keep` False: it is one of many that are wanted once, and the cache has nothing to do with it.  Raises what
+    `keep` False: the cache is not used, because the program is one of many that are needed once.  Raises what
     `Program` and `compile_program` raise.
     """
     file = _file(asked, options) if keep else None
@@ -64,7 +64,7 @@ def compiled(
         answer = asked_for[block, register] = looked_at(block, register)
         return answer
 
-    from emulator.c28x.compile import compile_program  # most runs find their program, and need no translator
+    from emulator.c28x.compile import compile_program  # most runs find their program and do not need the translator
 
     program = Program(**asked)
     result = compile_program(program, options, remembered)
@@ -76,7 +76,7 @@ def compiled(
 
 
 class Kept:
-    """A compiled program with what it depends on, besides the files that its name stands for."""
+    """A compiled program, with the sources and register properties that it depends on."""
 
     def __init__(self, compiled: Compiled, digests: dict[str, str], looked_at: dict[tuple[str, str], bool]) -> None:
         self.compiled = compiled
@@ -84,7 +84,7 @@ class Kept:
         self.looked_at = looked_at
 
     def fits(self, looked_at: Callable[[str, str], bool]) -> bool:
-        """Whether everything that it was made of is as it was."""
+        """Whether its sources and the effects of reading registers are unchanged."""
         return all(digest(name) == known for name, known in self.digests.items()) and all(
             looked_at(*register) == known for register, known in self.looked_at.items()
         )
@@ -115,7 +115,7 @@ def _folder() -> Path | None:
 
 
 def _file(asked: dict[str, Any], options: CompileOptions) -> Path | None:
-    """The file of a request; None if it cannot be named: it holds functions, or nothing is kept."""
+    """The file of a request; None if the cache is off, or a function in the request has no name."""
     folder = _folder()
     if folder is None:
         return None
@@ -139,7 +139,7 @@ def _file(asked: dict[str, Any], options: CompileOptions) -> Path | None:
 
 @lru_cache(maxsize=1)
 def _translator() -> str:
-    """The translator's own files: a change of any makes other programs.  While a process runs it stays what it is."""
+    """The state of the translator's own files: a change makes other programs.  It is read once per process."""
     return _state(_translator_files())
 
 
@@ -148,9 +148,9 @@ def _translator_files() -> list[File]:
 
 
 def _package_files(asked: Mapping[str, Any]) -> list[File]:
-    """The files of the packages that functions in a request come from: what these give may depend on any of them."""
+    """The files of the packages that define the functions in a request: their results may depend on any of them."""
     functions = [value for value in asked.values() if callable(value)]
-    # What a method gives depends on the package that its object names.
+    # The results of a method depend on the package that its object names.
     packages = {getattr(getattr(f, "__self__", None), "package", f.__module__.partition(".")[0]) for f in functions}
     return [file for package in sorted(packages) for folder in folders(package) for file in _sources(str(folder))]
 
@@ -171,12 +171,12 @@ def _sources(folder: str, below: bool = True) -> list[File]:
 
 
 def _state(files: list[File]) -> str:
-    """Files as one text."""
+    """A digest of the names, sizes and times of files."""
     return hashlib.sha256(marshal.dumps(sorted(files), 0)).hexdigest()  # 0: no references, no interned strings
 
 
 def _signature(file: Path) -> tuple[int, int]:
-    """What tells a new file of the same name."""
+    """Size and inode of a file: they tell a new file with the same name apart."""
     try:
         found = file.stat()
     except OSError:
@@ -186,26 +186,26 @@ def _signature(file: Path) -> tuple[int, int]:
 
 @lru_cache(maxsize=KEPT)
 def _load(file: str, size: int, inode: int) -> Kept | None:
-    """A kept program; None if it is not there or not whole.  Images of one process share it: nobody changes it."""
+    """A kept program; None if it is missing or damaged.  Images of one process share it, so it must not be changed."""
     if not size:
         return None
     try:
         with open(file, "rb") as kept:
             found = pickle.load(kept)
-    except Exception:  # whatever a damaged file makes of unpickling: it is as if it were not there
+    except Exception:  # unpickling a damaged file can raise anything: treat it as missing
         return None
     return found if isinstance(found, Kept) else None
 
 
 class _Pickler(pickle.Pickler):
-    """Pickles only what is still needed once the code is generated.
+    """Pickles only what is needed after the code has been generated.
 
-    Trees are, in a program that is watched.  A type's name means what the first module that has it says (`type_named`);
-    every C file has all types and functions of its headers: equal ones become one.
+    A watched program still needs its trees.  Every C file has all types and functions of its headers: equal ones are
+    stored once.  The name of a type means the one in the first module that has it (`type_named`).
     """
 
     def reducer_override(self, obj: Any) -> Any:
-        """What stands for an object."""
+        """How to pickle an object."""
         if isinstance(obj, Kept):
             self.trees = obj.compiled.options.watch
             self.functions = {compiled.function for compiled in obj.compiled.functions}
@@ -238,7 +238,7 @@ def _itself(ctype: CType) -> CType:
 
 
 def _keep(file: Path, kept: Kept) -> None:
-    """Put a program into its file, whole or not at all; the oldest beyond `KEPT` go."""
+    """Write a program to its file, completely or not at all; delete the oldest files beyond `KEPT`."""
     limit = sys.getrecursionlimit()
     sys.setrecursionlimit(max(limit, 20_000))
     temporary = ""

@@ -16,7 +16,7 @@ from emulator.c28x.memory import zero_of
 
 
 def misfit(known: FunctionType, wanted: FunctionType) -> str:
-    """What a function of type `known` misses when it is called as `wanted`; nothing where it works."""
+    """Why a function of type `known` does not work when it is called as `wanted`; empty if it works."""
     takes, given = len(known.parameters), len(wanted.parameters)
     if takes > given:
         return f"it takes {takes} argument{'s' * (takes > 1)}, {given or 'none'} {'are' if given > 1 else 'is'} passed"
@@ -29,7 +29,7 @@ def misfit(known: FunctionType, wanted: FunctionType) -> str:
 
 
 def fitted(function: Callable[..., Any], known: FunctionType, wanted: FunctionType) -> Callable[..., Any]:
-    """`function`, of type `known`, for a caller that takes it for one of type `wanted`."""
+    """An adapter that calls `function`, of type `known`, with the arguments and result of type `wanted`."""
     passed = (*wanted.parameters, *(VOID for _ in known.parameters))
 
     def call(*values: Any) -> Any:
@@ -41,7 +41,7 @@ def fitted(function: Callable[..., Any], known: FunctionType, wanted: FunctionTy
 
 
 def _class(ctype: CType) -> object:
-    """What decides on the register that a value is handed over in."""
+    """The class of a type: it decides in which register a value is passed."""
     if isinstance(ctype, StructType):
         return ctype
     if isinstance(ctype, IntType | FloatType):
@@ -50,7 +50,7 @@ def _class(ctype: CType) -> object:
 
 
 def _seen_as(value: Any, ctype: CType, wanted: CType) -> Any:
-    """A value of type `ctype` as what stands in the register of a `wanted`."""
+    """The `wanted` value that a function reads where a value of type `ctype` was passed."""
     if _class(ctype) != _class(wanted):
         return zero_of(wanted)
     return wanted.wrap(value) if isinstance(wanted, IntType) else value

@@ -1,4 +1,4 @@
-"""The way from source to code: read, build, check, write; what comes out knows no board.
+"""From source to code: read, build, check, write.  The result does not depend on a board.
 
     program = Program(modules)            # readers and builder: typed trees
     compiled = compile_program(program, options, looked_at)
@@ -33,8 +33,8 @@ from emulator.c28x.tree_queries import compared, limited
 def compile_program(program: Program, options: CompileOptions, looked_at: Callable[[str, str], bool]) -> Compiled:
     """Translate every function of `program`.
 
-    `looked_at`: whether reading a register (block, name) is nothing but looking at its stored word.  Raises SourceError
-    for source outside the language, LinkError for an entry that means nothing.
+    `looked_at`: whether reading a register (block, name) only returns its stored word.  Raises SourceError for source
+    outside the language, LinkError for an entry that matches no function.
     """
     modules = program.translate()
     for module in modules:
@@ -78,7 +78,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
 
 
 def _entries(modules: Iterable[Module], options: CompileOptions) -> frozenset[str]:
-    """The functions that `CompileOptions.entries` means.  Raises LinkError for an entry that means none."""
+    """The functions that `CompileOptions.entries` names.  Raises LinkError for an entry that matches none."""
     paths = [function.path for module in modules for function in module.functions]
     meant: set[str] = set()
     for entry in options.entries:

@@ -1,7 +1,7 @@
-"""A compiled program: the functions as code, and what their text refers to.
+"""A compiled program: its functions as code, and the names that their text refers to.
 
-`compile.py` makes it, `cache.py` keeps it, `link.py` binds it to one board.  Who only links what is kept needs nothing
-of what made it.
+`compile.py` makes it, `cache.py` keeps it, `link.py` binds it to one board.  Linking a kept program does not need the
+translator.
 """
 
 from __future__ import annotations
@@ -27,26 +27,26 @@ class LinkError(ValueError):
 
 @dataclass
 class CompileOptions:
-    """How to generate."""
+    """Options of the translation."""
 
-    #: Spill locals to the stack memory at return (fill policy `stack`).
+    #: Write locals to the stack memory at return (for the fill policy `stack`).
     residue: bool = False
     #: Keep a function's locals for tests.
     keep_locals: bool = False
-    #: Call `Runtime.touch` at every load and store of an object that others can reach.
+    #: Call `Runtime.touch` at every load and store of an object that other threads can reach.
     watch: bool = False
     #: Count how often each statement is begun (`coverage.py`).
     coverage: bool = False
-    #: Tell `Position.hold`, if there is one, of each statement before it runs.
+    #: Call `Position.hold`, if it is set, before each statement.
     steps: bool = False
     #: Report what the typed tree shows without running it.
     static: bool = False
-    #: Functions (`module.name`, or a pattern of them) that somebody outside of the image calls: what `static` says of
-    #: functions never called and of parameters not used is not for them.
+    #: Functions (`module.name`, or a pattern) that are called from outside of the image: `static` does not report them
+    #: as never called, nor their parameters as unused.
     entries: frozenset[str] = frozenset()
-    #: What a division of floats gives is what IEEE says; `float_division` says how long it takes.
+    #: A division of floats gives the IEEE result.  (`float_division` decides only how long it takes.)
     ieee: bool = True
-    #: The build that decides how long it takes: a name of `FLOAT_DIVISIONS`.
+    #: The build that decides how long a float division takes: a name in `FLOAT_DIVISIONS`.
     float_division: str = DEFAULT_FLOAT_DIVISION
     #: Arrays (`module.function.name`) that have more elements than the source says.
     room: dict[str, int] = field(default_factory=dict)
@@ -56,7 +56,7 @@ class CompileOptions:
 
 @dataclass
 class CompiledFunction:
-    """A function as Python, and the source file that its lines count in."""
+    """A function as Python code, and the source file that its line numbers refer to."""
 
     function: Function
     file: str
@@ -69,13 +69,13 @@ class CompiledFunction:
         return self.function.path
 
     def code(self) -> CodeType:
-        """The code of the function's definition; places are numbered from `FIRST_NUMBER`."""
+        """The code that defines the function.  Its places are numbered from `FIRST_NUMBER`."""
         if self._code is None:
             self._code = _code(self.written.text, self.file, self.written.lines)
         return self._code
 
     def take_code(self, code: CodeType) -> None:
-        """The code, made before of the same text."""
+        """Use `code`, which was compiled earlier from the same text."""
         self._code = code
 
     def __getstate__(self) -> dict[str, Any]:
@@ -91,21 +91,21 @@ class Compiled:
     functions: list[CompiledFunction]
     #: Every file-scope object with the values that it starts from (None: it has no initialiser).
     objects: list[tuple[Variable, list[Any] | None]]
-    #: What the trees show without running.
+    #: The findings of the static checks.
     findings: list[StaticFinding]
 
 
 @lru_cache(maxsize=4096)
 def _code(text: str, file: str, lines: tuple[int, ...]) -> CodeType:
-    """The text of a function, each line under its number in `file`.  Most images of a process share most functions."""
+    """The code of a text, with line numbers of `file`.  It is cached: most images of a process share most functions."""
     return _renumbered(compile(text, file, "exec", dont_inherit=True), lines)
 
 
 def _renumbered(code: CodeType, lines: Sequence[int]) -> CodeType:
-    """Code whose line n is line `lines[n - 1]` of the source; columns mean nothing there.
+    """Code whose line n gets the number `lines[n - 1]`; it has no columns.
 
-    Changing the lines of the syntax tree would take three times as long.  The table (CPython, Objects/locations.md) has
-    an entry for each run of at most 8 units of code: its length, and how many lines further it is.
+    Changing the lines of the syntax tree would take three times as long.  The line table (CPython,
+    Objects/locations.md) has an entry for each run of at most 8 code units: its length and its line offset.
     """
     runs: list[tuple[int | None, int]] = []
     for start, end, line in code.co_lines():
@@ -132,7 +132,7 @@ def _renumbered(code: CodeType, lines: Sequence[int]) -> CodeType:
 
 
 def _signed(value: int) -> bytes:
-    """A number of the table: six bits a byte, the lowest first, the sign in the lowest of all."""
+    """A signed number of the line table: six bits per byte, lowest bits first; the lowest bit is the sign."""
     rest = -value << 1 | 1 if value < 0 else value << 1
     digits = bytearray()
     while rest > 0x3F:
@@ -141,6 +141,6 @@ def _signed(value: int) -> bytes:
     return bytes((*digits, rest))
 
 
-#: How an entry begins for so many units: a line without columns, or no line.
+#: The first byte of an entry, by its number of units: for a line without columns, and for no line.
 _NO_COLUMNS: Final = (b"", *(bytes([0x80 | 13 << 3 | units - 1]) for units in range(1, 9)))
 _NO_LINE: Final = (b"", *(bytes([0x80 | 15 << 3 | units - 1]) for units in range(1, 9)))

@@ -1,8 +1,8 @@
-"""How often the statements of firmware are begun: counters that images linked with `CompileOptions.coverage` raise.
+"""How often each statement of the firmware starts.  Images linked with `CompileOptions.coverage` count it.
 
-A statement is counted when the firmware comes to it, a loop at each look at its test (a `do` at the line of the test);
-the `break` that ends a case is no statement of its own.
-A loop that only polls is counted once each time the firmware comes to it: its turns are not run one by one.
+A statement counts each time the firmware reaches it; a loop counts each evaluation of its test (a `do` at the line of
+the test).  The `break` that ends a case does not count as a statement.
+A loop that only polls counts once each time the firmware reaches it, because its turns are not run one by one.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from emulator.c28x.tree import Where
 
 @dataclass
 class FileCoverage:
-    """One source file: hits of each line that has a statement; line and calls of each function."""
+    """One source file.  `lines`: line -> hits; `functions`: name -> (line, calls)."""
 
     lines: dict[int, int] = field(default_factory=dict)
     functions: dict[str, tuple[int, int]] = field(default_factory=dict)
 
 
 class Coverage:
-    """The counters of several images.  A function that they have in common is counted together."""
+    """The counters of several images.  Images that share a function share its counters."""
 
     def __init__(self) -> None:
         self._counts: dict[tuple[str, str, tuple[Where, ...]], list[int]] = {}
 
     def counters(self, file: str, function: str, counted: Sequence[Where]) -> list[int]:
-        """The counters of a function of `file`: for itself first, then for the statements that begin at `counted`."""
+        """The counters of a function of `file`, one per place in `counted`; the first one counts its calls."""
         return self._counts.setdefault((file, function, tuple(counted)), [0] * len(counted))
 
     def data(self) -> list[list[Any]]:
@@ -40,15 +40,15 @@ class Coverage:
         ]
 
     def add(self, data: Iterable[Sequence[Any]]) -> None:
-        """Add what another process has counted."""
+        """Add the counts of another process."""
         for file, function, counted, counts in data:
             own = self.counters(file, function, [Where(*place) for place in counted])
             own[:] = [mine + other for mine, other in zip(own, counts, strict=True)]
 
     def files(self) -> dict[str, FileCoverage]:
-        """What was counted, by source file.
+        """The counts by source file.
 
-        A line has the hits of its statement that was begun most often; where several functions stand, of all of them.
+        The hits of a line are those of its most frequent statement; several functions on one line are added up.
         """
         found: dict[str, FileCoverage] = {}
         for (file, function, (place, *counted)), (calls, *counts) in self._counts.items():

@@ -39,7 +39,7 @@ class CType:
         return PointerType(f"{self} *", self)
 
     def __getstate__(self) -> dict[str, Any]:
-        """What it is, without what has been computed from that: equal types are kept as equal bytes."""
+        """The fields without cached properties: equal types are pickled as equal bytes."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     def __str__(self) -> str:
@@ -53,7 +53,7 @@ class VoidType(CType):
 
 @dataclass(frozen=True)
 class IntType(CType):
-    """An integer of `bits` bits.  A bit-field narrower than int has its own width."""
+    """An integer type of `bits` bits.  A bit-field that is narrower than int has its own width."""
 
     bits: int
     signed: bool
@@ -92,9 +92,9 @@ class FloatType(CType):
 
 @dataclass(frozen=True)
 class Double64(FloatType):
-    """IEEE double precision, of constants only: `long double`, and `double` under the EABI.
+    """IEEE double precision, for constants only: `long double`, and `double` under the EABI.
 
-    No object has this type, and nothing is computed in it while the firmware runs.
+    No object has this type, and the running firmware computes nothing in it.
     """
 
 
@@ -112,7 +112,7 @@ class PointerType(CType):
 
 @dataclass(frozen=True)
 class HandleType(CType):
-    """An opaque pointer of a kernel header, whose value is an object of the emulator."""
+    """An opaque pointer type of a kernel header.  Its values are objects of the emulator."""
 
     @cached_property
     def words(self) -> int:
@@ -122,7 +122,7 @@ class HandleType(CType):
 
 @dataclass(frozen=True)
 class FunctionType(CType):
-    """A function; as a value, a pointer to it."""
+    """A function type.  A value of this type is a pointer to the function."""
 
     result: CType
     parameters: tuple[CType, ...]
@@ -148,12 +148,12 @@ class ArrayType(CType):
 
     @cached_property
     def align(self) -> int:
-        """That of the element."""
+        """The alignment of the element."""
         return self.element.align
 
     @cached_property
     def leaves(self) -> int:
-        """Scalars of all elements."""
+        """The scalars of all elements."""
         return self.element.leaves * self.length
 
 
@@ -161,7 +161,7 @@ class ArrayType(CType):
 class Member:
     """A structure member: its offset in words, and the index of its first scalar.
 
-    A bit-field has a `width`: it lies `lo` bits above the lowest bit of its declared type at `offset`.
+    A bit-field has a `width`.  It starts at bit `lo` of its declared type, counted from the lowest bit, at `offset`.
     """
 
     name: str
@@ -177,25 +177,25 @@ class Member:
 class StructType(CType):
     """Members in order, 32-bit members on even words, size rounded to the alignment.
 
-    No members: a structure that is only declared.  A structure that holds a union or a bit-field is *word-backed*:
-    its scalars are its words.
+    A structure that is only declared has no members.  A structure that contains a union or a bit-field is
+    *word-backed*: its scalars are its words.
     """
 
     members: tuple[Member, ...] = field(compare=False, default=())
 
     @cached_property
     def words(self) -> int:
-        """End of the last member, rounded up."""
+        """The end of the last member, rounded up to the alignment."""
         return _round_up(max((m.offset + m.ctype.words for m in self.members), default=0), self.align)
 
     @cached_property
     def align(self) -> int:
-        """That of the most demanding member."""
+        """The largest alignment of a member."""
         return max((m.ctype.align for m in self.members), default=1)
 
     @cached_property
     def leaves(self) -> int:
-        """Scalars of all members, or the words of what is word-backed."""
+        """The scalars of all members; the words if the type is word-backed."""
         return self.words if self.word_backed else sum(m.ctype.leaves for m in self.members)
 
     @cached_property
@@ -210,11 +210,11 @@ class StructType(CType):
 
 @dataclass(frozen=True)
 class UnionType(StructType):
-    """Members that all begin at its first word: word-backed."""
+    """Members that all begin at the first word; it is word-backed."""
 
     @cached_property
     def word_backed(self) -> bool:
-        """Always."""
+        """Always true."""
         return True
 
 
@@ -240,16 +240,17 @@ def make_struct(name: str, members: list[tuple[str, CType]]) -> StructType:
 def complete(
     declared: StructType, members: Sequence[tuple[str, CType, int | None]], volatile: Collection[str] = ()
 ) -> StructType:  # fmt: skip
-    """Give a structure or union that was only declared its members: name, type and width (a bit-field) of each.
+    """Add the members to a structure or union that was only declared: name, type, and width of a bit-field.
 
-    `volatile` names the members that are declared so.
+    `volatile` names the members that are declared volatile.
 
-    In place, because pointers to it exist.  A bit-field lies at the next free bit; where it would lie across the end of
-    a unit of its declared type, counted from the beginning of the structure, it begins the next one, and a width of 0
-    ends a unit (SPRAC71 2.8; CC section "field/structure alignment": `Uint16 a:15; Uint32 b:4;` are 19 adjacent bits).
+    The type is changed in place, because pointers to it exist.  A bit-field takes the next free bit.  If it would cross
+    the end of a unit of its declared type, counted from the start of the structure, it starts the next unit.  A width
+    of 0 ends a unit (SPRAC71 2.8; CC section "field/structure alignment": `Uint16 a:15; Uint32 b:4;` are 19 adjacent
+    bits).
     """
     laid: list[Member] = []
-    free = leaf = 0  # the first free bit
+    free = leaf = 0  # `free`: the first free bit
     for name, ctype, width in members:
         if isinstance(declared, UnionType):
             free = 0
@@ -295,7 +296,7 @@ BASIC: Final[dict[str, CType]] = {
     "int32": LONG, "uint32": ULONG, "int64": LLONG, "uint64": ULLONG, "float32": FLOAT,
 }  # fmt: skip
 
-#: Specifiers of a declaration in alphabetical order -> the type.  `int` beside another word says nothing.
+#: Specifiers of a declaration in alphabetical order -> the type.  `int` beside another word is redundant.
 _SPECIFIED: Final[dict[tuple[str, ...], CType]] = {
     ("void",): VOID, ("_Bool",): BOOL, ("char",): CHAR, ("char", "signed"): SCHAR, ("char", "unsigned"): UCHAR,
     ("short",): INT, ("short", "signed"): INT, ("short", "unsigned"): UINT,
@@ -307,7 +308,7 @@ _SPECIFIED: Final[dict[tuple[str, ...], CType]] = {
 
 
 def specified(words: Iterable[str]) -> CType | None:
-    """The basic type that C writes with these words, in any order: `unsigned long int`; None if there is none."""
+    """The basic type that these words name, in any order: `unsigned long int`; None if they name none."""
     said = sorted(words)
     if len(said) > 1 and "int" in said:
         said.remove("int")
@@ -320,7 +321,7 @@ def bit_field(width: int, *, signed: bool = False) -> IntType:
 
 
 def pointed(ctype: CType) -> CType:
-    """What the address of an object of this type points to: that of an array to its first element."""
+    """The target type of a pointer to an object of this type; for an array that is its element."""
     return ctype.element if isinstance(ctype, ArrayType) else ctype
 
 
@@ -356,12 +357,12 @@ def usual(a: CType, b: CType) -> CType:
     return signed if signed.rank > unsigned.rank else unsigned
 
 
-#: CHOICE: these numbers of an enumeration say "none", whatever its constants are.
+#: CHOICE: these values of an enumeration mean "none", whatever its constants are.
 NOBODY: Final = (0xFF, 0x7FFF, 0xFFFF)
 
 
 def part_name(ctype: CType, offset: int) -> str:
-    """How C names what lies at word `offset` of an object: `[3].X`; the odd word of a scalar has its number."""
+    """The C name of the part at word `offset` of an object: `[3].X`; a later word of a scalar has its number."""
     if isinstance(ctype, ArrayType):
         index, rest = divmod(offset, max(1, ctype.element.words))
         return f"[{index}]{part_name(ctype.element, rest)}"

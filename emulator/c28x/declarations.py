@@ -1,4 +1,4 @@
-"""What the author of firmware declares in its comments: ``hil: WORD ...``, in C and in Python.
+"""Declarations in comments of the firmware: ``hil: WORD ...``, in C and in Python.
 
     // hil: allow index, the table has a guard word behind it
     x = table[i];
@@ -6,8 +6,8 @@
     // hil: range -100..100
     int16_t limited(int16_t v) { ... }
 
-A comment that stands behind code is about that line; one that stands alone is about the statement, or the function,
-that begins on the next line of code.  A comment over several lines declares on each line that begins with ``hil:``.
+A comment behind code applies to that line.  A comment on a line of its own applies to the statement, or the function,
+that begins on the next line of code.  In a comment of several lines, each line that begins with ``hil:`` declares.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from typing import Final
 
 from emulator.c28x.tree import Where
 
-#: The words that may follow ``hil:``, each with how it is written.
+#: The words that may follow ``hil:``, each with its syntax.
 WORDS: Final = {
     "allow": "allow RULE, REASON",
     "range": "range [PARAMETER] LOW..HIGH",
@@ -34,42 +34,42 @@ WORDS: Final = {
     "even": "even [PARAMETER]",
     "idempotent": "idempotent",
 }
-#: Literals and comments of C: what begins first counts.
+#: Literals and comments of C: the one that begins first counts.
 _C: Final = re.compile(r"""(?P<comment>//[^\n]*|/\*.*?(?:\*/|\Z))|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'""", re.DOTALL)
-#: A line of a comment that declares; the comment's own marks are before it and behind it.
+#: A declaration in a line of a comment; the marks of the comment may surround it.
 _DECLARES: Final = re.compile(r"^[\s/*#!<]*hil:\s*(?P<word>\S*)\s*(?P<text>.*?)\s*(?:\*/)?$")
-#: How a statement of C ends, or the head of one that has a body.
+#: The end of a C statement, or of the head of one that has a body.
 _C_END: Final = re.compile(r"[;{}:]\s*$")
 
 
 @dataclass(frozen=True, slots=True)
 class UserDeclaration:
-    """One declaration: its word, what follows, and which lines it is about."""
+    """One declaration: its word, the text after it, and the lines that it applies to."""
 
     file: str
-    #: Where it stands.
+    #: The line of the declaration.
     line: int
     word: str
     text: str
-    #: The first and the last line that it is about.
+    #: The first and the last line that it applies to.
     about: tuple[int, int]
 
     def is_about(self, where: Where) -> bool:
-        """Whether it is about what stands at a place."""
+        """Whether it applies to a place."""
         return where.file == self.file and self.about[0] <= where.line <= self.about[1]
 
     def __str__(self) -> str:
         return f"{self.file}:{self.line}: hil: {self.word}"
 
     def wrong(self, why: str) -> ValueError:
-        """What is wrong with it, in one line, and how it is written."""
+        """The error about this declaration, in one line: what is wrong, and its syntax."""
         return ValueError(f"{self}: {why}: want hil: {WORDS[self.word]}")
 
 
 def declarations(file: str) -> tuple[UserDeclaration, ...]:
-    """What the comments of a file declare, in order; nothing of a file that cannot be read.
+    """The declarations in the comments of a file, in order; none if the file cannot be read.
 
-    Raises ValueError, one line with file and line, for a word that declares nothing.
+    Raises ValueError, one line with file and line, for an unknown word.
     """
     try:
         status = Path(file).stat()
@@ -80,7 +80,7 @@ def declarations(file: str) -> tuple[UserDeclaration, ...]:
 
 @lru_cache
 def _declarations(file: str, changed_ns: int, size: int) -> tuple[UserDeclaration, ...]:
-    """Those of a file as it is now."""
+    """The declarations of a file; cached by its time of change and size."""
     text = Path(file).read_text(encoding="utf-8", errors="replace")
     return tuple(_declared(file, text)) if "hil:" in text else ()
 
@@ -117,7 +117,7 @@ def _python_comments(text: str) -> Iterator[tuple[int, str]]:
             if token.type == tokenize.COMMENT:
                 yield starts[token.start[0] - 1] + token.start[1], token.string
     except (tokenize.TokenError, SyntaxError):
-        return  # the translator says what is wrong with it
+        return  # the translator reports what is wrong with it
 
 
 def _code(text: str, comments: list[tuple[int, str]]) -> list[str]:
@@ -130,7 +130,7 @@ def _code(text: str, comments: list[tuple[int, str]]) -> list[str]:
 
 
 def _next(code: list[str], line: int, python: str | None) -> tuple[int, int]:
-    """From the first line of code behind line number `line` to the end of the statement, or the head, there."""
+    """The lines of the next statement, or head, behind line `line`: first and last."""
     first = next((number for number in range(line + 1, len(code) + 1) if code[number - 1].strip()), line)
     if python is not None:
         return first, _python_end(python, first)

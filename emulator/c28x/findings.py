@@ -1,8 +1,8 @@
-"""Findings: what was seen that a correct driver would not do, with everything needed to look at it.
+"""Findings: things that a correct driver would not do, with all that is needed to examine them.
 
-A finding is one place, however often it is passed: the first occurrence keeps its time, task, call path and
-value, later ones only count.  Detectors all over the emulator call `Findings.report`; the place in the
-firmware, the call path, the task and the time are found here, so a detector states only what it knows.
+A finding belongs to one place, however often the firmware passes it.  The first occurrence keeps its time, task, call
+path and value; later ones only count.  Detectors all over the emulator call `Findings.report`.  This module adds the
+place in the firmware, the call path, the task and the time, so a detector states only what it knows.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ class Finding:
     time_cycles: int
     value: Any = None
     count: int = 1
-    #: More to know, a sentence each: the neighbour that is hit, what address 0 holds and who shares it.
+    #: More details, one sentence each: the neighbour that is hit, what address 0 holds and who shares it.
     details: tuple[str, ...] = ()
-    #: "dynamic": seen while it ran; "static": in the typed tree, whether it runs or not.
+    #: "dynamic": found while the firmware ran; "static": found in the typed tree, without running it.
     how: str = "dynamic"
 
     @property
@@ -71,8 +71,8 @@ class Finding:
         }
 
 
-#: The statement that set something going which ends later: its number, what had called what, and who ran.  A tuple,
-#: because one is made for each conversion: an object of a class takes six times as long.
+#: The statement that started something which ends later: its number, its calls, and the task that ran.  It is a tuple,
+#: because every conversion makes one, and an object of a class takes six times as long.
 Cause = tuple[int, Calls | None, str]
 
 
@@ -81,18 +81,18 @@ class Findings:
     """The findings of one board, in order of first occurrence."""
 
     clock: Clock
-    #: Where the firmware is, and what the numbers of its places mean.
+    #: Where the firmware is, and the places by number.
     position: Position = field(default_factory=Position)
     places: Places = field(default_factory=Places)
     #: Python file of a firmware module -> C file it mirrors; filled by the linker.
     sources: dict[str, str] = field(default_factory=dict)
     #: Where each function of the firmware begins; filled by the linker.
     beginnings: dict[Callable[..., Any], Place] = field(default_factory=dict)
-    #: What set the event going that runs now: findings belong there, not to whoever happens to have the CPU.
+    #: The cause of the event that runs now: findings belong to it, not to the task that happens to have the CPU.
     cause: Cause | None = None
-    #: What is reported now is the consequence of something that has been reported: it is not recorded.
+    #: Reports are not recorded now, because they are consequences of an earlier finding.
     muted: bool = False
-    #: Grows with every `clear`, so that a detector knows that its remembered finding is gone.
+    #: Increases with every `clear`, so that a detector knows that the finding it remembers is gone.
     generation: int = 0
     _by_key: dict[tuple[str, str, int, str], Finding] = field(default_factory=dict)
     #: (finding): at each first occurrence.
@@ -105,7 +105,7 @@ class Findings:
         return len(self._by_key)
 
     def __getitem__(self, index: int) -> Finding:
-        """The finding that came as number `index`, from 0; -1 is the last one."""
+        """Finding number `index` in order of occurrence, from 0; -1 is the last one."""
         return list(self)[index]
 
     def __repr__(self) -> str:
@@ -141,7 +141,7 @@ class Findings:
         self, rule: str, message: str, *, object: str = "", declaration: str = "", value: Any = None,
         details: tuple[str, ...] = (), at: int = 0,
     ) -> Finding:  # fmt: skip
-        """Record an occurrence of `rule` at the firmware statement that is executing; `at`: its number, if known."""
+        """Record an occurrence of `rule` at the statement that executes now; `at`: its number, if known."""
         cause = self.cause
         if cause is None:
             path, task = self.path(at or self.position.at, self.position.calls), ""
@@ -154,9 +154,9 @@ class Findings:
         self, place: Place, rule: str, message: str, *, how: str, object: str = "", declaration: str = "",
         value: Any = None, details: tuple[str, ...] = (), call_path: tuple[Place, ...] = (), task: str = "",
     ) -> Finding:  # fmt: skip
-        """Record `rule` at a place that is not executing: in the typed tree, or where an earlier access stood.
+        """Record `rule` at a place that does not execute now: in the typed tree, or at an earlier access.
 
-        `call_path` begins with it.
+        `call_path` begins with that place.
         """
         return self._record(call_path or (place,), task, rule, message, object, declaration, value, details, how)
 
@@ -181,16 +181,16 @@ class Findings:
         return finding
 
     def mark(self) -> Cause | None:
-        """The statement that executes, for what it sets going; None if none does."""
+        """The statement that executes now, as the cause of what it starts; None if none executes."""
         position = self.position
         if not position.at and position.calls is None:
             return None
         return position.at, position.calls, position.who
 
     def path(self, at: int, calls: Calls | None) -> tuple[Place, ...]:
-        """The places of a position, the innermost first: what called what.
+        """The call path of a position, as places, the innermost first.
 
-        What a function of a header of ours does (`<stdlib.h>`) is done by the line that calls it.
+        Places in functions of our own headers (`<stdlib.h>`) are left out: the path begins at the line that calls them.
         """
         places = [self.places[number] for number, _ in frames(at, calls)]
         own = next((i for i, place in enumerate(places) if not place.file.startswith("<")), 0)
@@ -202,11 +202,11 @@ class Findings:
 
 
 def _briefly(place: Place | None) -> str:
-    """A place in a narrow column: the file without its folder."""
+    """A short text of a place, for a narrow column: the file without its folder."""
     return "" if place is None else str(place._replace(file=os.path.basename(place.file)))
 
 
 def _severity(rule_id: str) -> Severity:
-    """That of a rule; of one that is unknown here, a warning."""
+    """The severity of a rule; a warning for an unknown rule."""
     rule = RULES.get(rule_id)
     return Severity.WARNING if rule is None else rule.severity

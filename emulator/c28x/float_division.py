@@ -1,6 +1,6 @@
-"""How long dividing two floats takes: it depends on how the C was built.
+"""The time of a float division.  It depends on how the C was built.
 
-What a division gives is another matter (`arithmetic.DIVIDERS`): each of the two can be chosen without the other.
+The result of a division is a separate choice (`arithmetic.DIVIDERS`).
 
 Sources: SPRUHS1 (TMU: DIVF32); SPRU514, `--fp_mode` and `--tmu_support` (relaxed: hardware division where there is a
 TMU, a constant divisor becomes a multiplication); cycles of the two divisions in software counted in binaries.
@@ -16,17 +16,17 @@ from typing import Final
 
 @dataclass(frozen=True)
 class FloatDivision:
-    """Cycles of a division, besides those of what is divided."""
+    """The cycles of a division, without those of its operands."""
 
     cycles: int
-    #: By a constant the compiler multiplies.
+    #: The compiler turns a division by a constant into a multiplication.
     constant_multiplies: bool = False
 
 
 #: The name of a build -> its division.
 FLOAT_DIVISIONS: Final[Mapping[str, FloatDivision]] = MappingProxyType({
-    # CHOICE: nothing tells how the robot's firmware was built.  With this price, between those of a fast build and of
-    # a standard one, its factors were fitted.
+    # CHOICE: it is not known how the robot's firmware was built.  Its calibration factors were fitted with this time,
+    # which lies between that of a fast build and that of a standard build.
     "calibrated": FloatDivision(60),
     # `--tmu_support=tmu0 --fp_mode=relaxed`: one instruction, DIVF32.
     "tmu": FloatDivision(5, constant_multiplies=True),
@@ -37,12 +37,12 @@ FLOAT_DIVISIONS: Final[Mapping[str, FloatDivision]] = MappingProxyType({
     # was counted could not be confirmed to be this function, so the number is uncertain.
     "standard": FloatDivision(4 + 217),
 })  # fmt: skip
-#: What it is if nobody says.
+#: The default build.
 DEFAULT_FLOAT_DIVISION: Final = "calibrated"
 
 
 def float_division(build: str) -> FloatDivision:
-    """The division of a build.  Raises ValueError for a name that is none."""
+    """The division of a build.  Raises ValueError for an unknown build."""
     known = FLOAT_DIVISIONS.get(build)
     if known is None:
         raise ValueError(f"float division {build!r}: one of {', '.join(FLOAT_DIVISIONS)}")

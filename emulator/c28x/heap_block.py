@@ -1,8 +1,8 @@
 """Blocks of a heap: objects without a declared type.
 
-C gives such an object the type of what is stored in it (ISO C 6.5 p6): so does this, scalar by scalar.  What has not
-been written has none, and is read as never written whatever it is read as; what is written over a part of a scalar
-leaves the other words of it as they were.
+Such an object takes the type of what is stored in it (ISO C 6.5 p6); here, each scalar does.  Words that were never
+written have no type: they read as never written, whatever the type of the read.  A write over a part of a scalar leaves
+its other words unchanged.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from emulator.c28x.tree import Declaration
 
 
 class HeapBlock(Object):
-    """A block that a program was given: `declaration` says by what call, and where; `freed` where it was given back."""
+    """An allocated block: `declaration` tells which call allocated it, and where; `freed`, where it was freed."""
 
     __slots__ = ("_memory", "_types", "freed")
 
@@ -34,14 +34,14 @@ class HeapBlock(Object):
         self._types: list[CType | None] = [UINT] * words
 
     def leaf(self, offset: int) -> tuple[int, CType] | None:
-        """The scalar that starts at word `offset`, as (leaf, type); none of a block that was given back."""
+        """The scalar that starts at word `offset`, as (leaf, type); a freed block has none."""
         if self.ended or not 0 <= offset < self.words:
             return None
         ctype = self._types[offset]
         return None if ctype is None else (offset, ctype)
 
     def claim(self, offset: int, ctype: CType) -> tuple[int, CType] | None:
-        """Make the words at `offset` a scalar of this type; None where none can lie: outside, or at an odd address."""
+        """Make the words at `offset` a scalar of this type; None if none fits there: outside, or at an odd address."""
         words = ctype.words
         if self.ended or not words or not 0 <= offset <= self.words - words or (words > 1 and self.base + offset & 1):
             return None
@@ -65,7 +65,7 @@ class HeapBlock(Object):
         return self.claim(offset, ctype)
 
     def end(self) -> None:
-        """The block was given back: what it held stays where it lies, as words of nobody."""
+        """The block is freed: its contents stay in memory as plain words."""
         if self.ended:
             return
         held = [(at, t, self.data[at]) for at, t in enumerate(self._types) if t is not None]
@@ -78,11 +78,11 @@ class HeapBlock(Object):
                     memory.write_word(self.base + at + i, word)
 
     def last(self, offset: int, ctype: CType) -> Any:
-        """Nothing: what it held lies where everybody finds it."""
+        """None: the contents of a freed block are plain words in memory."""
         return None
 
     def _split(self, offset: int) -> None:
-        """Take a scalar apart that reaches across the beginning of word `offset`: its words stay what they are."""
+        """Split a scalar that extends across the start of word `offset` into words; their values stay."""
         if not 0 < offset < self.words or self._types[offset] is not None:
             return
         found = self.covering(offset)

@@ -1,4 +1,4 @@
-"""Functions that TI's compiler knows without a declaration (SPRU514, "Intrinsics"), as far as they act on the core."""
+"""Functions that TI's compiler knows without a declaration (SPRU514, "Intrinsics"): interrupt mask, idling, floats."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from emulator.clock import Clock
 
 
 def _single(function: Callable[..., float]) -> Callable[..., float]:
-    """A function of floats with a float as its result; outside of its domain it is NaN."""
+    """A function of floats with a float result.  It is NaN outside of the domain, and on overflow."""
 
     def single(*values: float) -> float:
         try:
@@ -36,7 +36,7 @@ FLOATS: Final[dict[str, Callable[..., Any]]] = {
 
 
 class InterruptMask(Protocol):
-    """What the intrinsics act on."""
+    """The part of the core that the intrinsics act on."""
 
     intm: bool
     clock: Clock
@@ -49,7 +49,7 @@ class InterruptMask(Protocol):
 
 
 def intrinsics(cpu: InterruptMask) -> dict[str, Callable[..., Any]]:
-    """Name -> what it does.
+    """Name of each intrinsic -> its function.
 
     CHOICE: of ST1, which `__disable_interrupts` returns, only INTM (bit 0) is modelled.
     """

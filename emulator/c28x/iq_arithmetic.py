@@ -3,15 +3,15 @@
     multiply(a, b, 24)          # _IQ24mpy(a, b)
     divide(a, b, 24)            # _IQ24div(a, b)
 
-A number `a` of format Q is a `long`: it stands for a / 2**Q.  Everything is 32 or 64 bits of two's complement, as the
-core's registers are.  Products are truncated towards minus infinity, results that do not fit lose their upper bits
-where the library does not saturate.
+A number `a` of format Q is a `long` with the value a / 2**Q.  All values have 32 or 64 bits in two's complement, as the
+registers of the core have.  Products are truncated towards minus infinity.  Results that do not fit lose their upper
+bits, unless the library saturates.
 
-Reciprocals and roots are found from a table of 128 values, by two Newton-Raphson steps; sine and cosine from 512 values
-and a cubic; the arc tangent from 64 parabolas, the arc sine from 17 quartics, both by what lies between; exponential
-and logarithm by their series.  The tables are computed here: each value is the nearest one.
-Sources: IQmath library of C2000Ware: what its sources say of each algorithm.  All of 384 values that the library's own
-sample expects (sine, magnitude with division, phase, exponential, logarithm in Q24) came out to the bit.
+Reciprocals and roots start from a table of 128 values and take two Newton-Raphson steps.  Sine and cosine use 512
+values and a cubic.  The arc tangent uses 64 parabolas, the arc sine 17 quartics, each for one interval.  Exponential
+and logarithm use their series.  The tables are computed here, each value rounded to the nearest.
+Source: the comments on each algorithm in the sources of the IQmath library (C2000Ware).  All 384 expected values of the
+library's own sample (sine, magnitude with division, phase, exponential, logarithm in Q24) are reproduced to the bit.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _MASK: Final = (1 << 32) - 1
 _ONE_Q30: Final = 1 << 30
 _ONE_Q29: Final = 1 << 29
 _ONE_Q28: Final = 1 << 28
-#: 512 / (2 pi) in Q24, 2 pi / 512 in Q32, a sixth in Q16, as the library has them.
+#: 512 / (2 pi) in Q24, 2 pi / 512 in Q32, 1/6 in Q16, as in the library.
 _STEPS_PER_RADIAN_Q24: Final = round(512 / math.tau * (1 << 24))
 _RADIANS_PER_STEP_Q32: Final = round(math.tau / 512 * (1 << 32))
 _SIXTH_Q16: Final = (1 << 16) // 6
@@ -44,7 +44,7 @@ def wrap32(value: int) -> int:
 
 
 def saturate32(value: int) -> int:
-    """The `long` that is nearest."""
+    """The nearest `long`."""
     return min(max(value, LOW), HIGH)
 
 
@@ -54,7 +54,7 @@ def _upper(value: int) -> int:
 
 
 def _redundant_sign_bits(value: int) -> int:
-    """By how many bits a `long` can be shifted to the left and keep its sign (instruction CSB)."""
+    """How far a `long` can be shifted left without a change of its sign (instruction CSB)."""
     return 31 - (value if value >= 0 else ~value).bit_length()
 
 
@@ -66,12 +66,12 @@ def _magnitude(value: int) -> int:
 
 
 def multiply(a: int, b: int, q: int) -> int:
-    """The product, truncated; what does not fit is lost."""
+    """The product, truncated; it loses the upper bits that do not fit."""
     return wrap32(a * b >> q)
 
 
 def saturated_product(a: int, b: int, q: int) -> int:
-    """The rounded product, or the end of the range that it is beyond."""
+    """The rounded product, saturated."""
     return saturate32(a * b + (1 << q - 1) >> q)
 
 
@@ -82,7 +82,7 @@ def whole_part(a: int, q: int) -> int:
 
 
 def fraction(a: int, q: int) -> int:
-    """What is behind the point, with the sign of the number."""
+    """The fraction of a number, with its sign."""
     part = _magnitude(a) & (1 << q) - 1
     return -part if a < 0 else part
 
@@ -94,15 +94,16 @@ def whole_part_of_product(a: int, b: int, q: int) -> int:
 
 
 def fraction_of_product(a: int, b: int, q: int) -> int:
-    """What is behind the point of such a product, with its sign."""
+    """The fraction of such a product, with its sign."""
     part = _magnitude(a) * _magnitude(b) & (1 << q) - 1
     return -part if (a < 0) != (b < 0) else part
 
 
 def to_float_bits(a: int, q: int) -> int:
-    """The bits of the `float` that stands for a number.
+    """A number as the bits of a `float`.
 
-    The magnitude is truncated to 24 bits.  That of a negative number is its complement: -1.0 becomes the float above.
+    The magnitude is truncated to 24 bits.  For a negative number it is the complement: -1.0 becomes the next float
+    above.
     """
     if a == 0:
         return 0
@@ -124,17 +125,17 @@ def _reciprocals() -> tuple[int, ...]:
 
 @lru_cache(maxsize=1)
 def _inverse_roots() -> tuple[int, ...]:
-    """The same of 1 / sqrt(x), in Q30."""
+    """The same table for 1 / sqrt(x), in Q30."""
     return (0, *(round(_ONE_Q30 / math.sqrt((257 + 2 * k) / 512)) for k in range(128)))
 
 
 def _table_index(normalised: int) -> int:
-    """Where the tables have a positive number of 31 significant bits; 0 for no such number."""
+    """The table index of a positive number with 31 significant bits; 0 for a number that is not positive."""
     return (normalised >> 23) - 127 if normalised > 0 else 0
 
 
 def _times_reciprocal(numerator: int, denominator: int, shift: int) -> int:
-    """numerator / denominator in Q(61 - shift), truncated, as 64 bits."""
+    """numerator / denominator in Q(61 - shift), truncated, in 64 bits."""
     n = _redundant_sign_bits(denominator)
     normalised = wrap32(denominator << n)
     if normalised < 0:
@@ -148,14 +149,14 @@ def _times_reciprocal(numerator: int, denominator: int, shift: int) -> int:
 
 
 def divide(a: int, b: int, q: int) -> int:
-    """The quotient, rounded and saturated; by 0 it is the greatest number."""
+    """The quotient, rounded and saturated; a division by 0 gives the largest number."""
     if b == 0:
         return HIGH
     return saturate32(_times_reciprocal(a, b, 61 - q) + 1 >> 1)
 
 
 def _inverse_root(half: int) -> int:
-    """1 / sqrt(V) in Q30 of V / 2 in Q32; of 0, 0."""
+    """1 / sqrt(V) in Q30, from V / 2 in Q32; 0 for 0."""
     guess = _inverse_roots()[_table_index(half)]
     for _ in range(2):
         square = wrap32(_upper(guess * guess) << 2)
@@ -168,7 +169,7 @@ _INVERSE_ROOT_OF_2_Q30: Final = round(_ONE_Q30 / math.sqrt(2))
 
 
 def square_root(a: int, q: int) -> int:
-    """The square root, rounded; 0 of what has none."""
+    """The square root, rounded; 0 for a negative number."""
     if a <= 0:
         return 0
     n = _redundant_sign_bits(a)
@@ -183,7 +184,7 @@ def square_root(a: int, q: int) -> int:
 
 
 def inverse_square_root(a: int, q: int) -> int:
-    """1 / sqrt, rounded and saturated; 0 of what has none."""
+    """1 / sqrt, rounded and saturated; 0 where it is not defined."""
     if a <= 0:
         return 0
     n = _redundant_sign_bits(a)
@@ -198,7 +199,7 @@ def inverse_square_root(a: int, q: int) -> int:
 
 
 def magnitude(a: int, b: int, q: int) -> int:
-    """sqrt(a * a + b * b), rounded and saturated: the same in every format."""
+    """sqrt(a * a + b * b), rounded and saturated.  The computation is the same in every format."""
     square = min(a * a + b * b, (1 << 63) - 1)
     if square == 0:
         return 0
@@ -214,12 +215,12 @@ def magnitude(a: int, b: int, q: int) -> int:
 
 @lru_cache(maxsize=1)
 def _sines() -> tuple[int, ...]:
-    """A turn and a quarter of the sine in Q30, in 512ths of a turn."""
+    """Sine values in Q30 for one and a quarter turns, in steps of 1/512 turn."""
     return tuple(math.floor(math.sin(math.tau * k / 512) * _ONE_Q30 + 0.5) for k in range(640))
 
 
 def _sine(steps: int) -> int:
-    """The sine, in Q30, of an angle in 512ths of a turn, in Q32."""
+    """The sine in Q30.  `steps`: the angle in 1/512 turn, in Q32."""
     k, x = steps >> 32 & 511, (steps & _MASK) * _RADIANS_PER_STEP_Q32 >> 32
     sine, cosine = _sines()[k], _sines()[k + 128]
     bent = (-sine >> 1) - (x * cosine >> 48) * _SIXTH_Q16
@@ -250,22 +251,22 @@ def _odd(value: int, a: int, q: int) -> int:
 
 
 def sine(a: int, q: int) -> int:
-    """The sine of radians."""
+    """The sine of an angle in radians."""
     return _odd(_sine(_of_radians(a, q)), a, q)
 
 
 def cosine(a: int, q: int) -> int:
-    """The cosine of radians."""
+    """The cosine of an angle in radians."""
     return _cosine(_of_radians(a, q)) >> 30 - q
 
 
 def sine_of_turns(a: int, q: int) -> int:
-    """The sine of turns."""
+    """The sine of an angle in turns."""
     return _odd(_sine(_of_turns(a, q)), a, q)
 
 
 def cosine_of_turns(a: int, q: int) -> int:
-    """The cosine of turns."""
+    """The cosine of an angle in turns."""
     return _cosine(_of_turns(a, q)) >> 30 - q
 
 
@@ -274,7 +275,7 @@ def cosine_of_turns(a: int, q: int) -> int:
 
 @lru_cache(maxsize=1)
 def _parabolas() -> tuple[tuple[int, int, int], ...]:
-    """a0, a1, a2 in Q30 of the parabola through begin, middle and end of each 64th of the arc tangent."""
+    """a0, a1, a2 in Q30 of the parabola through start, middle and end of each 1/64 of the arc tangent."""
     found = []
     for k in range(65):
         x0, x1, x2 = k / 64, (k + 0.5) / 64, (k + 1) / 64
@@ -286,7 +287,7 @@ def _parabolas() -> tuple[tuple[int, int, int], ...]:
 
 
 def _angle(y: int, x: int, q: int) -> int:
-    """The magnitude of the angle, 0 to pi, in radians."""
+    """The magnitude of the angle of (x, y), 0 to pi, in radians."""
     up, along = _magnitude(y), _magnitude(x)
     ratio = wrap32(_times_reciprocal(min(up, along), max(up, along), 62 - q))
     a0, a1, a2 = _parabolas()[ratio * 64 >> q]
@@ -298,7 +299,7 @@ def _angle(y: int, x: int, q: int) -> int:
 
 
 def arc_tangent(y: int, x: int, q: int) -> int:
-    """The angle of (x, y) in radians; 0 of (0, 0)."""
+    """The angle of (x, y) in radians; 0 for (0, 0)."""
     angle = _angle(y, x, q)
     return -angle if y < 0 else angle
 
@@ -311,7 +312,7 @@ def arc_tangent_turns(y: int, x: int, q: int) -> int:
 
 @lru_cache(maxsize=1)
 def _quartics() -> tuple[tuple[int, ...], ...]:
-    """c4 to c0 in Q29 of the arc sine's Taylor polynomials of degree 4, at each 32nd from 0 to a half."""
+    """c4 to c0 in Q29 of the Taylor polynomials of degree 4 of the arc sine, every 1/32 from 0 to 1/2."""
     found = []
     for k in range(17):
         x = k / 32
@@ -354,13 +355,13 @@ def arc_cosine(a: int, q: int) -> int:
 
 @lru_cache(maxsize=32)
 def _exponents(q: int) -> tuple[int, int]:
-    """Arguments between which e to the power of one has format Q."""
+    """The smallest and largest argument for which e**x fits format Q."""
     least = round(-q * math.log(2) * (1 << q))
     return max(least, LOW), round(math.log(HIGH / (1 << q)) * (1 << q))
 
 
 def exponential(a: int, q: int) -> int:
-    """E to the power of a number, as far as the format goes."""
+    """e to the power of a number.  The argument is first limited to results that fit the format."""
     least, most = _exponents(q)
     a = min(max(a, least), most)
     n = max(0, 31 - q - _redundant_sign_bits(a))
@@ -376,7 +377,7 @@ def exponential(a: int, q: int) -> int:
 
 
 def logarithm(a: int, q: int) -> int:
-    """The natural logarithm; the least number of what has none."""
+    """The natural logarithm; the smallest number if it is not defined."""
     if a <= 0:
         return LOW
     n = _redundant_sign_bits(a)
@@ -394,9 +395,9 @@ def logarithm(a: int, q: int) -> int:
 
 
 def from_text(text: str, q: int) -> int:
-    """The number that a text of digits, a point and a minus says; 0 of any other text.
+    """The number in a text of digits, a point and a minus sign; 0 for any other text.
 
-    Nine digits behind the point count.
+    Only nine digits after the point count.
     """
     if not 1 <= q <= 30:
         return 0
@@ -413,9 +414,10 @@ def from_text(text: str, q: int) -> int:
 
 
 def to_text(form: str, a: int, q: int) -> tuple[int, str]:
-    """0 and the number as `form` says, `%3.5f`; 1 and its first characters if 3 are too few; 2 if it cannot be done.
+    """An error code and the number as text, in the format `form`, such as `%3.5f`.
 
-    The part from the point on is truncated.
+    Code 0: done.  1: 3 characters are too few for the part before the point, which is cut to its first characters.
+    2: the format cannot be used.  The part from the point on is truncated.
     """
     found = _FORM.fullmatch(form)
     if found is None or a == LOW or int(found[1]) > 11:

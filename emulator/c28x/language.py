@@ -1,11 +1,11 @@
-"""The words that firmware in C-shaped Python is written with.
+"""The vocabulary of C-shaped Python.
 
-A firmware module imports them for editors and type checkers; nothing here is executed by a linked image, because
-the translator (`program.py`) reads the module's source.  At run time the names exist only so that the module can be
-imported like any other.
+A firmware module imports these names for editors and type checkers.  A linked image executes nothing of this module,
+because the translator (`program.py`) reads the source of the firmware module.  At run time the names exist only so that
+a firmware module can be imported like any other.
 
-Widths are those of the C28x under the COFF ABI (CC table 6-1): `char` has 16 bits, `double` is `float32`.  README.md
-has a table of C and what it is here.
+Widths are those of the C28x under the COFF ABI (CC table 6-1): `char` has 16 bits, `double` is `float32`.  A table in
+hil/docs/language.md (`hil docs language`) shows each construct of C and its form here.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ if TYPE_CHECKING:
 else:
 
     class _Word(Generic[T]):
-        """A word of the language: can be subscripted and called in annotations and headers, and does nothing."""
+        """A word of the language.  Annotations and headers can subscript and call it; it does nothing."""
 
         def __class_getitem__(cls, item: object) -> type:
             return cls
@@ -102,7 +102,7 @@ else:
     class volatile(_Word): ...
 
     class static(_Word):
-        """Of a local: one object for all calls."""
+        """A `static` local: one object for all calls."""
 
     class bits(_Word):
         """The width of a bit-field: `Annotated[uint16, bits(3)]`."""
@@ -147,19 +147,19 @@ else:
         raise RuntimeError("firmware modules do not run unlinked")
 
     def do(test):
-        """`while do(test):` is C's `do`: the test comes behind the body, at `continue` too."""
+        """`while do(test):` is C's `do`: the test comes after the body, and after `continue`."""
         raise RuntimeError("firmware modules do not run unlinked")
 
     def fallthrough():
-        """The end of a case that goes on with the next one."""
+        """The end of a case that falls through to the next one."""
         raise RuntimeError("firmware modules do not run unlinked")
 
     def interrupt(function):
-        """An interrupt routine."""
+        """Marks an interrupt routine."""
         return function
 
     def FIXED(correction):
-        """True where the image is linked with this correction: decided before translation, as `#ifdef` is."""
+        """True if the image is linked with this correction.  It is decided before translation, as `#ifdef` is."""
         return False
 
 

@@ -1,7 +1,7 @@
 """Linking: a compiled program bound to one board.
 
-Its objects get their addresses, its registers, externs and functions are bound by name, its places get their numbers;
-the result is callable.
+The objects get their addresses.  Registers, externs and functions are bound by name.  Places get their numbers.  The
+result is callable.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ from emulator.clock import NEVER
 __all__ = ["LinkError", "Linked", "to_c"]
 
 
-#: Words of RAM and flash on the chip (DS, memory maps): what an image's objects can take together.
+#: Words of RAM and flash on the chip (DS, memory maps): the limit for all objects of an image together.
 MEMORY_WORDS: Final = RAM_WORDS + 0x80000
 
 
@@ -79,11 +79,11 @@ class Linked:
         self.externs = intrinsics(cast(InterruptMask, runtime.cpu)) | dict(externs)
         self._iqmath = IQmath(runtime)
         self.replaced = dict(replaced)
-        #: Where an image counts that was compiled to do so (`CompileOptions.coverage`).
+        #: The counters of an image that counts statements (`CompileOptions.coverage`).
         self.coverage = coverage or Coverage()
         self.objects: dict[str, Object] = {}
         self.functions: dict[str, Callable[..., Any]] = {}
-        #: The Python that was made of each function.
+        #: The generated Python text of each function.
         self.sources: dict[str, str] = {}
         self.last_locals: dict[str, dict[str, Any]] = {}
         self._bound: dict[str, Function] = {}
@@ -104,12 +104,12 @@ class Linked:
             self._initialise(variable, values)
 
     def watch_with(self, watcher: Callable[[Object, int, bool], None]) -> None:
-        """`watcher(object, word, write)` is told of every access from now on, in an image linked with `watch`."""
-        self.namespace["_c_touch"] = watcher  # generated code calls it without a step between
+        """From now on, call `watcher(object, word, write)` at every access.  Needs an image linked with `watch`."""
+        self.namespace["_c_touch"] = watcher  # generated code calls it directly
         self.runtime.watch_with(watcher)
 
     def allow_loops(self, cycles: int) -> None:
-        """How long a loop may compute without calling anything, from now on."""
+        """Set how long a loop may compute without a call, in cycles."""
         self.runtime.loop_limit = self.namespace["_c_loop_limit"] = cycles
 
     # Objects
@@ -128,11 +128,11 @@ class Linked:
         self.namespace[f"_p_{name}"] = Pointer(self.runtime.memory, obj, 0, pointed(variable.ctype))
 
     def pointer(self, variable: Variable) -> Pointer:
-        """A pointer to a file-scope object: to all of an array, where generated code has one to the first element."""
+        """A pointer to a whole file-scope object.  (Generated code points to the first element of an array instead.)"""
         return Pointer(self.runtime.memory, self.objects[variable.declaration.path], 0, variable.ctype)
 
     def _initialise(self, variable: Variable, values: list[Any] | None) -> None:
-        """What `.cinit` does: objects with an initialiser get it; the others keep whatever RAM holds."""
+        """Do what `.cinit` does: set the objects that have an initialiser; the others keep what RAM holds."""
         if values is not None:
             self.objects[variable.declaration.path].data[:] = [
                 value.value if type(value) is Const else self._constant(value, variable) for value in values
@@ -181,7 +181,7 @@ class Linked:
     def _register_address(self, block: str, register: str, ctype: CType) -> Pointer:
         target = ctype.target if isinstance(ctype, PointerType) else ctype
         offset = 0
-        if not register and isinstance(target, BlockType):  # the block begins before the first register by its offset
+        if not register and isinstance(target, BlockType):  # the block begins `offset` words before its first register
             register, entry = next(iter(target.layout.items()))
             offset = entry.offset
         return Pointer(self.runtime.memory, None, self.registers(block, register).address - offset, target)
@@ -223,7 +223,7 @@ class Linked:
         }  # fmt: skip
 
     def _define(self, compiled: CompiledFunction) -> None:
-        """Give a function its place numbers, and make it."""
+        """Create a function and number its places."""
         path = compiled.path
         self.sources[path] = compiled.written.text
         first = self.runtime.findings.places.add(compiled.written.places)
@@ -239,7 +239,7 @@ class Linked:
         self.runtime.findings.sources[compiled.file] = compiled.function.c_file
 
     def _bind(self, compiled: CompiledFunction) -> None:
-        """Everything that a function's text refers to by name."""
+        """Bind every name that the text of a function refers to."""
         space, names = self.namespace, compiled.written.names
         space.update(names.constants)
         if compiled.written.counted:
@@ -263,7 +263,7 @@ class Linked:
                 space[name] = self.functions[function.path]
 
     def _extern(self, function: Function) -> Callable[..., Any]:
-        """What implements an extern.  Raises LinkError if nothing does."""
+        """The implementation of an extern.  Raises LinkError if there is none."""
         name, where = function.name, function.where
         found = self.externs.get(name) or self._iqmath.named(name)
         if found is None:
@@ -274,13 +274,13 @@ class Linked:
         return found
 
     def replace(self, name: str, function: Callable[..., Any]) -> None:
-        """Have every call of firmware function or extern `name` go to `function`."""
+        """Redirect every call of the firmware function or extern `name` to `function`."""
         for prefix in ("_f_", "_x_"):
             if prefix + name in self.namespace:
                 self.namespace[prefix + name] = function
 
     def _spill(self, what: tuple[str, list[Variable]], fp: int | None, values: tuple[Any, ...]) -> None:
-        """Leave a function's locals where they lie on the stack, and keep them for tests."""
+        """Write the locals of a returning function to the stack memory, and keep them for tests."""
         path, variables = what
         if self.options.residue and fp is not None:
             memory = self.runtime.memory
@@ -297,21 +297,21 @@ class Linked:
 
 
 def _numbered(code: CodeType, first: int, name: str) -> CodeType:
-    """The code of a function, its places numbered from `first`, under its C name."""
+    """The code of a function under its C name, with its places numbered from `first`."""
     by = first - FIRST_NUMBER
     constants = tuple(c + by if type(c) is int and c >= FIRST_NUMBER else c for c in code.co_consts)
     return code.replace(co_consts=constants, co_name=name)
 
 
 def _outward(value: Any) -> Any:
-    """A pointer on its way to an extern: NULL is None there."""
+    """A value that is passed to an extern: NULL becomes None."""
     return None if isinstance(value, Pointer) and not value else value
 
 
 def to_c(value: Any, ctype: CType) -> Any:
-    """A Python argument as a C value of `ctype`; a text of one character is its code, and whatever is not 0 is true.
+    """A Python argument as a C value of `ctype`.  A text of one character becomes its code; a `_Bool` becomes 0 or 1.
 
-    Raises ValueError where that loses something.
+    Raises ValueError for a value that the type cannot hold.
     """
     if isinstance(ctype, IntType):
         if isinstance(value, str | bytes) and len(value) == 1:

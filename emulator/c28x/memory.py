@@ -1,8 +1,8 @@
 """Memory of the chip as a C program uses it: objects with bounds, and plain words between them.
 
-An object keeps one Python value per scalar, None while never written: that is the shadow.  Through a pointer of its
-own type it is reached directly; anything else (a wild pointer, another type, an index outside) goes by address,
-word by word, and hits what lives there: another object, a register, RAM, or nothing.  Address 0 is M0 RAM.
+An object keeps one Python value per scalar; None means never written (the shadow).  A pointer of the object's own type
+reaches it directly.  Any other access (a wild pointer, another type, an index outside) goes by address, word by word,
+and hits what is there: another object, a register, RAM, or nothing.  Address 0 is M0 RAM.
 """
 
 from __future__ import annotations
@@ -32,26 +32,26 @@ from emulator.c28x.tree import Declaration
 
 #: RAM of the F28377S by word address (HDR linker command files): M0/M1, LS0-5 with D0/D1, GS0-15.
 RAM: Final = ((0x0000, 0x0800), (0x8000, 0xC000), (0xC000, 0x1C000))
-#: Its words: nothing larger can be linked.
+#: The number of its words: a larger object cannot be linked.
 RAM_WORDS: Final = sum(high - low for low, high in RAM)
 FLASH: Final = (0x80000, 0x100000)
-#: System control registers, the only ones above RAM; from the end of RAM on there is nothing else but flash.
+#: System control registers.  Above RAM there are only these, the byte peripherals and flash.
 SYSTEM: Final = (0x5D000, 0x5D400)
 NOTHING_ABOVE: Final = 0x1C000
-#: Where there is code that no file defines: TI's and the user's one-time programmable memory, and the boot ROM.
+#: Memory with code that no file defines: TI's and the user's one-time programmable memory, and the boot ROM.
 ROM: Final = ((0x70000, 0x70400), (0x78000, 0x78400), (0x3F0000, 0x400000))
-#: Where functions lie whose address is asked for, and how far apart: CHOICE.
+#: The address of the first function whose address is taken, and the distance between two of them: CHOICE.
 CODE_BASE: Final = 0xC0000
 _CODE_STEP: Final = 16
-#: Where file-scope objects (.ebss) and constants (.econst) are placed: CHOICE of this linker.
+#: The start of file-scope objects (.ebss) and of constants (.econst): CHOICE of this linker.
 EBSS_BASE: Final = 0xA000
-#: Where the default heap of the kernel lies, in GS RAM: CHOICE.
+#: The start of the default heap of the kernel, in GS RAM: CHOICE.
 HEAP_BASE: Final = 0x14000
 ECONST_BASE: Final = 0x82000
 
 
 class Pointer:
-    """A C pointer: the object it was made from (None: just an address), the distance in words, the type there."""
+    """A C pointer: the object it was made from (None: only an address), the offset in words, the target type."""
 
     __slots__ = ("memory", "obj", "offset", "target")
 
@@ -78,22 +78,22 @@ class Pointer:
         return Pointer(self.memory, self.obj, self.offset + member.offset, member.ctype)
 
     def load(self) -> Any:
-        """`*p`, without a finding when it was never written (the fill decides)."""
+        """`*p`.  A value that was never written gives no finding: the fill decides."""
         assert self.memory is not None
         return self.memory.load_through(self, 0, self.target)
 
     def read(self) -> Any:
-        """`*p` for a function that the firmware calls: what was never written is reported."""
+        """`*p` for a function that the firmware calls.  A value that was never written is reported."""
         assert self.memory is not None
         return self.memory.policy.read_scalar(self)
 
     def store(self, value: Any) -> None:
-        """`*p = value`; the value is taken as it is."""
+        """`*p = value`; the value is not converted."""
         assert self.memory is not None
         self.memory.store_through(self, 0, self.target, value)
 
     def write(self, value: Any) -> None:
-        """`*p = value` for a function that the firmware calls: a place outside of the object is reported."""
+        """`*p = value` for a function that the firmware calls.  A place outside of the object is reported."""
         assert self.memory is not None
         self.memory.policy.write_scalar(self, value)
 
@@ -126,11 +126,11 @@ class Object:
         self.words = ctype.words
         self.data: list[Any] = [None] * ctype.leaves if data is None else data
         element = ctype.element if isinstance(ctype, ArrayType) else ctype
-        #: The type of every leaf when they are all alike, else None.
+        #: The type of the scalars if all have the same type, else None.
         self.element: CType | None = None if isinstance(element, StructType | ArrayType) else element
         self._map: dict[int, tuple[int, CType]] | None = None
         self.readonly = False
-        #: A local whose function has returned: no word is reached as an object any more.
+        #: The function of this local has returned: none of its words is reached as an object any more.
         self.ended = False
         #: A value that overrides the fill for this object's never-written scalars.
         self.initial: Any = None
@@ -141,7 +141,7 @@ class Object:
         self.element, self._map = None, {}
 
     def last(self, offset: int, ctype: CType) -> Any:
-        """What the stack still holds of a local that has ended, while nobody else's local lies there."""
+        """The last value of a scalar of an ended local; the stack still holds it until another local lies there."""
         leaves = enumerate(scalars(self.declaration.ctype))
         return next((self.data[i] for i, (o, t) in leaves if o == offset and t == ctype), None)
 
@@ -155,15 +155,15 @@ class Object:
         return self._map.get(offset)
 
     def claim(self, offset: int, ctype: CType) -> tuple[int, CType] | None:
-        """The scalar that a write of a `ctype` to word `offset` meets; an object without a declared type makes one."""
+        """The scalar at word `offset` for a write of type `ctype`.  An object without a declared type creates it."""
         return self.leaf(offset)
 
     def unwritten_as(self, offset: int, ctype: CType) -> tuple[int, CType] | None:
-        """A never-written scalar of this type at `offset`, in an object without a declared type."""
+        """A never-written scalar of this type at `offset`; only an object without a declared type has one."""
         return None
 
     def covering(self, offset: int) -> tuple[int, CType, int] | None:
-        """The scalar that covers word `offset`, as (leaf, type, word within it); None is padding."""
+        """The scalar that covers word `offset`, as (leaf, type, word within it); None for padding."""
         for back in range(4):
             found = self.leaf(offset - back)
             if found is not None and back < found[1].words:
@@ -172,7 +172,7 @@ class Object:
 
 
 def to_words(value: Any, ctype: CType) -> tuple[int, ...]:
-    """A scalar as its words, low word first (CPU: little-endian within 32 bits; so is a pair of them)."""
+    """The words of a scalar, low word first (CPU: little-endian within 32 bits, and so are 64 bits)."""
     if isinstance(ctype, FloatType):
         bits = float_bits(value)
     else:
@@ -195,14 +195,14 @@ def from_words(words: Iterable[int], ctype: CType, memory: Memory) -> Any:
 
 
 def zero_of(ctype: CType) -> Any:
-    """The value of a scalar whose words are 0; a structure has none yet."""
+    """The value of a scalar whose words are 0; for a structure, scalars that were never written."""
     if isinstance(ctype, StructType):
         return [None] * ctype.leaves
     return 0.0 if isinstance(ctype, FloatType) else (0 if isinstance(ctype, IntType) else NULL)
 
 
 def compatible(a: CType, b: CType) -> bool:
-    """Whether a value stored as `a` can be taken as `b` without going through its words."""
+    """Whether a value stored as type `a` can be read as type `b` without a conversion through its words."""
     if isinstance(a, IntType) and isinstance(b, IntType):
         return a.words == b.words
     if isinstance(a, PointerType | HandleType | FunctionType | VoidType):
@@ -215,7 +215,7 @@ def _base(obj: Object) -> int:
 
 
 class ByteRegister(Protocol):
-    """A register of 32 bits of a byte peripheral."""
+    """A 32-bit register of a byte peripheral."""
 
     value: int
     read: Callable[[], int]
@@ -223,34 +223,34 @@ class ByteRegister(Protocol):
 
 
 class MemoryPolicy(Protocol):
-    """What an image decides about the memory that it lies in: see `Runtime`."""
+    """The decisions of an image about its memory: see `Runtime`."""
 
     def fill_word(self, addr: int) -> int:
-        """A never-written word of plain RAM."""
+        """The value of a never-written word of plain RAM."""
 
     def fill_scalar(self, obj: Object, offset: int, ctype: CType) -> Any:
-        """What a never-written scalar holds: the object, the word within it, its type."""
+        """The value of the never-written scalar of type `ctype` at word `offset` of `obj`."""
 
     def read_scalar(self, p: Pointer) -> Any:
-        """What a function outside of the firmware reads through a pointer."""
+        """Read through a pointer for a function outside of the firmware."""
 
     def write_scalar(self, p: Pointer, value: Any) -> None:
-        """How it writes through one."""
+        """Write through a pointer for a function outside of the firmware."""
 
 
 class Unlinked:
-    """The policy of a memory without an image: what was never written is 0."""
+    """The policy of a memory without an image: a value that was never written is 0."""
 
     def fill_word(self, addr: int) -> int:
-        """0."""
+        """Always 0."""
         return 0
 
     def fill_scalar(self, obj: Object, offset: int, ctype: CType) -> Any:
-        """Zero."""
+        """The zero of the type."""
         return zero_of(ctype)
 
     def read_scalar(self, p: Pointer) -> Any:
-        """What stands there."""
+        """The value at the pointer."""
         return p.load()
 
     def write_scalar(self, p: Pointer, value: Any) -> None:
@@ -269,9 +269,9 @@ def _no_register_to_write(addr: int, word: int) -> bool:
 class Memory:
     """The address space of one board.
 
-    `register_read(addr)` gives a word of a register, None where none is; `register_write(addr, word)` says whether one
-    took the word.  `byte_registers` are those of byte peripherals by their first address: four addresses are four bytes
-    of one.
+    `register_read(addr)` returns a word of a register, None if there is no register.  `register_write(addr, word)`
+    returns whether a register took the word.  `byte_registers` are the registers of byte peripherals by first address:
+    each has four addresses, one per byte.
     """
 
     def __init__(
@@ -281,22 +281,22 @@ class Memory:
     ) -> None:  # fmt: skip
         self._objects: list[Object] = []
         self._bases: list[int] = []
-        #: Locals whose address was taken and whose function is still running, innermost last.
+        #: Locals whose address was taken and whose function has not returned, innermost last.
         self.live_locals: list[Object] = []
-        #: Blocks of heaps that were not given back, by address.
+        #: Allocated heap blocks, in order of their address.
         self._blocks: list[Object] = []
         self._longest_block = 0
         self.words: dict[int, int] = {}
-        #: What the image decides that lies in it.
+        #: The policy of the image in this memory.
         self.policy: MemoryPolicy = Unlinked()
         self._register_read, self._register_write = register_read, register_write
         self.byte_registers: dict[int, ByteRegister] = dict(byte_registers or {})
         self._next = {"ebss": EBSS_BASE, "econst": ECONST_BASE, "heap": HEAP_BASE}
-        #: Functions (and objects of the kernel) whose address was asked for, in order.
+        #: Functions (and objects of the kernel) whose address was taken, in order.
         self._code: list[Any] = []
 
     def take_policy_from(self, image: MemoryPolicy) -> None:
-        """An image lies in it from now on."""
+        """Use the policy of `image`, which is linked into this memory."""
         self.policy = image
 
     # Placement
@@ -314,16 +314,16 @@ class Memory:
         return obj
 
     def name_address(self, declaration: Declaration, address: int) -> Object:
-        """An object that only names an address, as a symbol of the linker: whoever looks there does not find it."""
+        """An object that only names an address, as a linker symbol does.  `find` does not return it."""
         return Object(declaration, address)
 
     def place_block(self, block: Object) -> None:
-        """A block of a heap is given out: it lies over whatever the heap is made of."""
+        """Add an allocated heap block: it covers the objects that the heap is made of."""
         self._longest_block = max(self._longest_block, block.words)
         self._blocks.insert(bisect_right(self._blocks, block.base, key=_base), block)
 
     def remove_block(self, block: Object) -> None:
-        """It was given back."""
+        """Remove a freed heap block."""
         self._blocks.remove(block)
 
     def find(self, addr: int) -> Object | None:
@@ -332,7 +332,7 @@ class Memory:
             if obj.base <= addr < obj.base + obj.words:
                 return obj
         if self._blocks:
-            # The buffer of a heap may be a block of another: the last that begins before the address need not cover it.
+            # A heap can lie in a block of another heap, so the last block before the address need not cover it.
             for at in range(bisect_right(self._blocks, addr, key=_base) - 1, -1, -1):
                 obj = self._blocks[at]
                 if addr < obj.base + obj.words:
@@ -347,22 +347,22 @@ class Memory:
         return None
 
     def string_at(self, addr: int) -> str | None:
-        """The text of the constant that a word address lies in, from there to its NUL; None where no constant lies."""
+        """The text of the constant at a word address, from there to its NUL; None if there is no constant."""
         obj = self.find(addr)
         if obj is None or not obj.readonly or not all(isinstance(code, int) for code in obj.data):
             return None
         return "".join(chr(code & 0xFFFF) for code in obj.data[addr - obj.base :]).partition("\0")[0]
 
     def _covered(self, addr: int) -> bool:
-        """Whether anything lives at an address above RAM: registers of the system frame, or constants in flash."""
+        """Whether there is anything at an address above RAM: system registers, flash, or a byte peripheral."""
         return SYSTEM[0] <= addr < SYSTEM[1] or FLASH[0] <= addr < FLASH[1] or addr & ~3 in self.byte_registers
 
     def empty(self, ctype: CType, addr: int) -> bool:
-        """Whether nothing is, or can come to be, where a scalar at `addr` would lie, and loading it is unremarkable."""
+        """Whether a scalar at `addr` would lie where there is never any memory, at an address aligned for it."""
         return addr >= NOTHING_ABOVE and not self._covered(addr) and not (ctype.words > 1 and addr & 1)
 
     def neighbour(self, addr: int) -> str:
-        """What lives at an address, for a message."""
+        """What is at an address, as text for a message."""
         obj = self.find(addr)
         if obj is not None:
             return obj.declaration.path + part_name(obj.declaration.ctype, addr - obj.base)
@@ -379,18 +379,18 @@ class Memory:
         return CODE_BASE + _CODE_STEP * self._code.index(function)
 
     def code_at(self, address: int) -> Any:
-        """The function at an address; None if none of those whose address was asked for is there."""
+        """The function at an address; None if no function whose address was taken is there."""
         number, rest = divmod(address - CODE_BASE, _CODE_STEP)
         return self._code[number] if not rest and 0 <= number < len(self._code) else None
 
     def words_of(self, value: Any, ctype: CType) -> tuple[int, ...]:
-        """A scalar as its words; a function and an object of the kernel by their addresses."""
+        """The words of a scalar; a function or an object of the kernel is its address."""
         return to_words(value if isinstance(value, int | float | Pointer) else self.code_address(value), ctype)
 
     # By word
 
     def read_word(self, addr: int) -> int:
-        """One word, whoever owns it."""
+        """Read one word of an object, a register or plain RAM."""
         obj = self.find(addr)
         if obj is not None:
             found = obj.covering(addr - obj.base)
@@ -411,7 +411,7 @@ class Memory:
         return 0  # CHOICE: an address where nothing is reads 0.
 
     def write_word(self, addr: int, word: int) -> None:
-        """Store one word, whoever owns it."""
+        """Write one word of an object, a register or plain RAM."""
         obj = self.find(addr)
         if obj is not None:
             found = obj.covering(addr - obj.base)
@@ -434,7 +434,7 @@ class Memory:
             self.words[addr] = word & 0xFFFF
 
     def fill(self, base: int, words: int, value: int) -> None:
-        """Set plain words, as a start-up routine does (a stack's fill pattern)."""
+        """Set plain words to one value, as a start-up routine does (the fill pattern of a stack)."""
         for addr in range(base, base + words):
             self.words[addr] = value
 
@@ -463,12 +463,12 @@ class Memory:
             self.write_word(addr + i, word)
 
     def load_byte(self, addr: int) -> int | None:
-        """A byte of a byte peripheral, by its own address; None where none is."""
+        """The byte of a byte peripheral at an address; None if there is none."""
         register = self.byte_registers.get(addr & ~3)
         return None if register is None else register.read() >> 8 * (addr & 3) & 0xFF
 
     def store_byte(self, addr: int, byte: int) -> bool:
-        """Store a byte of a byte peripheral; whether one is there."""
+        """Store a byte of a byte peripheral.  Returns whether there is one at `addr`."""
         register = self.byte_registers.get(addr & ~3)
         if register is None:
             return False
@@ -477,7 +477,7 @@ class Memory:
         return True
 
     def load_through(self, p: Pointer, words: int, ctype: CType) -> Any:
-        """`*(ctype *)(p + words)`: straight from the object where type and place agree, else by address."""
+        """`*(ctype *)(p + words)`: directly from the object if type and place match, else by address."""
         obj = p.obj
         if obj is not None:
             found = obj.leaf(p.offset + words)
@@ -502,7 +502,7 @@ class Memory:
         self.store(ctype, p.addr + words, value)
 
     def copy(self, target: Pointer, source: Pointer, words: int) -> None:
-        """`memcpy`: whole scalars where source and target line up, single words elsewhere; never-written stays so."""
+        """`memcpy`: whole scalars where source and target match, else single words.  Never-written values stay so."""
         i = 0
         while i < words:
             s, t = source.obj, target.obj

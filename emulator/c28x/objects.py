@@ -1,9 +1,9 @@
-"""Objects and values of C as Python sees them: what a test reads, writes, and gives to a function.
+"""C objects and values in Python: what a test reads, writes, and passes to a function.
 
 | C | in Python |
 |---|---|
 | a number, an enumeration | a number |
-| a structure or union, and what a pointer to one designates | `Structure`: members are attributes |
+| a structure or union, and the target of a pointer to one | `Structure`: members are attributes |
 | an array | `Array`: elements by index, slices as lists; equal to a list of its values, of characters to its text |
 | a pointer to anything else | `emulator.c28x.memory.Pointer`; NULL is None |
 """
@@ -31,7 +31,7 @@ from emulator.c28x.memory import NULL, Memory, Pointer, compatible
 from emulator.c28x.symbols import EnumType
 from emulator.c28x.tree import Declaration
 
-#: A repr shows so many elements of an array.
+#: How many elements of an array a repr shows.
 _SHOWN: Final = 8
 
 
@@ -160,7 +160,7 @@ class Array:
 
 
 def _braced(value: Any) -> str:
-    """An array as its initialiser would be written."""
+    """An array, written as an initialiser."""
     if not isinstance(value, Array):
         return repr(value)
     more = ", ..." if value.length > _SHOWN else ""
@@ -184,7 +184,7 @@ class Enumeration:
 
 @contextmanager
 def meant_for(where: str) -> Iterator[None]:
-    """An error about a value says what the value was meant for."""
+    """Add to an error about a value what the value was meant for."""
     try:
         yield
     except (TypeError, ValueError) as error:
@@ -193,7 +193,7 @@ def meant_for(where: str) -> Iterator[None]:
 
 
 def make(memory: Memory, ctype: CType, name: str, values: Sequence[Any] | None = None) -> Pointer:
-    """A new object, never written, or with a C value for each of its scalars; a pointer to it."""
+    """A pointer to a new object: never written, or with a C value for each of its scalars."""
     obj = memory.place(Declaration(name, ctype, "test", "", 0))
     if values is not None:
         obj.data[:] = values
@@ -201,14 +201,14 @@ def make(memory: Memory, ctype: CType, name: str, values: Sequence[Any] | None =
 
 
 def read(place: Pointer) -> Any:
-    """The object at `place`, as Python sees it; the fill decides what was never written."""
+    """The object at `place` as a Python value.  For scalars that were never written, the fill decides."""
     if isinstance(place.target, StructType):
         return Structure(place)
     return Array(place) if isinstance(place.target, ArrayType) else seen(place.load(), place.target, place.memory)
 
 
 def seen(value: Any, ctype: CType, memory: Memory | None) -> Any:
-    """A C value as Python sees it; a structure by value is an object of its own."""
+    """A C value as a Python value.  A structure by value becomes an object of its own."""
     if isinstance(ctype, StructType):
         assert memory is not None
         return Structure(make(memory, ctype, str(ctype), value))
@@ -216,17 +216,18 @@ def seen(value: Any, ctype: CType, memory: Memory | None) -> Any:
         if not value:
             return None
         if isinstance(value.target, ArrayType) and isinstance(ctype, PointerType) and ctype.target != VOID:
-            return Pointer(value.memory, value.obj, value.offset, ctype.target)  # `return name;` of an array
+            return Pointer(value.memory, value.obj, value.offset, ctype.target)  # an array was returned: `return name;`
         return Structure(value) if isinstance(value.target, StructType) else value
     return value
 
 
 def write(place: Pointer, value: Any) -> None:
-    """Store a Python value as C would.  A structure takes one of its type or a mapping, an array as many values.
+    """Store a Python value as C would.
 
-    An array of characters takes a text as an initialiser does: the rest of it is 0, and the NUL may have no room.
+    A structure takes a structure of its type, or a mapping of members.  An array takes as many values as it has
+    elements.  An array of characters takes a text as an initialiser does: the rest is 0, and the NUL may be cut off.
 
-    Raises ValueError for a value that its C type does not hold, and TypeError for one of another kind.
+    Raises ValueError for a value that the C type cannot hold, and TypeError for a value of another kind.
     """
     memory, target = place.memory, place.target
     assert memory is not None
@@ -251,10 +252,9 @@ def write(place: Pointer, value: Any) -> None:
 
 
 def given(value: Any, ctype: CType, memory: Memory) -> Any:
-    """A Python value as the C value of type `ctype` that a function gets.
+    """A Python value as a C value of type `ctype`, such as an argument.
 
-    A `str` or `bytes` for a pointer to characters becomes a constant of its own, with its NUL.  Raises as
-    `write`.
+    For a pointer to characters, a `str` or `bytes` becomes a new constant with its NUL.  Raises what `write` raises.
     """
     match ctype:
         case PointerType(target=target):
@@ -298,12 +298,12 @@ def _pointer(value: Any, target: CType, memory: Memory) -> Pointer:
 
 
 def _of_words(ctype: CType) -> bool:
-    """Whether characters fit: C28x characters have 16 bits, as its int has."""
+    """Whether characters fit into the type: characters of the C28x have 16 bits, as its int has."""
     return isinstance(ctype, IntType) and ctype.bits == 16
 
 
 def characters(text: str | bytes | bytearray) -> list[int]:
-    """The codes of a string and its NUL."""
+    """The codes of a string, and its NUL."""
     return [*(map(ord, text) if isinstance(text, str) else text), 0]
 
 
@@ -316,7 +316,7 @@ def _padded(text: str | bytes | bytearray, array: ArrayType) -> list[int]:
 
 
 def text(value: Array | Pointer) -> str:
-    """The characters from here to the NUL.  Raises ValueError where none comes within 65536 words."""
+    """The characters up to the NUL.  Raises ValueError if there is no NUL within 65536 words."""
     place = value.at(0)
     characters: list[str] = []
     for i in range(1 << 16):

@@ -1,7 +1,7 @@
 """C's rules on typed nodes: what both readers build their trees with.
 
-Free functions on a `Builder`: typed operands and a place in, a typed node out; conversions, promotions, decay and
-lvalues are decided here and nowhere else.  It knows neither Python's syntax tree nor a C parser's.
+Free functions on a `Builder` take typed operands and a source place, and return a typed node.  Conversions,
+promotions, decay and lvalues are decided only here.  This package knows neither Python's syntax tree nor a C parser's.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Calls: arguments as the prototype wants them, default promotions behind it; `sizeof`."""
+"""Calls: arguments converted to the parameter types, extra arguments by the default promotions; `sizeof`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Constants: the type that C gives a literal, and folding where nothing can go wrong."""
+"""Constants: the type that C gives a literal; folding, but only of operations with a defined result."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def string(text: str, where: Where) -> String:
 
 
 def constant_value(expr: Expr) -> int | float | None:
-    """The number that an expression is, if it is one at translation time; comparisons and choices included."""
+    """The value of an expression that is constant at translation time, else None.  Handles comparisons and `?:` too."""
     folded = fold(expr)
     match folded:
         case Const():
@@ -110,13 +110,13 @@ def _not(value: int | float | None) -> int | None:
 
 
 def _again(known: Expr) -> int | float | None:
-    """An operation once its operands are known numbers."""
+    """The value of an operation whose operands are known numbers; None if it has none."""
     folded = fold(known)
     return folded.value if isinstance(folded, Const) else _wrapped(known)
 
 
 def _wrapped(known: Expr) -> int | None:
-    """An operation that leaves its type where C or the compiler says what comes out; None where neither does.
+    """The value of an operation whose result does not fit its type; None if neither C nor the compiler defines it.
 
     Unsigned types wrap (ISO C99 6.2.5).  `2 << 14` is undefined in an int of 16 bits, but the compiler keeps its bits
     with a warning, and TI's headers write the upper bits of a register so.
@@ -134,7 +134,7 @@ def _wrapped(known: Expr) -> int | None:
 
 
 def why_no_constant(expr: Expr) -> str | None:
-    """What is wrong within a constant expression that has no value: the operation that leaves its type, or nothing."""
+    """Why a constant expression has no value: an operation divides by 0 or does not fit its type; None: no such one."""
     match expr:
         case Convert(operand=operand):
             return why_no_constant(operand)
@@ -156,7 +156,7 @@ _COMPARISONS: Final[dict[str, Callable[[float, float], bool]]] = {
 
 
 def fold(expr: Expr) -> Expr:
-    """Fold conversions and arithmetic of constants where nothing can go wrong; anything else stays."""
+    """Fold conversions and arithmetic of constants that have a defined result; return anything else unchanged."""
     folded = _fold(expr)
     if isinstance(folded.ctype, Double64) and not isinstance(folded, Const):
         name = folded.ctype.name

@@ -42,7 +42,7 @@ def convert(b: Builder, value: Expr, ctype: CType, *, explicit: bool = False) ->
         return String(ctype, value.text, where=value.where)
     source = value.ctype
     if source == ctype:
-        # A cast to the type that a result has anyway says that its wrap is meant.
+        # A cast to the type that a result already has states that a wrap is intended.
         return Convert(ctype, value, explicit, where=value.where) if explicit and isinstance(value, Binary) else value
     if ctype == BOOL and (is_arithmetic(source) or isinstance(source, ADDRESSES)):
         return _truth(value)
@@ -53,7 +53,7 @@ def convert(b: Builder, value: Expr, ctype: CType, *, explicit: bool = False) ->
             _check_pointers(b, value, ctype)
         match value:
             case Convert(operand=Expr(ctype=FunctionType()) as inner) if isinstance(ctype, FunctionType):
-                value = inner  # only the last of two casts of a function says something
+                value = inner  # of two casts of a function, only the outer one counts
         return Convert(ctype, value, where=value.where)
     if isinstance(ctype, ADDRESSES) and isinstance(source, IntType) and (explicit or b.remarks_pointers):
         if not explicit:
@@ -69,7 +69,7 @@ def convert(b: Builder, value: Expr, ctype: CType, *, explicit: bool = False) ->
 
 
 def _truth(value: Expr) -> Expr:
-    """To `_Bool`: whether it differs from 0."""
+    """`value` as a `_Bool`: 1 if it differs from 0."""
     if isinstance(value, Const):
         return Const(BOOL, int(value.value != 0), where=value.where)
     if isinstance(value, Compare | Logic | Not):
@@ -79,7 +79,7 @@ def _truth(value: Expr) -> Expr:
 
 
 def _check_pointers(b: Builder, value: Expr, ctype: CType) -> None:
-    """Pointers convert silently from and to `void *`, and to a pointer of the same type."""
+    """Check an implicit pointer conversion: only `void *` and pointers of the same type convert silently."""
     source = value.ctype
     if not isinstance(ctype, PointerType) or not isinstance(source, PointerType):
         return
@@ -101,7 +101,7 @@ def same_type(one: CType, other: CType) -> bool:
 
 
 def computed_together(left: Expr, right: Expr) -> tuple[Expr, Expr]:
-    """Two operands: a constant of 64 bits is a float beside what is computed while the firmware runs (CHOICE)."""
+    """Two operands.  CHOICE: a 64-bit constant becomes a `float` if the other operand is not a constant."""
     if isinstance(left.ctype, Double64) and not isinstance(right, Const):
         left = single(left)
     if isinstance(right.ctype, Double64) and not isinstance(left, Const):

@@ -1,7 +1,7 @@
-"""How deep a typed expression is: what is too deep for generated code is kept in a temporary before.
+"""The depth of typed expressions: a part that is too deep for generated code goes to a temporary first.
 
-A sum of thousands of terms, or parentheses within parentheses, is right C; Python's parser takes 200 parentheses within
-each other, and a node of the tree needs up to five of them.
+A sum of thousands of terms is valid C, and so are deeply nested parentheses.  Python's parser takes 200 nested
+parentheses, and a node of the tree needs up to five of them.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Expr, LValue, RegisterAt
 from emulator.c28x.tree_queries import children
 
-#: Nodes within each other that one expression may have.
+#: How deep the nodes of one generated expression may nest.
 DEPTH: Final = 24
 
 
 def shallow(b: Builder, value: Expr) -> Expr:
-    """A value whose tree is not too deep: this one, or the temporary that keeps it from here on."""
+    """`value` if its tree is not too deep, else a temporary that holds it.  Raises SourceError at file scope."""
     if b.deep and not b.keeps and deeper(value, 2 * EXPRESSION_NESTING):
         raise SourceError.at(value.where, "a start value at file scope is a constant: this has too many operators")
     if not b.deep or not b.keeps or not isinstance(value.ctype, _SCALARS) or not deeper(value, DEPTH):
@@ -30,7 +30,7 @@ def shallow(b: Builder, value: Expr) -> Expr:
 
 
 def shallow_place(b: Builder, place: Place) -> Place:
-    """A place whose pointer is not too deep."""
+    """`place`, its pointer replaced by a temporary if that is too deep."""
     if isinstance(place, LValue) and isinstance(place.root, Expr):
         root = shallow(b, place.root)
         return place if root is place.root else replace(place, root=root)
@@ -41,7 +41,7 @@ def shallow_place(b: Builder, place: Place) -> Place:
 
 
 def deeper(e: Any, depth: int) -> bool:
-    """Whether more than `depth` nodes stand within each other."""
+    """Whether more than `depth` nodes are nested in `e`."""
     return not depth or any(deeper(inner, depth - 1) for inner in children(e))
 
 

@@ -1,7 +1,7 @@
-"""Effects within expressions, in C's order: operands whose value a later operand would change are kept in temporaries.
+"""Side effects within expressions, in order: an operand that a later operand would change goes to a temporary.
 
-Operands are evaluated from left to right, where C leaves the order open.  A program that depends on that order within
-one expression (`a[i] = i++`) gets the remark `unsequenced`.
+C leaves the order of operands open; here they are evaluated from left to right.  A program that depends on that order
+within one expression (`a[i] = i++`) gets the remark `unsequenced`.
 """
 
 from __future__ import annotations
@@ -34,15 +34,15 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import parts, roots, statements
 
-#: What an operand is built to.
+#: The result of building an operand.
 Operand = Expr | Place
-#: Which object a place is: the variable, or the place of the pointer that leads to it; the word in it, the subscripts,
-#: the bits.
+#: The identity of a place: the variable, or the key of the pointer that leads to it; the word within the object; the
+#: subscripts; the lowest bit of a bit-field (-1: none).
 Key = tuple[Any, int, tuple[int | float, ...], int]
 
 
 def operands(b: Builder, *builds: Callable[[], Operand]) -> list[Operand]:
-    """Operands built from left to right: each value is what it is when C comes to it."""
+    """Build operands from left to right.  Each keeps the value that it has at its own turn."""
     values: list[Operand] = []
     written: list[Operand] = []
     effects: list[list[Stmt]] = []
@@ -63,17 +63,17 @@ def operands(b: Builder, *builds: Callable[[], Operand]) -> list[Operand]:
 
 
 class _Changeable:
-    """Finds the operands that an effect may change, by the variables that they read, without looking at all of them."""
+    """Finds the operands that an effect may change.  An index by variable saves a look at every operand."""
 
     def __init__(self) -> None:
         self.by_variable: dict[Variable, set[int]] = {}
-        #: Operands that act, that read by a pointer, and those that are places.
+        #: Operands with effects of their own, operands that read through a pointer, and operands that are places.
         self.acting: set[int] = set()
         self.pointing: set[int] = set()
         self.places: set[int] = set()
 
     def add(self, number: int, value: Operand) -> None:
-        """An operand, by its number."""
+        """Add operand `number`."""
         if not isinstance(value, Expr):
             self.places.add(number)
             return
@@ -88,7 +88,7 @@ class _Changeable:
                 self.pointing.add(number)
 
     def by(self, effects: Sequence[Stmt]) -> list[int]:
-        """The operands that statements may change, in order; as values they are kept from now on."""
+        """The operands that `effects` may change, in order.  A value comes only once: then it is in a temporary."""
         written = {place.root for place in _written(effects) if isinstance(place.root, Variable)}
         wild = _wild(effects)
         seen = {v for v in self.by_variable if v.kind != "temporary"} if wild else written & self.by_variable.keys()
@@ -103,12 +103,12 @@ class _Changeable:
 
 
 def arguments(b: Builder, builds: Sequence[Callable[[], Expr]]) -> list[Expr]:
-    """Values built from left to right, as `operands`."""
+    """Build values from left to right: see `operands`."""
     return [value for value in operands(b, *builds) if isinstance(value, Expr)]
 
 
 def unchanged(b: Builder, value: Operand, effects: Sequence[Stmt]) -> Operand:
-    """`value` as it is before `effects`: kept in temporaries where they could change it."""
+    """`value` as it is before `effects`: the parts that they could change go to temporaries."""
     match value:
         case LValue():
             root = _unchanged_value(b, value.root, effects) if isinstance(value.root, Expr) else value.root
@@ -128,7 +128,7 @@ def _unchanged_value(b: Builder, value: Expr, effects: Sequence[Stmt]) -> Expr:
 
 
 def settled(b: Builder, place: Place) -> Place:
-    """A place that can be read and written with one evaluation of its parts: what has effects is kept."""
+    """A place that can be read and written, its parts evaluated once: parts with effects go to temporaries."""
     match place:
         case LValue(root=root, indices=indices) if _acts(root) or any(_acts(index.expr) for index in indices):
             kept = b.kept(root) if isinstance(root, Expr) and not _constant(root) else root
@@ -140,7 +140,7 @@ def settled(b: Builder, place: Place) -> Place:
 
 
 def _acts(e: Variable | Expr) -> bool:
-    """Whether evaluating something twice is not the same as once."""
+    """Whether evaluating `e` twice differs from evaluating it once."""
     return any(isinstance(part, Call | CallPointer | RegisterLoad) for part in parts(e))
 
 
@@ -153,7 +153,7 @@ def _constant(e: Expr) -> bool:
 
 
 def disturbs(effects: Sequence[Stmt], e: Expr) -> bool:
-    """Whether `effects` could change the value of `e`, or would be seen by what `e` does."""
+    """Whether `effects` could change the value of `e`, or whether `e` could see them."""
     if _constant(e):
         return False
     if _acts(e):
@@ -171,7 +171,7 @@ def disturbs(effects: Sequence[Stmt], e: Expr) -> bool:
 
 
 def _written(effects: Sequence[Stmt]) -> list[LValue]:
-    """The places that statements assign, temporaries left out."""
+    """The places that statements assign, except temporaries."""
     found: list[LValue] = []
     for s in statements(list(effects)):
         if isinstance(s, Assign | CopyStruct) and isinstance(s.target, LValue):
@@ -182,7 +182,7 @@ def _written(effects: Sequence[Stmt]) -> list[LValue]:
 
 
 def _wild(effects: Sequence[Stmt]) -> bool:
-    """Whether statements call, or write what no name tells."""
+    """Whether statements call a function, or write a place that is not a named object."""
     for s in statements(list(effects)):
         if isinstance(s, Assign | CopyStruct) and (not isinstance(s.target, LValue) or isinstance(s.target.root, Expr)):
             return True
@@ -193,7 +193,7 @@ def _wild(effects: Sequence[Stmt]) -> bool:
 
 
 def check_sequence(b: Builder, values: Sequence[Operand], effects: Sequence[Sequence[Stmt]]) -> None:
-    """Remark each object that one operand writes and another reads or writes."""
+    """Make a remark for each object that one operand writes and another one reads or writes."""
     first: dict[Key, LValue] = {}
     touching: dict[Key, set[int]] = {}
     for i, (value, before) in enumerate(zip(values, effects, strict=True)):
@@ -212,7 +212,7 @@ def check_sequence(b: Builder, values: Sequence[Operand], effects: Sequence[Sequ
 
 
 def unsequenced(b: Builder, place: LValue) -> None:
-    """The remark about an object that one expression changes and uses again, in no order."""
+    """Make the remark about an object that one expression changes and uses again, in an undefined order."""
     message = (
         f"{place.text} is changed and used again in one expression: C defines no order"
     )
@@ -220,7 +220,7 @@ def unsequenced(b: Builder, place: LValue) -> None:
 
 
 def writes_itself(b: Builder, effects: Sequence[Stmt], place: Place) -> bool:
-    """Whether the value that is assigned to `place` has changed it, in no order with the assignment: `i = i++`."""
+    """Whether the assigned value itself changes `place`, unsequenced with the assignment: `i = i++`."""
     if not isinstance(place, LValue) or _key(place) is None:
         return False
     open_effects = [s for s in effects if s not in b.sequenced]
@@ -228,7 +228,7 @@ def writes_itself(b: Builder, effects: Sequence[Stmt], place: Place) -> bool:
 
 
 def _key(place: LValue) -> Key | None:
-    """Which object a place is, as far as names, pointers that have names, and constants tell."""
+    """The identity of a place, from names, named pointers and constants; None if these do not determine it."""
     root: Any = place.root
     while isinstance(root, Convert):
         root = root.operand
@@ -243,7 +243,7 @@ def _key(place: LValue) -> Key | None:
 
 
 def _read(value: Operand, effects: Sequence[Stmt]) -> list[LValue]:
-    """What an operand reads: its own parts, and those of its effects.  A place that is assigned is not read."""
+    """The places that an operand reads, its effects included.  The target of an assignment is not read."""
     found = [part for part in parts(value) if isinstance(part, LValue) and part is not value]
     for s in statements(list(effects)):
         for root in roots(s):

@@ -1,4 +1,4 @@
-"""Initialisers: one value a scalar, from lists that are nested, flat or with designators; what is left out is zero."""
+"""Initialisers: lists (nested, flat, with designators) become one value per scalar; missing values are zero."""
 
 from __future__ import annotations
 
@@ -42,10 +42,7 @@ from emulator.c28x.tree import (
 
 @dataclass
 class Item:
-    """A value of a list, with the members and indices that designate what it is for.
-
-    `build` gives the value for an object of a type.
-    """
+    """One value of a list.  `way`: its designators, members and indices; `build`: its value for an object of a type."""
 
     where: Where
     build: Callable[[CType], Expr]
@@ -54,7 +51,7 @@ class Item:
 
 @dataclass
 class Braces:
-    """A list in braces; `ctype` is the type that it is written for, where a language says so."""
+    """A list in braces; `ctype` is the type written with it, if the language has one there."""
 
     where: Where
     items: list[Item | Braces]
@@ -75,13 +72,13 @@ class _Cursor:
 
 @dataclass(frozen=True)
 class _At:
-    """Where a part of the whole object begins: its first scalar, and its first word."""
+    """Where a part of the whole object begins: the number of its first scalar and of its first word."""
 
     leaf: int = 0
     word: int = 0
 
     def part(self, ctype: CType, number: int) -> tuple[CType, _At, Member | None]:
-        """The type of a member or element, where it begins, and the member."""
+        """The type of part `number`, where it begins, and its member (None: not a member)."""
         if isinstance(ctype, ArrayType):
             element = ctype.element
             return element, _At(self.leaf + number * element.leaves, self.word + number * element.words), None
@@ -92,7 +89,7 @@ class _At:
 
 @dataclass(frozen=True)
 class _Scalar:
-    """A scalar that is given: where it lies, and its value."""
+    """A scalar with a given value, and where it lies."""
 
     at: _At
     member: Member | None
@@ -122,8 +119,8 @@ def values(
 ) -> list[Expr]:  # fmt: skip
     """The initial value of every scalar of an object of type `ctype`.
 
-    In an object whose scalars are its words a value may be no word that is known: it comes to `later`, and its
-    words are 0.  Without `later` only addresses may be so.  Raises SourceError.
+    In a word-backed object, a value that is not known as words at translation time is appended to `later`; its words
+    are 0.  Without `later`, only addresses may be such values.  Raises SourceError.
     """
     if not isinstance(ctype, ArrayType | StructType):
         return [_scalar(b, ctype, given)]
@@ -137,7 +134,7 @@ def values(
 
 
 def _scalar(b: Builder, ctype: CType, given: Item | Braces) -> Expr:
-    """The value of a scalar, in braces or not."""
+    """The value of a scalar; braces around it are allowed."""
     while isinstance(given, Braces):
         if given.ctype is not None:
             raise SourceError.at(given.where, f"a {ctype} is initialised by a {given.ctype}")
@@ -148,7 +145,7 @@ def _scalar(b: Builder, ctype: CType, given: Item | Braces) -> Expr:
 
 
 def _whole(b: Builder, ctype: ArrayType | StructType, given: Item | Braces, at: _At) -> list[_Scalar] | None:
-    """An aggregate that one item initialises: its list, a string, another structure; None if it does not."""
+    """The scalars of an aggregate that one item initialises: a list, a string, a structure; None: it does not."""
     if isinstance(given, Braces):
         if given.ctype is not None and given.ctype != ctype:
             raise SourceError.at(given.where, f"a {ctype} is initialised by a {given.ctype}")
@@ -165,14 +162,14 @@ def _whole(b: Builder, ctype: ArrayType | StructType, given: Item | Braces, at: 
 
 
 def _built(given: Item, ctype: CType) -> Expr:
-    """The value of an item, built once: it may have effects."""
+    """The value of an item.  It is built only once, because it may have effects."""
     value = given.build(ctype)
     given.build = lambda wanted: value
     return value
 
 
 def _string(given: Item, ctype: CType) -> String | None:
-    """An item that is a string literal."""
+    """The string literal that an item is; None for another item."""
     value = _built(given, ctype)
     return value if isinstance(value, String) else None
 
@@ -182,7 +179,7 @@ def _is_characters(ctype: ArrayType) -> bool:
 
 
 def _characters(ctype: ArrayType, value: String, at: _At) -> list[_Scalar]:
-    """The characters of a string, and zeros up to the length."""
+    """The characters of a string, then zeros up to the length of the array."""
     if len(value.text) > ctype.length:
         raise SourceError.at(value.where, f"a text of {len(value.text)} characters does not fit into a {ctype}")
     text = [ord(c) for c in value.text]
@@ -221,7 +218,7 @@ def _list(b: Builder, ctype: CType, given: Braces, at: _At) -> list[_Scalar]:
 
 
 def _parts(ctype: CType) -> int:
-    """How many parts a list without designators gives to an aggregate: of a union the first member."""
+    """How many parts a list without designators initialises: of a union only the first member."""
     if isinstance(ctype, ArrayType):
         return ctype.length
     return (
@@ -246,7 +243,7 @@ def _number(ctype: CType, designator: str | int, where: Where) -> int:
 
 
 def _fill(b: Builder, ctype: CType, cursor: _Cursor, at: _At, result: list[_Scalar], *, top: bool) -> None:
-    """Fill the parts of an aggregate from the items at the cursor: its own list (`top`), or one that goes on."""
+    """Fill an aggregate from the items at the cursor: from its own list (`top`), or from an outer list."""
     number = 0
     while (item := cursor.peek()) is not None:
         if item.way:
@@ -260,16 +257,16 @@ def _fill(b: Builder, ctype: CType, cursor: _Cursor, at: _At, result: list[_Scal
 
 
 def _next(b: Builder, ctype: CType, number: int, cursor: _Cursor, at: _At, result: list[_Scalar]) -> None:
-    """The part `number` of an aggregate, from the item at the cursor."""
+    """Fill part `number` of an aggregate from the item at the cursor."""
     item = cursor.items[cursor.at]
     part, inner, member = at.part(ctype, number)
     way = item.way[1:]
     item = cursor.items[cursor.at] = replace(item, way=way)
-    if way:  # `.a.b[1] = x`: the rest of the way leads on within the part
+    if way:  # `.a.b[1] = x`: further designators lead into the part
         _next(b, part, _number(part, way[0], item.where), cursor, inner, result)
     elif isinstance(part, ArrayType | StructType):
         found = _whole(b, part, item, inner)
-        if found is None:  # no braces of its own: as many items as it takes
+        if found is None:  # no braces of its own: it takes as many items as it has scalars
             _fill(b, part, cursor, inner, result, top=False)
             return
         cursor.at += 1
@@ -289,7 +286,7 @@ def _zeros(ctype: CType, where: Where) -> list[Expr]:
 
 
 def length_given(element: CType, given: Item | Braces) -> int:
-    """The length of `element x[] = ...`, as its initialiser says."""
+    """The length of `element x[] = ...`, from its initialiser."""
     items = given.items if isinstance(given, Braces) else [given]
     if len(items) == 1 and isinstance(items[0], Item) and not items[0].way and isinstance(element, IntType):
         text = _string(items[0], ArrayType(f"{element}[]", element, 1))
@@ -311,7 +308,7 @@ def length_given(element: CType, given: Item | Braces) -> int:
 def _words(
     b: Builder, ctype: CType, found: Sequence[_Scalar], later: list[tuple[Member, Expr]] | None
 ) -> list[Expr]:  # fmt: skip
-    """The words of an object whose scalars are its words."""
+    """The initial words of a word-backed object."""
     words: list[Expr] = [Const(UINT, 0)] * ctype.words
     for scalar in found:
         value, word, member = scalar.value, scalar.at.word, scalar.member

@@ -50,7 +50,7 @@ from emulator.c28x.tree import (
     Where,
 )  # fmt: skip
 
-#: How many constants are folded into one before it is forgotten where they came from.
+#: After so many folded constants, a constant no longer records what it was folded from.
 _LONG: Final = 40
 BINARY: Final = frozenset({"+", "-", "*", "/", "%", "<<", ">>", "&", "|", "^"})
 COMPARISONS: Final = frozenset({"==", "!=", "<", "<=", ">", ">="})
@@ -97,19 +97,19 @@ def binary(b: Builder, op: str, left: Expr, right: Expr, where: Where) -> Expr:
 def row(
     b: Builder, builds: Sequence[Callable[[], Expr]], steps: Sequence[tuple[str, Where]]
 ) -> Expr:  # fmt: skip
-    """Operators one after the other, as a sum of many terms: `((a + b) + c) < d`, operands from left to right."""
+    """A chain of operators, such as a sum of many terms: `((a + b) + c) < d`.  Operands go from left to right."""
     b.deep |= len(steps) > DEEP_NESTING
     result, *rest = arguments(b, builds)
     for i, ((op, where), right) in enumerate(zip(steps, rest, strict=True), 1):
         combine = compare if op in COMPARISONS else binary
         result = combine(b, op, shallow(b, result), right, where)
         if i % _LONG == 0 and isinstance(result, Const):
-            result = Const(result.ctype, result.value, where=where)  # without all that it was folded from
+            result = Const(result.ctype, result.value, where=where)  # without what it was folded from
     return result
 
 
 def _sized(pointer: Expr, where: Where) -> Expr:
-    """A pointer that can step.  Raises SourceError for one whose target has no size."""
+    """`pointer`, if arithmetic on it is possible.  Raises SourceError if its target has no size."""
     assert isinstance(pointer.ctype, PointerType)
     target = pointer.ctype.target
     if isinstance(target, BlockType) or (isinstance(target, StructType) and not target.members):
@@ -130,7 +130,7 @@ def compare(b: Builder, op: str, left: Expr, right: Expr, where: Where) -> Expr:
 
 
 def _null(b: Builder, value: Expr, other: Expr) -> Expr:
-    """A constant 0 beside a pointer is the null pointer."""
+    """`value`, or the null pointer if it is a constant 0 that is compared with a pointer."""
     if isinstance(value, Const) and value.value == 0 and isinstance(other.ctype, ADDRESSES):
         return Null(other.ctype, where=value.where)
     if b.remarks_pointers and isinstance(value.ctype, IntType) and isinstance(other.ctype, ADDRESSES):
@@ -158,7 +158,7 @@ def _logic_in_steps(
     b: Builder, op: str, values: list[Expr], last: tuple[list[Stmt], Expr], rest: Sequence[Callable[[], Expr]],
     where: Where,
 ) -> Expr:  # fmt: skip
-    """`values op last op rest`, where `last` has effects: they happen if `values` do not decide."""
+    """`values op last op rest`, where `last` has effects: they happen only if `values` do not decide the result."""
     effects, value = last
     so_far = Logic(INT, op, values, where=where) if len(values) > 1 else Not(INT, Not(INT, values[0]), where=where)
     place = b.temporary(so_far, where)

@@ -1,4 +1,4 @@
-"""What expressions designate: objects, members, elements, what pointers point to, registers and their fields."""
+"""The places that expressions designate: objects, members, elements, targets of pointers, registers, fields."""
 
 from __future__ import annotations
 
@@ -44,15 +44,15 @@ from emulator.c28x.tree import (
     Where,
 )  # fmt: skip
 
-#: What an entry of the vector table holds: `typedef interrupt void (*PINT)(void)`.
+#: The type of an entry of the vector table: `typedef interrupt void (*PINT)(void)`.
 PINT: Final = FunctionType("PINT", VOID, ())
 
 
 @dataclass
 class RegisterPath:
-    """The way into a register block: the block, or a register whose `.all` or `.bit.FIELD` is still to come.
+    """An incomplete access to a register block: the block alone, or a register without its `.all` or `.bit.FIELD`.
 
-    The block is one of the chip, by name, or the one that `pointer` points to.
+    The block is a named one of the chip, or the one that `pointer` points to.
     """
 
     block: str
@@ -62,7 +62,7 @@ class RegisterPath:
     way: tuple[str, ...]
     where: Where
     text: str
-    #: A block that is not modelled: what it holds is not known.
+    #: The block is not modelled: its registers are not known.
     unmodelled: bool = False
 
 
@@ -81,7 +81,7 @@ def register_block(registers: RegisterBlock, where: Where) -> RegisterPath:
 
 
 def unmodelled_block(block: Unmodelled, where: Where) -> RegisterPath:
-    """A register block that is not modelled, by its name: any register of it is taken."""
+    """A register block that is not modelled, by its name.  Any register name is accepted in it."""
     return RegisterPath(block.name, {}, BlockType(block.name, {}), None, (), where, block.name, unmodelled=True)
 
 
@@ -96,7 +96,7 @@ def core_register(register: CoreRegister, where: Where) -> RegisterRef:
 
 
 def dereference(b: Builder, pointer: Expr, where: Where, text: str = "") -> Place | Expr:
-    """`*pointer`; of a pointer to a function, the function."""
+    """`*pointer`; for a pointer to a function, the function."""
     if isinstance(pointer.ctype, FunctionType):
         return pointer
     if not isinstance(pointer.ctype, PointerType):
@@ -153,7 +153,7 @@ def member(b: Builder, base: Place | Expr, name: str, where: Where, *, text: str
 
 
 def seen_by_words(base: LValue, found: Member, where: Where, text: str) -> LValue:
-    """A member of an object whose scalars are its words: its words, seen as what they are declared."""
+    """A member of a word-backed object: the words of the object, read as the declared type of the member."""
     if isinstance(base.root, Variable):
         base.root.escapes = True
     word = LValue(UINT, base.root, base.leaf + found.offset, base.words + found.offset, base.indices, where, text)
@@ -169,7 +169,7 @@ def seen_by_words(base: LValue, found: Member, where: Where, text: str) -> LValu
 
 
 def octet_of(words: Expr, number: Expr, where: Where, text: str) -> LValue:
-    """Octet `number` of the words behind a pointer, an even one the lower half of its word."""
+    """Octet `number` of the words at a pointer.  An even octet is the lower half of its word."""
     if not isinstance(number.ctype, IntType):
         raise SourceError.at(number.where, "the number of an octet must be an integer")
     index = Index(number, None, 1, 1)
@@ -183,7 +183,7 @@ def _seen_as(word: LValue, ctype: CType) -> LValue:
 
 
 def element(b: Builder, base: Place | Expr, index: Expr, where: Where, text: str = "", base_text: str = "") -> Place:
-    """`base[index]`.  Raises SourceError where that is no array, pointer or integer."""
+    """`base[index]`.  Raises SourceError if `base` is not an array or pointer, or `index` not an integer."""
     if not isinstance(index.ctype, IntType):
         raise SourceError.at(index.where, "an index must be an integer")
     index = promoted(b, index)
@@ -259,12 +259,12 @@ def _unmodelled_register(base: RegisterPath, way: tuple[str, ...], where: Where,
 
 
 def _only_by_name(block: str, where: Where) -> SourceError:
-    """Why something cannot be done to a block that is not modelled."""
+    """The error about an operation that a block which is not modelled does not have."""
     return SourceError.at(where, f"{Unmodelled(block).message}: only its registers by name are known")
 
 
 def _part(base: RegisterPath, name: str) -> Any:
-    """The structure `name` within a register block; None if that is none."""
+    """The structure `name` within a register block; None if there is no such structure."""
     return next((entry.part for entry in base.layout.values() if entry.part and entry.part.name == name), None)
 
 
@@ -285,7 +285,7 @@ def _made(
 
 
 def complete(place: Place) -> LValue | RegisterRef | RegisterAt:
-    """What has a value.  Raises SourceError for a register block, or a register whose `.all` is missing."""
+    """A place that has a value.  Raises SourceError for a register block, or for a register without its `.all`."""
     if isinstance(place, RegisterPath):
         if place.unmodelled:
             if len(place.way) != 1:
@@ -298,7 +298,7 @@ def complete(place: Place) -> LValue | RegisterRef | RegisterAt:
 
 
 def value_of(b: Builder, place: Place) -> Expr:
-    """The value of what is designated; an array decays to a pointer to its first element."""
+    """The value of a place; an array decays to a pointer to its first element."""
     place = complete(place)
     if not isinstance(place, LValue):
         return RegisterLoad(place.ctype, place, where=place.where)

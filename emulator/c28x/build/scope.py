@@ -1,7 +1,7 @@
-"""Where something is being built: the module, the function, the names in sight, and the statements so far.
+"""The state of building a function: its module, the names in scope, and the statements so far.
 
-Statements gather in `out`.  An expression with an effect (`i++`, `x = y` within another expression) puts it there
-before the statement that uses its value.
+Statements collect in `out`.  An expression with an effect (`i++`, `x = y` within another expression) appends the effect
+to `out`; the statement that uses its value follows.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ STATEMENTS: Final = 20_000
 #: How many `#define`s may stand within one, and how many in a function.
 EXPANSIONS: Final = 1000
 EXPANSIONS_OF_FUNCTION: Final = 50_000
-#: From this nesting on the depth of operands is looked at (`depth.py`).
+#: Beyond this nesting, the depth of operands is checked (`depth.py`).
 DEEP_NESTING: Final = 16
 LOOP_NESTING: Final = 16
 
@@ -41,14 +41,14 @@ class Builder:
     def __init__(
         self, module: Module, function: Function, *, keeps: bool = True, remarks_pointers: bool = False
     ) -> None:  # fmt: skip
-        """`keeps`: it builds a function, not what stands at file scope, and can keep values in temporaries.
+        """`keeps`: it builds a function and can store values in temporaries; at file scope it cannot.
 
-        `remarks_pointers`: a pointer of the wrong type, which C's compilers take with a warning, is remarked instead of
-        refused.
+        `remarks_pointers`: a pointer of the wrong type gets a remark instead of an error.  C compilers accept it with a
+        warning.
         """
         self.module = module
         self.function = function
-        #: Names of the blocks around: locals, and types or constants declared in a block.
+        #: Names from the enclosing blocks: locals, and types or constants that a block declares.
         self.scope: dict[str, Symbol] = {}
         #: Locals of inner blocks that have ended.
         self.ended: dict[str, Variable] = {}
@@ -56,25 +56,25 @@ class Builder:
         self.declared: set[str] = set()
         self.depth = 0
         self.loops = 0
-        #: How many `else if` the statement stands in: each is a block within a block for what is generated.
+        #: How many `else if` enclose the statement: in generated code each one is a nested block.
         self.chained = 0
-        #: Expressions here nest so deeply, or are so long, that the depth of operands matters.
+        #: An expression nests so deeply, or is so long, that the depth of operands must be checked.
         self.deep = False
-        #: How often a `#define` has been replaced.
+        #: How many `#define`s have been replaced by their text so far.
         self.expanded = 0
         self.keeps = keeps
         self.out: list[Stmt] = []
         self.remarks_pointers = remarks_pointers
-        #: Effects that are over before the value is used that they belong to: arguments of a call, the left of a comma.
+        #: Effects that C sequences before the use of their value: arguments of a call, the left side of a comma.
         self.sequenced: list[Stmt] = []
         self._temporaries = 0
         self._nesting = 0
         self._statements = 0
         self._expanding: list[str] = []
         self._expansions = 0
-        #: How many parameters and locals of the function have a name.
+        #: Name -> how many parameters and locals of the function have it.
         self._namesakes = Counter(v.declaration.name for v in (*function.parameters, *function.locals))
-        #: How many static locals of the function have a name.
+        #: Name -> how many static locals of the function have it.
         self._static_namesakes: Counter[str] = Counter()
         for parameter in function.parameters:
             self.scope[parameter.declaration.name] = parameter
@@ -87,14 +87,14 @@ class Builder:
         return known if known is not None else self.module.symbols.get(name)
 
     def undeclared(self, name: str, where: Where, message: str) -> SourceError:
-        """The error about a name that means nothing here; perhaps it did in a block before."""
+        """The error about an undeclared name; it may say that an earlier block declared the name."""
         if name in self.ended:
             line = self.ended[name].declaration.line
             message = f"{name} is declared in an inner block (line {line}) that has ended: declare it at the top"
         return SourceError.at(where, message)
 
     def declare(self, name: str, ctype: CType, where: Where) -> Variable:
-        """A new local, in sight from here to the end of the block.  Raises SourceError if it is there already."""
+        """A new local, in scope from here to the end of the block.  Raises SourceError if the block has it already."""
         known = self.scope.get(name)
         if known is not None and (not self.depth or name in self.declared):
             raise SourceError.at(where, f"{name} is declared twice in one block of {self.function.name}")
@@ -113,7 +113,7 @@ class Builder:
         return variable
 
     def declare_static(self, name: str, ctype: CType, where: Where) -> Variable:
-        """A new `static` local: an object of the file that this block sees.  Raises SourceError as `declare`."""
+        """A new `static` local: an object of the file, visible in this block.  Raises SourceError as `declare` does."""
         if name in self.declared:
             raise SourceError.at(where, f"{name} is declared twice in one block of {self.function.name}")
         declared = Declaration(
@@ -140,7 +140,7 @@ class Builder:
         return place
 
     def unset(self, ctype: CType, where: Where, declaration: Declaration | None = None) -> LValue:
-        """A temporary without a value yet; `declaration` is that of the object whose value it keeps."""
+        """A temporary without a value yet.  `declaration`: that of the object whose value it will hold."""
         self._temporaries += 1
         name = f"value·{self._temporaries}"
         declared = declaration or Declaration(
@@ -150,7 +150,7 @@ class Builder:
         return LValue(ctype, variable, where=where, text=name)
 
     def kept(self, value: Expr) -> Expr:
-        """The value of `value` now, whatever happens until it is used."""
+        """The present value of `value`, stored in a temporary: later effects do not change it."""
         place = replace(self.temporary(value, value.where), text=source_text(value))
         return Load(place.ctype, place, where=value.where)
 
@@ -166,7 +166,7 @@ class Builder:
 
     @contextmanager
     def aside(self) -> Iterator[list[Stmt]]:
-        """Statements that do not come next: those of a branch, or the effects of an operand."""
+        """Collect statements apart from `out`: those of a branch, or the effects of an operand."""
         outer, self.out = self.out, []
         try:
             yield self.out
@@ -181,14 +181,14 @@ class Builder:
 
     @contextmanager
     def sequence(self) -> Iterator[None]:
-        """Effects within are over when the value is: what is built is a call, or operands with an order."""
+        """Effects built within are sequenced before the use of the value: for a call, or for ordered operands."""
         start = len(self.out)
         yield
         self.sequenced.extend(self.out[start:])
 
     @contextmanager
     def block(self, where: Where, *, loop: bool = False) -> Iterator[list[Stmt]]:
-        """The statements of a block within braces: what it declares ends with it."""
+        """Collect the statements of a block in braces; its declarations end with it."""
         if self.depth + self.chained >= BLOCK_NESTING:
             raise SourceError.at(where, f"more than {BLOCK_NESTING} blocks nested within each other: write a function")
         if loop and self.loops == LOOP_NESTING:
@@ -211,7 +211,7 @@ class Builder:
 
     @contextmanager
     def nested(self, where: Where) -> Iterator[None]:
-        """An expression within others.  Raises SourceError where it is too deep to be translated."""
+        """Enter a nested expression.  Raises SourceError if it is nested too deeply for the translation."""
         if self._nesting == EXPRESSION_NESTING:
             limit = f"more than {EXPRESSION_NESTING} operators or calls nested within each other"
             raise SourceError.at(where, f"{limit}: use a local for a part")
@@ -222,7 +222,7 @@ class Builder:
 
     @contextmanager
     def expanding(self, name: str, where: Where) -> Iterator[None]:
-        """The replacement of a `#define`.  Raises SourceError where it leads back to itself."""
+        """Enter the replacement of a `#define`.  Raises SourceError if it refers to itself, or is too long."""
         if name in self._expanding:
             way = " -> ".join([*self._expanding[self._expanding.index(name) :], name])
             raise SourceError.at(where, f"the #define of {name} leads back to itself ({way})")
@@ -235,7 +235,7 @@ class Builder:
         self._expanding.pop()
 
     def remark(self, where: Where, rule: str, message: str, name: str) -> None:
-        """A static finding of the reader."""
+        """Record a static finding of the reader, once."""
         function = "" if self.function.name == "file scope" else self.function.name
         made = Remark(where, rule, message, name, function)
         if made not in self.module.remarks:
@@ -243,6 +243,6 @@ class Builder:
 
 
 def file_scope(module: Module, *, remarks_pointers: bool = False) -> Builder:
-    """A builder for what stands outside of functions."""
+    """A builder for code outside of functions."""
     function = Function("file scope", module.short, FunctionType("void", VOID, ()), [], 0, module.c_file)
     return Builder(module, function, keeps=False, remarks_pointers=remarks_pointers)

@@ -62,14 +62,14 @@ def assign(b: Builder, place: Place, value: Expr, where: Where) -> None:
 
 
 def evaluate(b: Builder, value: Expr) -> None:
-    """An expression for its effect: calls and accesses to registers happen, the value is dropped."""
+    """An expression for its effects: calls and register accesses are made, the value is dropped."""
     acts = Call | CallPointer | RegisterLoad
     if any(isinstance(p, acts) or (isinstance(p, LValue) and isinstance(p.root, Expr)) for p in parts(value)):
         b.emit(Evaluate(value.where, value))
 
 
 def initialise(b: Builder, variable: Variable, value: Expr | list[Expr] | None, where: Where) -> None:
-    """A local begins, with a value (of an aggregate: one a scalar) or without."""
+    """Declare a local, with a value or without; an aggregate has one value per scalar."""
     if isinstance(value, Expr) and isinstance(variable.ctype, StructType):
         b.emit(Declare(where, variable, None))
         assign(b, LValue(variable.ctype, variable, where=where, text=variable.declaration.name), value, where)
@@ -77,7 +77,7 @@ def initialise(b: Builder, variable: Variable, value: Expr | list[Expr] | None, 
     if isinstance(value, Expr):
         value = convert(b, value, variable.ctype)
         if any(isinstance(part, LValue) and part.root is variable for part in parts(value)):
-            # `int x = x;` reads the x that begins here.
+            # `int x = x;` reads the same x that it declares.
             b.emit(Declare(where, variable, None))
             target = LValue(variable.ctype, variable, where=where, text=variable.declaration.name)
             b.emit(Assign(where, target, value))
@@ -87,7 +87,7 @@ def initialise(b: Builder, variable: Variable, value: Expr | list[Expr] | None, 
 
 
 def begin(b: Builder, variable: Variable, given: Item | Braces, where: Where) -> None:
-    """A local begins with what a list in braces gives, or one value."""
+    """Declare a local with an initialiser: a list in braces, or one value."""
     later: list[tuple[Member, Expr]] = []
     made = values(b, variable.ctype, given, later)
     initialise(b, variable, made if isinstance(variable.ctype, ArrayType | StructType) else made[0], where)
@@ -98,7 +98,7 @@ def begin(b: Builder, variable: Variable, given: Item | Braces, where: Where) ->
 
 
 def held(b: Builder, value: Expr, where: Where) -> LValue:
-    """A structure that a function returned, kept: it has members, and no address."""
+    """A structure that a function returned, in a temporary: its members can be read, its address cannot be taken."""
     if not isinstance(value.ctype, StructType) or not value.ctype.word_backed:
         return b.temporary(value, where)
     variable = b.declare(f"result__{len(b.function.locals)}", value.ctype, where)
@@ -107,7 +107,7 @@ def held(b: Builder, value: Expr, where: Where) -> LValue:
 
 
 def literal(b: Builder, ctype: CType, given: Item | Braces, where: Where) -> LValue:
-    """An object without a name that has its initial values: `(struct point){1, 2}`."""
+    """An unnamed object with initial values: `(struct point){1, 2}`."""
     variable = b.declare(f"literal__{len(b.function.locals)}", ctype, where)
     begin(b, variable, given, where)
     return object_place(variable, where)
@@ -115,7 +115,7 @@ def literal(b: Builder, ctype: CType, given: Item | Braces, where: Where) -> LVa
 
 @dataclass(frozen=True)
 class IfBranch:
-    """One `if` of a chain: its test and its branch, which says itself whether it is a block."""
+    """One `if` of a chain: its test and its branch.  The branch itself opens a block if it is one."""
 
     where: Where
     test: Callable[[], Expr]
@@ -123,7 +123,7 @@ class IfBranch:
 
 
 def chain(b: Builder, links: Sequence[IfBranch], otherwise: Callable[[], None] | None) -> None:
-    """`if`, `else if` ..., `else`.  A long chain is not nested: its tests stand one after the other in a switch.
+    """`if`, `else if` ..., `else`.  A long chain becomes a switch with one test after the other, without nesting.
 
     Raises SourceError for a long chain with a `break` of the switch around it.
     """
@@ -162,7 +162,7 @@ def chain(b: Builder, links: Sequence[IfBranch], otherwise: Callable[[], None] |
 
 
 def _leaves_switch(s: Stmt) -> bool:
-    """Whether a `break` of the switch around stands in a statement."""
+    """Whether a statement contains a `break` of the switch around it."""
     inner = [] if isinstance(s, Switch) else blocks(s)
     return isinstance(s, LeaveSwitch) or any(_leaves_switch(part) for block in inner for part in block)
 
@@ -175,7 +175,7 @@ def while_(b: Builder, test: Callable[[], Expr], body: Callable[[], None], where
 def loop(
     b: Builder, test: Callable[[], Expr] | None, body: Callable[[], None], step: Callable[[], None] | None, where: Where
 ) -> None:
-    """`while`, or `for` at large: `test` (none: for ever), `body` as a block, then `step`, at `continue` too."""
+    """`while`, or a general `for`: `test` (None: no end), `body` as a block, then `step`, after `continue` too."""
     effects, value = b.apart(test) if test is not None else ([], Const(INT, 1, where=where))
     condition(value)
     with b.aside() as steps:
@@ -193,14 +193,14 @@ def loop(
 
 
 def _continues(body: list[Stmt]) -> bool:
-    """Whether a `continue` of this loop stands in its body."""
+    """Whether the body of a loop contains a `continue` of this loop."""
     return any(
         isinstance(s, Continue) or (not isinstance(s, While | For) and any(map(_continues, blocks(s)))) for s in body
     )
 
 
 def do_while(b: Builder, body: Callable[[], None], test: Callable[[], Expr], where: Where) -> None:
-    """`do`: the test comes behind the body, at `continue` too."""
+    """`do`: the test comes after the body, and after `continue`."""
     with b.block(where, loop=True) as inner:
         body()
     effects, value = b.apart(test)
@@ -232,7 +232,7 @@ def switch(
     b: Builder, subject: Expr, cases: Sequence[tuple[list[int] | None, list[Stmt]]], where: Where,
     named: Collection[str], enumerations: Iterable[EnumType],
 ) -> None:  # fmt: skip
-    """`switch`: C converts a label to the promoted type of the subject.  `named`: labels that are names, if all are."""
+    """`switch`.  Labels are converted to the promoted type of the subject.  `named`: the labels, if all are names."""
     if not isinstance(subject.ctype, IntType):
         raise SourceError.at(subject.where, "switch needs an integer")
     ctype = promote(subject.ctype)

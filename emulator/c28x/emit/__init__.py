@@ -1,1 +1,1 @@
-"""Generates code from the annotated tree.  All decisions stand on the nodes; a writer only prints them."""
+"""Generates code from the annotated tree.  The passes have made all decisions; a writer only prints them."""

@@ -1,4 +1,4 @@
-"""The lines of a generated function: statements as text; charges of cycles as objects until they are printed."""
+"""The lines of a generated function.  Charges of cycles stay objects until they are printed, so they can be merged."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from emulator.c28x.emit.written import CALLED
 
 @dataclass(slots=True)
 class EmittedLine:
-    """One line of text; `line` is the line of the source that it stands for."""
+    """One line of text; `line` is the source line that it was generated for."""
 
     depth: int
     line: int
@@ -18,7 +18,7 @@ class EmittedLine:
 
 @dataclass(slots=True)
 class Begin:
-    """A statement of the source is begun: what an image that counts or steps does then."""
+    """The start of a source statement: the code with which an image counts it or stops at it."""
 
     depth: int
     line: int
@@ -27,9 +27,9 @@ class Begin:
 
 @dataclass(slots=True)
 class Charge:
-    """The CPU has executed for `cycles`; before, the firmware says that it stands `at` (0: it has said so).
+    """Charge `cycles` to the clock; first, store the place `at` (0: it is already stored).
 
-    `passing`: what comes next is seen by nobody, so that only an event which is due now can ask for the place.
+    `passing`: nobody else sees the next statement, so the place is stored only if an event is due now.
     """
 
     depth: int
@@ -41,7 +41,7 @@ class Charge:
 
 @dataclass(slots=True)
 class LineEntry:
-    """The call is entered in the shadow call stack, if the function has places of its own."""
+    """Push the call on the shadow call stack, if the function has places of its own."""
 
     depth: int
     line: int
@@ -49,7 +49,7 @@ class LineEntry:
 
 @dataclass(slots=True)
 class Exit:
-    """The call is taken out again; `value` is what is returned."""
+    """Pop the call from the shadow call stack and return `value`."""
 
     depth: int
     line: int
@@ -60,9 +60,9 @@ Item = EmittedLine | Begin | Charge | LineEntry | Exit
 
 
 def printed(items: list[Item], *, places: bool, clock: bool) -> list[tuple[str, int]]:
-    """The text of a function, each line with the source line it stands for.
+    """The text of a function: each line with its source line.
 
-    `places`: it has places of its own; `clock`: it lets time pass.
+    `places`: the function has places of its own; `clock`: it charges time.
     """
     lines: list[tuple[str, int]] = []
     for item in items:

@@ -1,11 +1,11 @@
 """Names in generated code.
 
-Every name that the generator makes begins with `_`; no name of the firmware does: one that does in C, that is a word of
-Python, or that begins like an escaped name, is escaped by `z_`.  Where a name is put together of several, a middle dot
-stands between them: Python takes it within a name, C does not, so that two ways never end in one name.  A `$`, which
-TI's compiler takes in names, is written by its number between two of them.
+Every generated name begins with `_`, and no name of the firmware does.  A firmware name gets the prefix `z_` if it
+begins with `_` in C, is a keyword of Python, or begins with `z_` itself.  A middle dot joins the parts of a composed
+name: it is valid in Python names but not in C names, so two different compositions never give the same name.  TI's
+compiler allows `$` in names: it is written as its code between two middle dots.
 
-`_g_x` data of a file-scope object, `_p_x` pointer to an object, `_f_x` firmware function, `_x_x` extern,
+`_g_x` is the data of a file-scope object, `_p_x` a pointer to an object, `_f_x` a firmware function, `_x_x` an extern,
 `_r_block_register_access` register, `_tN`, `_kN`, `_strN` types, numbers and strings of a function, `_h_...` its
 counters, `_c_...` runtime, `_k` clock, `_p` position.
 """
@@ -21,36 +21,36 @@ from emulator.c28x.tree import Function, RegisterRef, Variable
 
 
 def escaped(name: str) -> str:
-    """A name of the firmware as generated code writes it."""
+    """A name of the firmware as it is written in generated code."""
     if "$" in name:
         return f"z_{of_file(name)}"
     return f"z_{name}" if name.startswith(("_", "z_")) or keyword.iskeyword(name) else name
 
 
 def local_name(variable: Variable) -> str:
-    """A local or parameter: its C name, unless a block of the function has another local of that name."""
+    """The name of a local or parameter: its C name, unless another block of the function has a local of that name."""
     return variable.alias or escaped(variable.declaration.name)
 
 
 def object_name(variable: Variable) -> str:
-    """What a file-scope object is called behind `_g_` and `_p_`."""
+    """The name of a file-scope object after `_g_` and `_p_`."""
     d = variable.declaration
     text = "·".join(part for part in (of_file(d.module), d.function, d.name) if part)
     return text.replace("$", "·24·") if "$" in text else text
 
 
 def of_file(module: str) -> str:
-    """A module's name: that of a file, which may hold what no name can.  Such a character becomes its number."""
+    """The name of a module.  It comes from a file name: a character that no Python name can have becomes its code."""
     return "".join(c if c.isascii() and (c.isalnum() or c == "_") else f"·{ord(c):x}·" for c in module)
 
 
 @dataclass
 class FunctionNames:
-    """What the text of one function refers to by name, to be bound when it is linked."""
+    """The names that the text of one function refers to.  The linker binds them."""
 
-    #: Ends the names of what belongs to this function alone.
+    #: The suffix of names that belong to this function alone.
     owner: str
-    #: Whether reading a register (block, name) is nothing but looking at its stored word.
+    #: Whether reading a register (block, name) only returns its stored word.
     looked_at: Callable[[str, str], bool]
     constants: dict[str, Any] = field(default_factory=dict)
     strings: dict[str, str] = field(default_factory=dict)
@@ -60,7 +60,7 @@ class FunctionNames:
     _reuse: dict[Any, str] = field(default_factory=dict)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "looked_at": None, "_reuse": {}}  # what only writing needs
+        return {**self.__dict__, "looked_at": None, "_reuse": {}}  # only the writer needs these two
 
     def constant(self, prefix: str, value: Any, key: Any) -> str:
         """A name for `value`; equal keys share one."""
@@ -78,17 +78,17 @@ class FunctionNames:
 
     @property
     def counters(self) -> str:
-        """The name of the list that counts how often the function's statements are begun."""
+        """The name of the list of counters of the function's statements."""
         return f"_h_{self.owner}"
 
     def register(self, ref: RegisterRef, access: str) -> str:
-        """A name for what does `access` to a register."""
+        """A name for the operation `access` on a register."""
         name = f"_r_{ref.block}_{ref.register.replace('.', '_')}_{access}"
         self.registers[name] = (ref.block, ref.register, access)
         return name
 
     def function(self, function: Function) -> str:
-        """A name for a function: a linker has one for all files, but for those that a file keeps to itself."""
+        """A name for a function: one for all files, except for a `static` function of a file."""
         called = of_file(function.name) if "$" in function.name else function.name
         name = f"_{'x' if function.extern else 'f'}_{called}"
         if function.static:

@@ -1,8 +1,9 @@
 """The writer of Python: one visitor over the annotated tree of a function.
 
-Every expression becomes one Python expression.  Cycles are charged in batches, always *before* a statement that anybody
-else could see (a register, a file-scope object, a call), so that a task can be pre-empted before every such statement;
-the statement's number is stored with the charge, so that whoever comes in between sees where the firmware stands.
+Every C expression becomes one Python expression.  Cycles are charged in batches, always *before* a statement that
+others could notice (it accesses a register or a file-scope object, or calls a function).  So a task can be pre-empted
+before every such statement.  The number of the statement is stored with the charge, so that whatever comes in between
+knows where the firmware is.
 """
 
 from __future__ import annotations
@@ -90,16 +91,16 @@ from emulator.c28x.tree_queries import (
     whole_target,
 )  # fmt: skip
 
-#: So many cases of a switch stand one after the other.
+#: The largest number of cases in one `if` ... `elif` chain of a switch.
 CHOICES: Final = 32
 
 
 @dataclass(slots=True)
 class _Breakable:
-    """A loop, or a switch that is left from within, around the statement that is written.
+    """An enclosing loop, or an enclosing switch that is written as a loop.
 
-    `carries_on` and `ends` are the locals that say that a `continue` or `break` of the loop around has left the switch;
-    empty of a loop.  `used` are those of them that are needed.
+    `carries_on` and `ends` are flags of such a switch: a `continue` or `break` of the loop around has left it.  A loop
+    has none.  `used` contains the flags that are needed.
     """
 
     loop: While | For | None
@@ -111,7 +112,7 @@ class _Breakable:
 class PythonWriter:
     """Writes one function.
 
-    `costs` has left its cycles, `factor` scales them; the others are those of the image's options.
+    `costs` has put the cycles on its statements, `factor` scales them; the other arguments come from `CompileOptions`.
     """
 
     def __init__(
@@ -134,12 +135,12 @@ class PythonWriter:
         self.uses_clock = False
         self.places: list[tuple[Place, Site | None]] = []
         self.statements: dict[Where, int] = {}
-        #: Each statement that is counted (and the function) -> its counter; and their places, by counter.
+        #: Identity of each counted statement (and of the function) -> its counter; the places by counter.
         self.counters: dict[int, int] = {}
         self.counted: list[Where] = []
-        #: Nobody sees what the statement does that is written now.
+        #: Nobody else sees the effects of the present statement.
         self.passing = False
-        #: The number that `_p.at` holds here for certain.
+        #: The value of `_p.at` at this point; 0: not known.
         self.stands = 0
         self.fresh = 0
         self.around: list[_Breakable] = []
@@ -159,7 +160,7 @@ class PythonWriter:
             if f.ctype.result == VOID:
                 self.leave(None)
             else:
-                # The end of a function that owes a value: the caller gets whatever the register held.
+                # The function ends without the value that it must return: the caller gets what the register held.
                 self.leave(f"_c_uninit({self.number(f.owing)})")
         lines = printed(self.items, places=bool(self.places), clock=self.uses_clock)
         text = "\n".join(line for line, _ in lines)
@@ -169,7 +170,7 @@ class PythonWriter:
     # Places
 
     def number(self, guard: Guard | None) -> int:
-        """The number of a check."""
+        """Add the place of a check and return its number."""
         assert guard is not None
         return self.place(guard.site.where, guard.site)
 
@@ -179,7 +180,7 @@ class PythonWriter:
         return FIRST_NUMBER + len(self.places) - 1
 
     def here(self) -> int:
-        """The number of the statement that is written now."""
+        """The number of the present statement."""
         return self.statement_at(self.where)
 
     def statement_at(self, where: Where) -> int:
@@ -193,7 +194,7 @@ class PythonWriter:
         self.items.append(EmittedLine(self.depth, self.where.line, text))
 
     def begin(self, what: Function | Stmt, where: Where) -> None:
-        """A statement, or the function, is begun: it is counted in an image that counts, and can be stopped at."""
+        """Write the start of a statement, or of the function: count it, and stop there, if the options ask for it."""
         texts = []
         if self.coverage:
             counter = self.counters.setdefault(id(what), len(self.counted))
@@ -207,7 +208,7 @@ class PythonWriter:
             self.items.append(Begin(self.depth, where.line, tuple(texts)))
 
     def stand(self) -> int:
-        """The number to be stored before what comes next is seen: 0 if it is there already."""
+        """The number to store in `_p.at` before others see what comes next; 0 if it is already there."""
         number = self.here()
         if number == self.stands:
             return 0
@@ -215,7 +216,7 @@ class PythonWriter:
         return number
 
     def flush(self) -> None:
-        """Charge what has been executed so far."""
+        """Charge the cycles executed so far."""
         if self.cost:
             self.charge(self.cost)
             self.cost = 0
@@ -252,7 +253,7 @@ class PythonWriter:
                 count = variable.ctype.leaves
                 self.put(f"{name} = [None] * {count}" if count > 1 else f"{name} = [None]")
             elif variable.unwritten or self.residue or self.keep_locals or self.steps:
-                # Who looks at the locals, at a return or at any statement, finds all of them.
+                # A look at the locals, at a return or at any statement, must find all of them.
                 self.put(f"{name} = None")
         for variable in f.live:
             declared = self.names.constant("t", variable.declaration, ("declared", id(variable)))
@@ -260,7 +261,7 @@ class PythonWriter:
             self.put(f"_p_{name} = _c_enter({declared}, {name}, _fp + {variable.frame_offset})")
 
     def leave(self, value: str | None) -> None:
-        """Return, giving back the frame."""
+        """Return `value` and release the frame."""
         self.flush()
         f = self.function
         spills = self.residue or self.keep_locals
@@ -281,7 +282,7 @@ class PythonWriter:
     # Statements
 
     def block(self, body: list[Stmt]) -> None:
-        """Write statements; unreachable ones are written too, they cost nothing."""
+        """Write statements.  Unreachable ones are written too: they cost nothing."""
         start = len(self.items)
         for s in body:
             self.where = s.where
@@ -343,7 +344,7 @@ class PythonWriter:
             self.flush()
         carried, self.cost = self.cost, 0
         self.put(f"if {test}:")
-        # What has been executed is charged behind the join; a branch that does not come there charges it itself.
+        # Cycles executed so far are charged behind the `if`; a branch that does not get there charges them itself.
         self.branch(s.then, carried if leaves(s.then) else 0)
         if s.otherwise:
             self.put("else:")
@@ -351,7 +352,7 @@ class PythonWriter:
         self.cost = carried
 
     def branch(self, body: list[Stmt], cost: int = 0) -> None:
-        """An inner block, from which the way may go on behind the statement."""
+        """Write an inner block, whose end may continue behind the statement."""
         self.cost = cost
         where, stands = self.where, self.stands
         self.depth += 1
@@ -377,7 +378,7 @@ class PythonWriter:
         self.choice(sorted(s.cases, key=lambda case: case[0] is None), none)
 
     def choice(self, cases: list[tuple[list[int] | None, list[Stmt]]], none: str) -> None:
-        """One of the cases, by `_w`, or `none`; of many the half is chosen first: Python's parser nests an `elif`."""
+        """Write the choice of a case by `_w`, else `none`.  Many cases are halved: Python's parser nests `elif`."""
         if len(cases) > CHOICES:
             half = len(cases) // 2
             labels = frozenset(label for values, _ in cases[:half] for label in values or ())
@@ -405,7 +406,7 @@ class PythonWriter:
             self.depth -= 1
 
     def switch_at_large(self, s: Switch) -> None:
-        """A switch that is left from within, or whose cases go on with the next one: it is entered at a case."""
+        """Write a switch with inner `break`s or with fall-through, as a loop that is entered at a case."""
         self.fresh += 1
         entered = f"_e{self.fresh}"
         default = next((i for i, (values, _) in enumerate(s.cases) if values is None), len(s.cases))
@@ -448,7 +449,7 @@ class PythonWriter:
     # Loops
 
     def continue_turn(self, where: Where) -> None:
-        """`continue`: what comes before the test is done first, then the test's time passes."""
+        """`continue`: first do what comes before the test, then charge the time of the test."""
         around = self.around[-1]
         loop = around.loop
         if loop is None:
@@ -465,7 +466,7 @@ class PythonWriter:
             self.put("continue")
 
     def break_loop(self) -> None:
-        """`break` of the loop around, out of the switches that are written as loops."""
+        """`break` of the enclosing loop; it first leaves the switches within, which are written as loops."""
         around = self.around[-1] if self.around else None
         if around is not None and around.loop is None:
             around.used.add(around.ends)
@@ -473,7 +474,7 @@ class PythonWriter:
         self.put("break")
 
     def end_of_turn(self, loop: While | For) -> None:
-        """What comes before the next look at the test, and the time of that."""
+        """Write what comes before the next evaluation of the test, and charge the time of the test."""
         where = self.where
         self.begin(loop, loop.where if isinstance(loop, For) or loop.first else loop.test.where)
         if isinstance(loop, For) and loop.test is None:
@@ -515,13 +516,13 @@ class PythonWriter:
         self.stands = 0
 
     def put_patience(self, loop: While | For) -> None:
-        """A loop in whose end nobody else has a part may compute for so long."""
+        """Write the time limit of a loop that nobody else can end."""
         if loop.endless is not None:
             self.uses_clock = True
             self.put(f"_e{self.depth}_ = _k.now + _c_loop_limit")
 
     def turns(self, loop: While | For, body: list[Stmt]) -> None:
-        """The body of a loop, whose end is still to be written."""
+        """Write the body of a loop; the caller writes the end of its turn."""
         self.around.append(_Breakable(loop))
         self.depth += 1
         self.stands = 0
@@ -530,7 +531,7 @@ class PythonWriter:
         self.block(body)
 
     def poll(self, s: While) -> None:
-        """A loop that only looks at its condition is carried from event to event."""
+        """Write a loop that only evaluates its condition: it advances from event to event."""
         assert s.endless is not None
         self.uses_clock = True
         cycles = self.scaled(s.cycles)
@@ -556,12 +557,12 @@ class PythonWriter:
         self.cost += s.cycles
         self.flush()
         if not isinstance(s.start, Const):
-            # Evaluated once: the body may change what it depends on.
+            # The start is evaluated once: the body may change its operands.
             self.put(f"_a{self.depth} = {start}")
             start = f"_a{self.depth}"
         name = local_name(s.counter)
         step = f", {s.step}" if s.step != 1 else ""
-        if not s.trips:  # else the loop itself gives the first value
+        if not s.trips:  # else the Python loop sets the first value
             self.put(f"{name} = {start}")
         self.put(f"for {name} in _range({start}, {stop}{step}):")
         first = len(self.items)
@@ -581,7 +582,7 @@ class PythonWriter:
         self.depth -= 1
         self.around.pop()
         self.stands = 0
-        # Behind the loop C's variable holds the first value that failed the test.
+        # After the loop, the C variable holds the first value for which the test failed.
         if s.trips is not None:
             final = str(s.trips[-1] + s.step) if s.trips else start
         elif s.step == 1:
@@ -592,7 +593,7 @@ class PythonWriter:
         self.put(f"    {name} = {final}")
 
     def counting_at_large(self, s: For) -> None:
-        """A for whose variable or bound is changed, shared or may wrap: written as C defines it."""
+        """Write a `for` as C defines it: its variable or bound is changed in the body, is shared, or may wrap."""
         assert s.test is not None
         start = self.value(s.start)
         self.cost += self.costs.cycles(s.start) + self.costs.cycles(s.stop)
@@ -611,7 +612,7 @@ class PythonWriter:
         self.stands = 0
 
     def counter(self, s: For) -> str:
-        """The variable of a counting loop as text."""
+        """The text of the variable of a counting loop."""
         root = s.counter
         return local_name(root) if root.plain else f"{self.data(root)}[{s.variable.leaf}]"
 
@@ -638,7 +639,7 @@ class PythonWriter:
         self.cost += s.cycles
         if isinstance(target, RegisterRef | RegisterAt):
             called, in_place = self.register_store(target, s.value)
-            # What is stored in place is seen by nobody: only the call has to say where it stands.
+            # Nobody sees a store in place: only the call must store its place.
             self.passing = bool(in_place) and not self.watch
             self.flush()
             if in_place:
@@ -669,7 +670,7 @@ class PythonWriter:
             self.store_memory(target, root, value, visible=visible)
 
     def store_pointed(self, target: LValue, value: str) -> str:
-        """The statement that writes through a pointer, or a bit-field."""
+        """The statement that writes through a pointer, or to a bit-field."""
         number = self.number(target.outside)
         root = target.root
         pointer, offset = self.base(root), self.offset_words(target)
@@ -688,7 +689,7 @@ class PythonWriter:
             if visible:
                 self.flush()
             if self.told(root):
-                # The value is read first: what it reads is told before.
+                # The value is computed first, so that its reads are reported to the watcher before this write.
                 self.put(f"_v = {value}")
                 self.put(self.touch(root, str(target.words), write=True))
                 value = "_v"
@@ -725,7 +726,7 @@ class PythonWriter:
         variable = s.variable
         name = local_name(variable)
         if s.value is None:
-            # A local of an inner block has no value at the beginning of each turn (its words are those of before).
+            # A local of an inner block has no value at the start of each turn (its words keep the old value).
             if variable.unwritten and renewed(variable) and any(around.loop is not None for around in self.around):
                 self.put(f"if {name} is not None: _old_{name} = {name}; {name} = None")
             return
@@ -768,7 +769,7 @@ class PythonWriter:
         return f"_c_float_out({text}, {number})"
 
     def plain(self, e: Expr) -> str:
-        """The text without what its use asks for."""
+        """The text of `e`, without the checks that its use asks for."""
         match e:
             case Const(value=value):
                 return self.literal(value)
@@ -809,7 +810,7 @@ class PythonWriter:
         raise TypeError(f"no text for {type(e).__name__}")
 
     def condition(self, e: Expr) -> str:
-        """Python text that is true when C takes the branch."""
+        """Python text that is true if C takes the branch."""
         match e:
             case Compare(op=op, left=left, right=right, guard=Guard(kind="stamps") as guard):
                 return f"_c_stamps({self.value(left)}, {op!r}, {self.value(right)}, {self.number(guard)})"
@@ -840,7 +841,7 @@ class PythonWriter:
     # Arithmetic
 
     def mathematical(self, e: Expr, ctype: CType) -> str:
-        """The value of an unsigned tree without any wrap."""
+        """The text of the mathematical value of an unsigned tree, without any wrap."""
         match e:
             case Binary(op=op, left=left, right=right) if wraps(e) and e.ctype == ctype:
                 return f"({self.mathematical(left, ctype)} {op} {self.mathematical(right, ctype)})"
@@ -850,7 +851,7 @@ class PythonWriter:
         return self.plain(e) if constant is None else self.literal(constant)
 
     def fitted(self, text: str, e: Expr, exact: tuple[int, int] | None) -> str:
-        """A result brought into its type, by the cheapest sufficient means."""
+        """A result converted to its type, in the cheapest way that its bounds allow."""
         ctype = e.ctype
         assert isinstance(ctype, IntType)
         if exact is not None and ctype.low <= exact[0] and exact[1] <= ctype.high:
@@ -878,7 +879,7 @@ class PythonWriter:
         return self.fitted(f"({left} {op} {right})", e, e.exact)
 
     def shift(self, e: Binary, ctype: IntType, left: str, right: str) -> str:
-        """A shift whose count may be out of range."""
+        """The text of a shift whose count may be out of range."""
         number = self.number(e.guard)
         if isinstance(e.left, Const) and e.op == "<<" and int(e.left.value) > 0:
             # A constant shifted by a variable: in range up to the count at which it would overflow.
@@ -896,7 +897,7 @@ class PythonWriter:
         number = self.number(guard)
         if guard.kind == "divide":
             return f"_c_divide_floats({left}, {right}, {number})"
-        # In an image that is watched: a NaN or an infinity is seen where it is made.  No binary32 number reaches 4e38.
+        # In a watched image, a NaN or an infinity is reported where it arises.  No binary32 number reaches 4e38.
         self.fresh += 1
         a, b, r = f"_a{self.fresh}_", f"_b{self.fresh}_", f"_r{self.fresh}_"
         result = f"_c_f32(({a} := {left}) {e.op} ({b} := {right}))"
@@ -978,7 +979,7 @@ class PythonWriter:
         for argument in e.arguments:
             if isinstance(argument, Null):
                 arguments.append("None")
-            elif isinstance(argument.ctype, HandleType):  # an object of the emulator, or the one NULL
+            elif isinstance(argument.ctype, HandleType):  # an object of the emulator, or NULL
                 arguments.append(f"(None if (_h := {self.value(argument)}) is _c_NULL else _h)")
             elif isinstance(argument.ctype, PointerType):
                 arguments.append(f"_c_outward({self.value(argument)})")
@@ -995,25 +996,25 @@ class PythonWriter:
         return f"_g_{object_name(variable)}" if variable.kind == "global" else local_name(variable)
 
     def pointer_name(self, variable: Variable) -> str:
-        """The pointer to an object, made where the object is."""
+        """The name of the pointer to an object."""
         return f"_p_{object_name(variable) if variable.kind == 'global' else local_name(variable)}"
 
     def base(self, root: Variable | Expr) -> str:
-        """The pointer that a way begins at."""
+        """The pointer at the start of the way to an object."""
         return self.value(root) if isinstance(root, Expr) else self.pointer_name(root)
 
     def location(self, variable: Variable, words: str) -> str:
-        """The address of a memory object's word."""
+        """The text of the address of a word of an object in memory."""
         if variable.kind == "global":
             return f"{self.pointer_name(variable)}.addr + {words}"
         return f"_fp + {variable.frame_offset} + {words}"
 
     def told(self, variable: Variable) -> bool:
-        """Whether accesses of `variable` are told: it is an object of the file, or a local that is pointed at."""
+        """Whether the watcher is told of accesses: to an object of the file, or to a local with a pointer to it."""
         return self.watch and (variable.kind == "global" or (variable.in_memory and variable.escapes))
 
     def touch(self, variable: Variable, words: str, *, write: bool) -> str:
-        """What tells the watcher; its value is None."""
+        """The call that tells the watcher; its value is None."""
         return f"_c_touch({self.pointer_name(variable)}.obj, {words}, {write})"
 
     def load(self, lvalue: LValue) -> str:
@@ -1045,7 +1046,7 @@ class PythonWriter:
         return f"({text} if {way.tests} else {outside})"
 
     def load_pointed(self, lvalue: LValue) -> str:
-        """What is read through a pointer, or a bit-field."""
+        """The text of a read through a pointer, or of a bit-field."""
         root = lvalue.root
         number = self.number(lvalue.outside)
         pointer, offset = self.base(root), self.offset_words(lvalue)
@@ -1060,7 +1061,7 @@ class PythonWriter:
         return f"_c_load({pointer}, {offset}, {number})"
 
     def tested(self, text: str, lvalue: LValue, root: Variable, words: str) -> str:
-        """`text`, with a test for never-written where that is possible."""
+        """`text`, with a test for a value that was never written if there can be one."""
         if lvalue.fresh is None:
             return text
         number = self.number(lvalue.fresh)
@@ -1074,7 +1075,7 @@ class PythonWriter:
         return f"(_u if (_u := {text}) is not None else _c_uninit({number}{where}))"
 
     def way(self, lvalue: LValue) -> _Way:
-        """The way to an element of an object in memory, each subscript evaluated once."""
+        """The way to an element of an object in memory.  Each subscript is evaluated once."""
         root = lvalue.root
         assert isinstance(root, Variable)
         if not lvalue.indices:
@@ -1098,19 +1099,19 @@ class PythonWriter:
         for name, text, index, limit in zip(names, texts, lvalue.indices, limits, strict=True):
             low = bounds_of(index.expr)[0]
             tests.append(f"{'0 <= ' if low < 0 else ''}({name} := {text}) < {limit}")
-        # All of them are evaluated, whatever the first is: `&`, not `and`.
+        # `&`, not `and`: all subscripts are evaluated, whatever the first test gives.
         way.tests = tests[0] if len(tests) == 1 else " & ".join(f"({test})" for test in tests)
         return way
 
     def offset_words(self, lvalue: LValue) -> str:
-        """The distance of an lvalue from its root in words."""
+        """The text of the distance of an lvalue from its root, in words."""
         terms = [f"{self.member_index(i)} * {i.words}" for i in lvalue.indices]
         if lvalue.words or not terms:
             terms.append(str(lvalue.words))
         return " + ".join(terms)
 
     def member_index(self, index: Index) -> str:
-        """A subscript behind a pointer, held against the array member that it is meant for."""
+        """A subscript behind a pointer, checked against the length of the array member if that is known."""
         text = self.value(index.expr)
         return text if index.guard is None else f"_c_member_index({text}, {self.number(index.guard)})"
 
@@ -1135,11 +1136,11 @@ class PythonWriter:
         return f"({word}{shift} & {(1 << ref.field.width) - 1})"
 
     def pointed_register(self, ref: RegisterAt) -> str:
-        """The register of the block that a pointer designates."""
+        """The text of a register in the block that a pointer points to."""
         return f"_c_register({self.value(ref.block)}, {ref.words}, {ref.bits}, {self.number(ref.guard)})"
 
     def register_store(self, ref: RegisterRef | RegisterAt, value: Expr) -> tuple[str, str]:
-        """The call that writes a register or field, and what stores it in place where that does the same ("": no)."""
+        """The call that writes a register or field, and the store in place that has the same effect ("": none)."""
         if isinstance(ref, RegisterAt):
             write = modify = self.pointed_register(ref)
             write, modify = f"{write}.write", f"{modify}.modify"
@@ -1161,7 +1162,7 @@ class PythonWriter:
         called = f"{modify}({keep}, {bits}, {f.lane})"
         if isinstance(ref, RegisterAt) or not ref.plain or observable(value):
             return called, ""
-        # Most fields are only stored, and a call takes longer than that.
+        # Most fields are only stored: doing it in place is faster than a call.
         gate, word = self.names.register(ref, "gate"), f"{self.names.register(ref, 'source')}.value"
         return called, f"if {gate}.eallow: {word} = {word} & {keep} | ({bits})"
 
@@ -1178,10 +1179,10 @@ class PythonWriter:
 
 @dataclass(slots=True)
 class _Way:
-    """The way to an element, as text: its scalar, its word; names of its subscripts, and what gives them values.
+    """The way to an element, as text.
 
-    `tests` names the subscripts and holds them against their bounds; without tests, `told` names them in the word that
-    a watcher is told.
+    `leaf` is the number of its scalar, `words` its word, `names` the names of its subscripts.  `tests` assigns these
+    names and checks the bounds.  Without tests, `told`, the word that a watcher is told, assigns the names.
     """
 
     leaf: str
@@ -1192,13 +1193,13 @@ class _Way:
 
 
 def _leaf(subscripts: list[str], lvalue: LValue) -> str:
-    """The scalar that subscripts designate."""
+    """The text of the number of the scalar that subscripts designate."""
     terms = [t if i.leaves == 1 else f"{t} * {i.leaves}" for t, i in zip(subscripts, lvalue.indices, strict=True)]
     return " + ".join([*terms, str(lvalue.leaf)] if lvalue.leaf else terms)
 
 
 def _words(subscripts: list[str], lvalue: LValue) -> str:
-    """The word of the object that subscripts designate."""
+    """The text of the word of the object that subscripts designate."""
     terms = [t if i.words == 1 else f"{t} * {i.words}" for t, i in zip(subscripts, lvalue.indices, strict=True)]
     return " + ".join([*terms, str(lvalue.words)] if lvalue.words else terms)
 
@@ -1208,7 +1209,7 @@ def _labels(values: list[int]) -> str:
 
 
 def own_statements(body: list[Stmt]) -> list[Stmt]:
-    """The statements of a case that a `break` would end: those of inner switches are left out."""
+    """The statements of a case to which its `break` belongs: without those of inner switches."""
     found: list[Stmt] = []
     for s in body:
         found.append(s)

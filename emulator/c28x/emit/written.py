@@ -1,4 +1,4 @@
-"""A generated function: the writer's result, with all that linking needs."""
+"""A generated function: the result of the writer, with all that the linker needs."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from emulator.c28x.sites import Place, Site
 from emulator.c28x.tree import Where
 from emulator.clock import Clock
 
-#: How time is charged: a compiled clock is fastest called, an interpreted one where its attributes are used in place.
+#: Whether time is charged by a call: that is fastest with a compiled clock, in-line attribute access without one.
 CALLED: Final = not isinstance(Clock.charge, FunctionType)
-#: The numbers of places in a function's text begin here, so that they can be told from all others when it is linked:
-#: beyond what arithmetic of 64 bits gives, and beyond what Python itself folds (128 bits).
+#: Places in a function's text are numbered from here, so that the linker can tell them from all other numbers: 64-bit
+#: arithmetic does not reach them, nor does constant folding in Python (128 bits).
 FIRST_NUMBER: Final = 1 << 130
 
 
 @dataclass(frozen=True, slots=True)
 class EmittedFunction:
-    """A function as Python: its text, the source line of each line, its places by number, what it refers to.
+    """A function as Python: its text, the source line of each line, its places by number, the names that it refers to.
 
-    `counted` are the statements that are counted, by counter; the first is the function itself.
+    `counted` are the places of the counted statements, by counter; the first is that of the function itself.
     """
 
     text: str
