@@ -1,12 +1,13 @@
-"""What is configured and can bring nothing: looked at when a run ends, for `not-connected`, and `adc-burst`.
+"""Finds configurations that can have no effect, when a run ends: `not-connected`, `adc-burst`, `trip-open` and others.
 
-A module is set up in several places, and the last link of the chain may be missing: the ADC waits for a trigger of an
-ePWM whose counter was never started.  Nothing goes wrong then, nothing happens at all, so there is no access at which
-it could be told.  At the end of a run the registers say what stands, and the source says whether any statement of the
-program could still change that: only if none can is it told, at the statement that wants the event.
+A module is set up in several places, and the last link of the chain may be missing.  For example, the ADC waits for a
+trigger of an ePWM whose counter was never started.  Then nothing happens at all, so there is no access at which it
+could be reported.  At the end of a run the registers show what is configured, and the source shows whether any
+statement of the program could still change it.  It is reported only if none can, at the statement that makes the link
+wrong, or else at the one that wants the event.
 
-A register that is reached through a pointer, or by an assignment whose value nobody knows, could hold anything.
-Firmware without a `main` is part of a program, whose rest may do what is missing: nothing is told of it.
+A register that is reached through a pointer, or assigned a value that the source does not tell, could hold anything.
+Firmware without a `main` is part of a program.  The rest may do what is missing, so nothing is reported.
 
 Time: none while firmware runs.
 Sources: TRM, ADC (SOC triggers), ePWM (time base, event trigger, counter compare), PIE, external interrupts.
@@ -54,27 +55,27 @@ from emulator.registers.gpio import PORTS
 FIRST_SOCA: Final = 5
 #: TRIGSEL of the CPU timers.
 TIMERS: Final = range(1, 4)
-#: CTRMODE
+#: Values of TBCTL.CTRMODE.
 UP: Final = 0
 DOWN: Final = 1
 STOPPED: Final = 3
-#: Of ETSEL, the compare of each event and the direction in which it needs the counter: 4 CAU, 5 CAD, 6 CBU, 7 CBD.
+#: Choice of ETSEL -> its compare, and the counter mode in which it never occurs: 4 CAU, 5 CAD, 6 CBU, 7 CBD.
 COMPARES: Final = {4: ("CMPA", DOWN), 5: ("CMPA", UP), 6: ("CMPB", DOWN), 7: ("CMPB", UP)}
 #: Words of a FIFO of the SCI.
 FIFO_DEPTH: Final = 16
-#: CTRIPHSEL, CTRIPLSEL: the output of the digital filter.
+#: Value of CTRIPHSEL and CTRIPLSEL: the output of the digital filter.
 FILTERED: Final = 2
-#: Of fewer edges nothing is said.
+#: Nothing is reported for fewer edges, messages or frames than these.
 LEAST_EDGES: Final = 8
-#: TZA, TZB: a trip changes nothing.
+#: Value of TZA and TZB: a trip does not change the output.
 NO_CHANGE: Final = 3
-#: LOADAMODE: the shadow register is never loaded.
+#: Value of LOADAMODE: the active register is never loaded from the shadow register.
 FREEZE: Final = 3
 
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """A link of a chain that is not there: what is wrong, and the register and field that it stands in."""
+    """A missing link of a chain: what is wrong, and the register and field at fault."""
 
     why: str
     register: str
@@ -82,19 +83,19 @@ class Missing:
 
 
 class Connections:
-    """The look at one chip and the program that is linked to it."""
+    """Checks one chip and the program that is linked to it."""
 
     def __init__(self, chip: Chip, linked: Linked) -> None:
         self._chip = chip
         self._linked = linked
         self._done = False
-        #: Whether `main` has come to its last loop, or to the start of the kernel: whoever runs it says so.
+        #: Whether `main` has reached its last loop or the start of the kernel.  The code that runs `main` sets it.
         self.started_up = False
-        #: Interrupt routines that never run again, by the function's name.
+        #: Names of interrupt routines that can never run again.
         self.silent: set[str] = set()
 
     def finish(self) -> None:
-        """Tell what is configured and can bring nothing."""
+        """Report every configuration that can have no effect."""
         if self._done:
             return
         self._done = True
@@ -132,23 +133,24 @@ class Connections:
         return (block, name) in self._source.writes
 
     def _calls(self, *names: str) -> bool:
-        """Whether any statement of the program calls one of these functions of TI's."""
+        """Whether any statement of the program calls one of these TI functions."""
         return any(name in self._source.calls for name in names)
 
     def _could(self, register: str, right: Callable[[int], bool], field: str) -> bool:
-        """Whether some statement of the program could give a field a value that is right."""
+        """Whether some statement of the program could give a field a value that `right` accepts."""
         block, name = _split(register)
         return self._source.could(block, name, self._mask(register, field), right)
 
     def _wanting(self, register: str, field: str) -> Place | None:
-        """The last statement of the source that gives a field the value that stands in it now."""
+        """The last statement of the source that gives a field the value that it has now."""
         block, name = _split(register)
         now = self._chip.blocks[block].registers[name].value
         return self._source.giving(block, name, self._mask(register, field), now)
 
     def _place(self, missing: Missing, *, whole: bool) -> Place | None:
-        """Where a link is missing: the statement that makes it wrong, or one that sets up the same register; with
-        `whole` any of the same block.
+        """Where a link is missing: the statement that gives the field its value, or the last write to the register.
+
+        With `whole`, the last write to any register of the block if there is no such statement.
         """
         block, name = _split(missing.register)
         found = self._wanting(missing.register, missing.field) or self._source.last(block, name)
@@ -160,26 +162,26 @@ class Connections:
         return cell.fields[field].mask if field else (1 << cell.bits) - 1
 
     def _value(self, register: str, field: str) -> int:
-        """What stands in a field now."""
+        """The value of a field now."""
         block, name = _split(register)
         return field_of(self._chip.blocks[block].registers[name].value, self._mask(register, field))
 
     def _stuck(self, register: str, field: str, right: Callable[[int], bool]) -> bool:
-        """Whether a field has a value that is not right, and no statement could give it another.
+        """Whether `right` rejects the value of a field, and no statement could still give it a right one.
 
-        What the start-up gave it, and took away again, comes no more.
+        Statements of the start-up do not count once it is over.
         """
         if right(self._value(register, field)):
             return False
         return not self._writes_again(register, right, field)
 
     def _writes_again(self, register: str, right: Callable[[int], bool], field: str) -> bool:
-        """As `_could`, but where the start-up is over none of its statements counts."""
+        """As `_could`, without the statements of the start-up once it is over."""
         block, name = _split(register)
         return self._source.could(block, name, self._mask(register, field), right, again=self.started_up)
 
     def _tell(self, waits: Place | None, message: str, missing: Missing, object: str, *, whole: bool = False) -> None:
-        """Tell that something waits (at a place of the source) for what never comes."""
+        """Report that the statement at `waits` waits for an event that never occurs."""
         if waits is None:
             return
         place = self._place(missing, whole=whole) or waits
@@ -188,13 +190,13 @@ class Connections:
             place, "not-connected", f"{message}: {missing.why}", object=object, how="dynamic", details=details
         )
 
-    # What is looked at
+    # The checks
 
     def _adc_triggers(self) -> None:
         for letter in ADC_PIE:
             block = f"Adc{letter.lower()}Regs"
             bursts = self._value(f"{block}.ADCBURSTCTL", "BURSTEN")
-            # In burst mode only the SOCs of high priority look at their TRIGSEL.
+            # In burst mode only the SOCs of high priority use their TRIGSEL.
             end = self._value(f"{block}.ADCSOCPRICTL", "SOCPRIORITY") if bursts else 16
             if bursts and end < 16:
                 self._burst(block, end)
@@ -216,7 +218,7 @@ class Connections:
                     self._tell(place, waits, missing, f"{register}.TRIGSEL")
 
     def _unheard(self, trigsel: int) -> bool:
-        """Whether the other SOC of the ePWM of a TRIGSEL comes, and nobody listens to it: that one was meant."""
+        """Whether the ePWM's other SOC occurs and starts nothing: then the TRIGSEL probably means that one."""
         other = trigsel + 1 if (trigsel - FIRST_SOCA) % 2 == 0 else trigsel - 1
         if self._no_trigger(other)[1] is not None or self._could_trigger_dma(other):
             return False
@@ -226,7 +228,7 @@ class Connections:
         )
 
     def _could_trigger_dma(self, trigsel: int) -> bool:
-        """Whether a channel of the DMA could listen to a trigger."""
+        """Whether a statement could make a DMA channel listen to the trigger of this TRIGSEL."""
         number = DMA_TRIGSEL[trigsel]
         return any(
             self._could(f"DmaClaSrcSelRegs.DMACHSRCSEL{1 + n // 4}", lambda word: word == number, f"CH{n + 1}")
@@ -234,7 +236,7 @@ class Connections:
         )
 
     def _burst(self, block: str, first: int) -> None:
-        """Bursts go round through the SOCs from `first` on: they should come back to it, and each be set up."""
+        """Bursts go round through SOC `first` to SOC15.  Each should be set up, and a round should end with a burst."""
         place = self._wanting(f"{block}.ADCBURSTCTL", "BURSTSIZE") or self._wanting(f"{block}.ADCBURSTCTL", "BURSTEN")
         size = self._value(f"{block}.ADCBURSTCTL", "BURSTSIZE") + 1
         bare = [
@@ -255,7 +257,7 @@ class Connections:
             )  # fmt: skip
 
     def _no_trigger(self, trigsel: int) -> tuple[str, Missing | None]:
-        """What a TRIGSEL stands for, and why that never comes; None if it can."""
+        """The trigger that a TRIGSEL names, and why it never occurs; None if it can."""
         if trigsel in TIMERS:
             return f"CPU timer {trigsel - 1}", self._no_timer(trigsel - 1)
         epwm, b = divmod(trigsel - FIRST_SOCA, 2)
@@ -281,7 +283,7 @@ class Connections:
         scaled = self._value(f"{name}.ETPS", "INTPSSEL" if event == "INT" else "SOCPSSEL")
         if not scaled and self._stuck(f"{name}.ETPS", f"{event}PRD", bool):
             return Missing(f"{name}.ETPS.{event}PRD = 0: no event triggers it", f"{name}.ETPS", f"{event}PRD")
-        # 0 of a SOC is an event of the digital compare, for which the counter need not count.
+        # SOCxSEL = 0 is an event of the digital compare.  It needs no counter.
         by_counter = self._value(f"{name}.ETSEL", f"{event}SEL") or event == "INT"
         return self._no_count(n) or self._no_compare(n, event) if by_counter else None
 
@@ -297,7 +299,7 @@ class Connections:
         return None
 
     def _no_compare(self, n: int, event: str) -> Missing | None:
-        """Why the compare that an event is made from is never reached; None if it can be."""
+        """Why the counter never reaches the compare value of an event; None if it can."""
         name = f"EPwm{n}Regs"
         choice = self._value(f"{name}.ETSEL", f"{event}SEL")
         if choice not in COMPARES or self._value(f"{name}.ETSEL", f"{event}SELCMP"):
@@ -312,7 +314,7 @@ class Connections:
         return self._above(n, compare, 0)
 
     def _above(self, n: int, compare: str, beyond: int) -> Missing | None:
-        """Whether a compare value is more than `beyond` above the period, and none could be below."""
+        """A compare value that is more than `beyond` above the period and that no statement could lower; else None."""
         name = f"EPwm{n}Regs"
         period = self._value(f"{name}.TBPRD", "")
         if not period or self._could(f"{name}.TBPRD", lambda other: other > period, ""):
@@ -323,7 +325,7 @@ class Connections:
         return Missing(why, f"{name}.{compare}", compare)
 
     def _interrupts(self) -> None:
-        """PIE lines that are let through: can their source give an interrupt, and is there a routine for it?"""
+        """Check each enabled PIE line: can its source give an interrupt, and is there a routine for it?"""
         pie, chip = self._chip.pie, self._chip
         for group in range(1, 13):
             register = f"PieCtrlRegs.PIEIER{group}"
@@ -354,7 +356,7 @@ class Connections:
         return None
 
     def _other_line(self, place: Place, group: int, n: int) -> None:
-        """A line without a routine is let through: is there a routine of its group whose line is not?"""
+        """A line without a routine is enabled.  Report it if a routine of the same group has a line that is not."""
         register = f"PieCtrlRegs.PIEIER{group}"
         for other in range(1, 17):
             routine = self._chip.vectors.routine(group, other)
@@ -369,7 +371,7 @@ class Connections:
                 return
 
     def _closed(self, group: int, n: int) -> Missing | None:
-        """Why an interrupt that has come is not taken, nor any of its group ever was; None if it can be."""
+        """Why an interrupt that is pending is never taken; None if it is not pending, or can be taken."""
         if not self._chip.pie.waits(group, n):
             return None
         if self._stuck("PieCtrlRegs.PIECTRL", "ENPIE", bool):
@@ -379,7 +381,7 @@ class Connections:
         return Missing(f"bit {group - 1} of IER (M_INT{group}) is 0", f"PieCtrlRegs.PIEIER{group}", f"INTx{n}")
 
     def _no_source(self, group: int, n: int) -> Missing | None:
-        """Why the source of a PIE interrupt never gives one; None if it can, or if nobody knows."""
+        """Why the source of a PIE interrupt never gives one; None if it can, or if this is not known."""
         for letter, lines in ADC_PIE.items():
             if (group, n) in lines:
                 return self._no_conversion(letter, lines.index((group, n)) + 1)
@@ -468,7 +470,7 @@ class Connections:
         return None
 
     def _waits_for_ever(self) -> bool:
-        """Whether the run came to a wait without an end."""
+        """Whether the run reached an endless wait (`endless-poll`)."""
         return bool(self._chip.findings.of("endless-poll"))
 
     def _no_capture(self, n: int) -> Missing | None:
@@ -489,8 +491,9 @@ class Connections:
         return self._no_input(ECAP_INPUT[n], first)
 
     def _no_input(self, number: int, user: str) -> Missing | None:
-        """Why the input of an eCAP or an external interrupt, set up in the register `user`, has no edges; None if it
-        can have some.
+        """Why an input of the X-BAR has no edges for its user, an eCAP or external interrupt; None if it can have some.
+
+        `user` is a register that sets up this eCAP or external interrupt.
         """
         select = f"InputXbarRegs.INPUT{number}SELECT"
         if self._value(select, "") or self._writes(select):
@@ -510,7 +513,7 @@ class Connections:
         yield from ((number, f"XintRegs.XINT{n}CR") for n, number in XINT_INPUT.items() if number > 6)
 
     def _captures(self) -> None:
-        """Captures that are read and never loaded, and one shots that nobody arms again."""
+        """Captures that are read and never loaded, and one-shot captures that are never armed again."""
         for n in range(1, ECAP_COUNT + 1):
             name = f"ECap{n}Regs"
             first, second = f"{name}.ECCTL1", f"{name}.ECCTL2"
@@ -536,8 +539,9 @@ class Connections:
                 self._tell(reads[0], message, missing, second)
 
     def _channels(self) -> None:
-        """Channels of the DMA that have stopped behind a transfer while the program waits for ever, or gives them the
-        addresses of the next one.
+        """DMA channels that stopped after a transfer and are not started again.
+
+        They are reported if the program waits for ever, or gives them the addresses of the next transfer.
         """
         for n in range(1, DMA_CHANNELS + 1):
             mode, control = f"DmaRegs.CH{n}.MODE", f"DmaRegs.CH{n}.CONTROL"
@@ -558,7 +562,7 @@ class Connections:
                 self._tell(place, message, missing, mode)
 
     def _sections(self) -> None:
-        """Buffers of the DMA without a section, in a program that gives another one a section."""
+        """DMA buffers without a `#pragma DATA_SECTION`, in a program that places another DMA buffer with one."""
         placed = {f"{m.name}.{name}" for m in self._linked.program.modules.values() for name in m.placed}
         used = self._chip.dma.objects
         for name, cause in used.items() if placed & used.keys() else ():
@@ -572,15 +576,15 @@ class Connections:
                 )  # fmt: skip
 
     def _groups(self) -> None:
-        """Groups of the PIE that wait for an acknowledge that no statement gives."""
+        """PIE groups that wait for an acknowledge which no statement gives."""
         for group in range(1, 13):
             if not self._source.could("PieCtrlRegs", "PIEACK", 1 << group - 1, bool):
                 for n in range(1, 17):
-                    if self._chip.pie.held_back(group, n):  # which tells it
+                    if self._chip.pie.held_back(group, n):  # it reports the finding
                         return
 
     def _qualifiers(self) -> None:
-        """Inputs of which the qualification lets nothing through, though the chip itself makes their pulses."""
+        """Inputs whose qualification loses at least a quarter of the edges, though the chip itself drives them."""
         inputs = {
             f"XintRegs.XINT{n}CR": number for n, number in XINT_INPUT.items()
             if self._wanting(f"XintRegs.XINT{n}CR", "ENABLE")
@@ -631,7 +635,7 @@ class Connections:
         return None
 
     def _latches(self) -> None:
-        """Positions that are read of a latch that nobody loads."""
+        """Reads of the position latch QPOSLAT, where nothing loads the latch."""
         for n in range(1, EQEP_COUNT + 1):
             name = f"EQep{n}Regs"
             read = self._source.reads.get((name, "QPOSLAT"))
@@ -665,7 +669,7 @@ class Connections:
                     self._tell(place, f"{routine} waits for CPU timer {n}, which is stopped", missing, name)
             elif not enabled and not self._source.could("CPU", "IER", bit, bool):
                 self.silent.add(routine)
-                # Where IER is given what it has, not where the timer is right.
+                # Report it where IER is set, because the statement that sets up the timer is right.
                 ier = self._source.last("CPU", "IER")
                 self._chip.findings.report_at(
                     ier or place, "not-connected",
@@ -674,7 +678,7 @@ class Connections:
                 )  # fmt: skip
 
     def _trips(self) -> None:
-        """The way from a comparator through the X-BAR and the digital compare of an ePWM to its trip zone."""
+        """Check the path from a comparator through the X-BAR and the digital compare of an ePWM to its trip zone."""
         for n in range(1, EPWM_COUNT + 1):
             name = f"EPwm{n}Regs"
             for signal in ("DCAH", "DCAL", "DCBH", "DCBL"):
@@ -729,7 +733,7 @@ class Connections:
         return None
 
     def _trip_event(self, name: str, event: str) -> None:
-        """An event of the digital compare: made and used?"""
+        """Report an event of the digital compare that is used and never generated, or generated and not used."""
         number = event[-1]
         control = f"{name}.DC{event[2]}CTL"
         condition = f"{name}.TZDCSEL"
@@ -755,7 +759,7 @@ class Connections:
         self._tell(made, f"{event} of {name} is generated but trips nothing", missing, f"{name}.TZSEL.{event}")
 
     def _trip_actions(self) -> None:
-        """Trips that open an output, because no statement says what it does then."""
+        """Trips that put an output into high impedance, because no statement sets what the output does at a trip."""
         for n in range(1, EPWM_COUNT + 1):
             name = f"EPwm{n}Regs"
             select = f"{name}.TZSEL"
@@ -775,7 +779,7 @@ class Connections:
                     )  # fmt: skip
 
     def _forced_trips(self) -> None:
-        """Trips that the program forces, and that change no output."""
+        """Trips that the program forces and that change no output."""
         for n in range(1, EPWM_COUNT + 1):
             name = f"EPwm{n}Regs"
             force, control = self._source.last(name, "TZFRC"), f"{name}.TZCTL"
@@ -787,7 +791,7 @@ class Connections:
                 self._tell(force, f"{name}.TZFRC trips the outputs, which go on switching", missing, control)
 
     def _post_processing(self) -> None:
-        """Blocks behind the ADC whose events interrupt: does their SOC convert, and does anything clear the event?"""
+        """Check the interrupting events of ADC post-processing blocks: does their SOC convert, is the event cleared?"""
         for letter in ADC_PIE:
             block = f"Adc{letter.lower()}Regs"
             for event in (f"PPB{k}{kind}" for k in range(1, 5) for kind in ("TRIPHI", "TRIPLO", "ZERO")):
@@ -820,7 +824,7 @@ class Connections:
         )
 
     def _pairs(self) -> None:
-        """Pairs of outputs with a dead band of which one has no pin."""
+        """Pairs of outputs with a dead band where one output has no pin."""
         for n, epwm in self._chip.epwm.items():
             control = f"EPwm{n}Regs.DBCTL"
             wire = epwm.unpaired
@@ -838,7 +842,9 @@ class Connections:
                 self._tell(place, f"{register}.STT starts a message, but nothing is sent", missing, register)
 
     def _can(self) -> None:
-        """A CAN controller that is used: on the bus, its objects valid, its messages asked for and taken once."""
+        """Check each CAN controller that is used: it is on the bus, its objects are valid, its messages are sent and
+        taken once.
+        """
         for letter in CAN_PIE:
             block = f"Can{letter.lower()}Regs"
             commands = [f"{block}.CAN_IF{n}CMD" for n in (1, 2)]
@@ -866,7 +872,7 @@ class Connections:
             self._own_frames(block, letter)
 
     def _messages(self, block: str, letter: str, commands: list[str]) -> None:
-        """Messages that nobody asks to send, or that are taken again and again."""
+        """Messages that are written and never sent, or that are taken again and again."""
         asks = any(self._requests(command, writing=True) for command in commands) or any(
             self._could(f"{block}.CAN_IF{n}MCTL", bool, "TxRqst") for n in (1, 2)
         )
@@ -891,7 +897,7 @@ class Connections:
                 )  # fmt: skip
 
     def _own_frames(self, block: str, letter: str) -> None:
-        """A controller in loopback hears nobody but itself, and an object takes none of its frames."""
+        """A controller in loopback receives only its own frames, and an object waits for a frame that never passes."""
         can = self._chip.can[letter]
         number = can.ram.idle_receiver() if can.passed_by >= LEAST_EDGES else 0
         if not number:
@@ -912,11 +918,11 @@ class Connections:
             )  # fmt: skip
 
     def _requests(self, command: str, *, writing: bool) -> bool:
-        """Whether some command to an interface of the CAN sets TxRqst of an object, or (reading) clears its NewDat."""
+        """Whether some CAN interface command sets TxRqst of an object (`writing`) or clears its NewDat (reading)."""
         return self._could(command, lambda word: bool(word & REQUEST) and bool(word & WRITE) == writing, "")
 
     def _dacs(self) -> None:
-        """A buffered DAC is there for its pin."""
+        """A buffered DAC that gets codes and does not drive its pin."""
         for letter in "abc":
             block = f"Dac{letter}Regs"
             used = self._source.last(block, "DACVALS")
@@ -925,7 +931,7 @@ class Connections:
                 self._tell(used, f"{block} gets codes but drives no pin", missing, f"{block}.DACOUTEN")
 
     def _serial(self) -> None:
-        """A SCI with FIFOs keeps what it is given until SWRESET is set."""
+        """A SCI that is used while SWRESET keeps it in reset."""
         for letter in SCI_PIE:
             block = f"Sci{letter.lower()}Regs"
             register = f"{block}.SCICTL1"
@@ -936,7 +942,7 @@ class Connections:
                 self._tell(used, f"{block} never sends or receives a character", missing, register)
 
     def _epwms(self) -> Iterator[tuple[int, str, str, Block]]:
-        """Each compare of each ePWM whose counter counts: number, name, compare, registers."""
+        """Each compare register that the program writes, of ePWMs that can count: number, name, compare, registers."""
         for n in range(1, EPWM_COUNT + 1):
             name = f"EPwm{n}Regs"
             block = self._chip.blocks[name]
@@ -965,7 +971,7 @@ class Connections:
                 block.registers[f"AQCTL{output}"].value & self._mask(f"{name}.AQCTL{output}", f"C{x}{way}")
                 for output in "AB" for way in "UD"
             )  # fmt: skip
-            # One above the period is how a counter that counts up says 100 %.
+            # With a counter that counts up, one above the period means 100 %.
             missing = self._above(n, compare, 1) if used else None
             if missing:
                 self._tell(
@@ -977,9 +983,9 @@ class Connections:
                 self._beyond(f"{name}.{compare}", compare, beyond)
 
     def _compares_for_nobody(self) -> None:
-        """Compare values that are computed for an output which the other compare switches."""
+        """Computed values of a compare that switches nothing, where the other compare switches the output."""
         if any(self._writes(f"EPwm{n}Regs.EPWMXLINK") for n in range(1, EPWM_COUNT + 1)):
-            return  # a value written here counts elsewhere
+            return  # a value written to one ePWM also goes to another
         for _, name, compare, _ in self._epwms():
             x, other = compare[-1], "AB"[compare[-1] == "A"]
             action = f"{name}.AQCTL{x}"
@@ -1002,7 +1008,7 @@ class Connections:
                 )  # fmt: skip
 
     def _beyond(self, register: str, compare: str, beyond: Beyond) -> None:
-        """A compare value above the period, if it was computed: a constant is meant as it stands."""
+        """Report a compare value above the period if it was computed.  A constant is taken to be meant."""
         findings = self._chip.findings
         at, calls, task = beyond.cause
         path = findings.path(at, calls)
@@ -1016,6 +1022,6 @@ class Connections:
 
 
 def _split(register: str) -> tuple[str, str]:
-    """Block and register: `DmaRegs.CH1.MODE` is CH1.MODE of DmaRegs."""
+    """Split a name into block and register: `DmaRegs.CH1.MODE` is CH1.MODE of DmaRegs."""
     block, _, name = register.partition(".")
     return block, name

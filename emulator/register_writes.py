@@ -1,7 +1,7 @@
-"""What the source of a program writes to registers, and could ever write: read from its typed tree.
+"""The values that a program's source can write to registers.  They are read from its typed tree.
 
-Only functions count that `main` reaches, by calls or by their names (a task, a routine of the vector table, an entry of
-a table).  A parameter has the values that its calls give it.
+Only functions that can run count: `main`, interrupt routines, and all functions that these call or name (a task, an
+entry of a table).  A parameter has the values that its calls pass.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ from emulator.c28x.tree_queries import bare, blocks, last_loop, parts, roots, st
 from emulator.chip import ECAP_INPUT, XINT_INPUT
 from emulator.peripherals.dma import CHANNELS, CHINTE, CONTINUOUS, ONESHOT, PERINTE, RUN
 
-#: TCR
+#: Bits of TCR.
 TSS: Final = 1 << 4
 TIE: Final = 1 << 14
-#: The values that an expression can have; None: nobody knows.
+#: The values that an expression can have; None: unknown.
 Values = frozenset[int] | None
-#: More values than these are not followed.
+#: An expression with more possible values than these counts as unknown.
 _MOST: Final = 64
 _OPERATORS: Final[dict[str, Callable[[int, int], int]]] = {
     "+": lambda a, b: a + b, "-": lambda a, b: a - b, "*": lambda a, b: a * b, "|": lambda a, b: a | b,
@@ -49,8 +49,8 @@ _OPERATORS: Final[dict[str, Callable[[int, int], int]]] = {
 }  # fmt: skip
 
 
-#: Which fields (block, register, mask) TI's functions write: with the argument of this number, or (-1) with a value.
-#: No block: whichever a pointer names.
+#: TI function -> the fields (block, register, mask) that it writes, each with (argument number, 0) or (-1, value).
+#: An empty block: the one that a pointer names.
 _FUNCTIONS: Final[dict[str, list[tuple[tuple[str, str, int], tuple[int, int]]]]] = {
     "ConfigCpuTimer": [(("", "TCR", TSS), (-1, 1)), (("", "TCR", TIE), (-1, 1))],
     **{
@@ -82,7 +82,7 @@ _FUNCTIONS: Final[dict[str, list[tuple[tuple[str, str, int], tuple[int, int]]]]]
 
 @dataclass(frozen=True, slots=True)
 class Write:
-    """An assignment to a register: the bits of it that are meant, what they can get, and where it stands."""
+    """An assignment to a register: the mask of the bits that it sets, the values they can get, and its place."""
 
     mask: int
     values: Values
@@ -90,23 +90,23 @@ class Write:
 
 
 class RegisterWrites:
-    """The assignments to registers, and the calls, of a program."""
+    """The assignments to registers and the calls in a program."""
 
     def __init__(self, modules: Iterable[Module]) -> None:
         #: (block, register) -> its assignments in the order of the source; the CPU's IER and IFR are of block "CPU".
         self.writes: dict[tuple[str, str], list[Write]] = {}
-        #: Register -> the same through pointers to a block.
+        #: Register -> its assignments through a pointer to a block.
         self.pointed: dict[str, list[Write]] = {}
-        #: (block, register) -> where the source reads it; and the fields that it reads ("" of a whole register).
+        #: (block, register) -> where the source reads it; the fields that it reads ("": the whole register).
         self.reads: dict[tuple[str, str], list[Place]] = {}
         self.read_fields: set[tuple[str, str, str]] = set()
-        #: Function of TI's -> the places of its calls, with the arguments.
+        #: Function -> the places of its calls, with the arguments.
         self.calls: dict[str, list[tuple[Place, list[Expr]]]] = {}
         modules = list(modules)
         own = {f.path: f for module in modules for f in module.functions}
         self.whole = any(f.name == "main" and f.body for f in own.values())
         reached = self._reached(modules, own)
-        #: The statements that every start-up runs, and nothing behind it.
+        #: The statements that every start-up runs and that cannot run after it.
         self._over = self._of_start_up(own) - self._behind_start_up(modules, own)
         self._given: dict[Variable, list[Expr]] = {}
         self._free: set[Variable] = set()
@@ -127,7 +127,7 @@ class RegisterWrites:
                         self.pointed.setdefault(register, []).append(Write(mask, values, place))
 
     def _reached(self, modules: list[Module], own: dict[str, Function]) -> list[Function]:
-        """The functions that `main` reaches, in the order of the source."""
+        """The functions that can run, in the order of the source."""
         named = {
             part.function.path
             for module in modules for variable in module.variables for value in variable.initial or ()
@@ -147,8 +147,7 @@ class RegisterWrites:
         return [f for f in own.values() if f.path in seen]
 
     def _behind_start_up(self, modules: list[Module], own: dict[str, Function]) -> set[Place]:
-        """The statements, and calls, that can still run when `main` stands in its last loop, or has started the kernel.
-        """
+        """The statements and calls that can still run once `main` is in its last loop or has started the kernel."""
         main = next((f for f in own.values() if f.name == "main" and f.body), None)
         if main is None:
             return set()
@@ -171,7 +170,7 @@ class RegisterWrites:
         return {place for f, body in bodies for s in statements(body) for place in _places(f, s)}
 
     def _of_start_up(self, own: dict[str, Function]) -> set[Place]:
-        """The statements, and calls, that `main` comes to whatever happens, up to its last loop."""
+        """The statements and calls that `main` always reaches before its last loop."""
         found: set[Place] = set()
         waiting = [f for f in own.values() if f.name == "main"]
         seen: set[str] = set()
@@ -220,7 +219,10 @@ class RegisterWrites:
                 self.writes.setdefault((target.block, target.register), []).append(Write(mask, values, place))
 
     def _bits(self, value: Expr) -> tuple[int, Values]:
-        """The bits that an assignment of a whole register means: `|=` and `&=` mean some of them."""
+        """The mask of the bits that an assignment to a whole register sets, and their values.
+
+        `|=` and `&=` with a constant set only some bits; any other assignment sets all of them.
+        """
         value = bare(value)
         if isinstance(value, Binary) and value.op in ("|", "&"):
             for old, other in ((value.left, value.right), (value.right, value.left)):
@@ -259,15 +261,15 @@ class RegisterWrites:
         return None
 
     def of(self, block: str, register: str, mask: int) -> list[Write]:
-        """The assignments by name to some bits of a register."""
+        """The assignments to a register by its name that set some bits of `mask`."""
         return [write for write in self.writes.get((block, register), ()) if write.mask & mask]
 
     def could(
         self, block: str, register: str, mask: int, right: Callable[[int], bool], *, again: bool = False
     ) -> bool:  # fmt: skip
-        """Whether some assignment could give the bits of `mask` (as a number of their own) a value that is right.
+        """Whether some assignment could give the field under `mask` a value that `right` accepts.
 
-        `again`: without those of every start-up, which is over.
+        `again`: the start-up is over, so its assignments do not count.
         """
         pointed = (write for write in self.pointed.get(register, ()) if write.mask & mask)
         return any(
@@ -276,7 +278,7 @@ class RegisterWrites:
         )
 
     def giving(self, block: str, register: str, mask: int, word: int) -> Place | None:
-        """The last assignment that can give the bits of `mask` what they have in `word`."""
+        """The last assignment that can give the bits of `mask` the values that they have in `word`."""
         places = [
             write.place for write in self.of(block, register, mask)
             if write.values is not None and any(value & mask == word & mask for value in write.values)
@@ -284,7 +286,7 @@ class RegisterWrites:
         return places[-1] if places else None
 
     def last(self, block: str, register: str = "") -> Place | None:
-        """The last assignment to a register; without one, to the block."""
+        """The last assignment to a register, or without `register` to any register of the block."""
         places = [
             write.place for (its_block, name), writes in self.writes.items() for write in writes
             if its_block == block and name == (register or name)
@@ -297,11 +299,11 @@ def _place(f: Function, where: Where) -> Place:
 
 
 def _places(f: Function, s: Stmt) -> set[Place]:
-    """Those of a statement and of the calls in it, without its inner blocks."""
+    """The places of a statement and of the calls in it, without its inner blocks."""
     nodes = [part for root in roots(s) for part in parts(root)]
     return {_place(f, s.where)} | {_place(f, p.where) for p in nodes if isinstance(p, Call) and p.where.line}
 
 
 def field_of(word: int, mask: int) -> int:
-    """The value of the field of `word` that lies under `mask`."""
+    """The value of the field under `mask` in `word`, shifted to bit 0."""
     return (word & mask) >> (mask & -mask).bit_length() - 1

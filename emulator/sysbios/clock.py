@@ -87,7 +87,7 @@ class ClockModule:
             self.swis.post(self.swi)
 
     def quiet_ticks(self) -> int:
-        """How many of the next ticks will call nothing (0 also while there is no Clock object, and so no Swi)."""
+        """How many of the next ticks will call no function.  0 also without any Clock object: then no Swi runs."""
         return self._next_due - 1 - self.ticks if self.queue and not self._missed else 0
 
     def _work(self, _arg0: int, _arg1: int) -> None:
@@ -126,14 +126,14 @@ class ClockModule:
     # Timeouts of other modules
 
     def add_temporary(self, timeout: int, function: Callable[[Any], None], arg: Any) -> ClockObject:
-        """A started one-shot at the end of the queue, for a sleep or a pend."""
+        """Append a started one-shot Clock object to the queue, for the timeout of a sleep or pend."""
         timer = ClockObject("", function, timeout, 0, arg)
         self.queue.append(timer)
         self.start(timer)
         return timer
 
     def remove(self, timer: ClockObject) -> None:
-        """Take an object out of the queue; a temporary one: the task that waited does it when it runs again."""
+        """Take an object out of the queue.  A task that waited calls it for its temporary object when it runs again."""
         timer.active = False
         self.queue.remove(timer)
 
@@ -183,18 +183,18 @@ class ClockModule:
         pointer.store(NULL)
 
     def Clock_start(self, timer: ClockObject) -> None:
-        """Call `timeout` ticks from the live tick; restarts one that runs."""
+        """Call the function `timeout` ticks from the current tick.  A running Clock is restarted."""
         self.core.clock.charge(self.core.costs["clock_service"])
         self.core.check(timer.timeout != 0, "Clock_A_timeout", "a Clock with timeout 0 cannot be started")
         self.start(timer)
 
     def Clock_stop(self, timer: ClockObject) -> None:
-        """Call no more; stopping a stopped one does nothing."""
+        """Stop calling the function.  Stopping a stopped Clock does nothing."""
         self.core.clock.charge(self.core.costs["clock_service"])
         timer.active = False
 
     def Clock_setPeriod(self, timer: ClockObject, period: int) -> None:
-        """Store the period; it is added at the next call."""
+        """Store the period.  It takes effect at the next call of the function."""
         timer.period = period & UINT32
 
     def Clock_setTimeout(self, timer: ClockObject, timeout: int) -> None:
@@ -202,7 +202,7 @@ class ClockModule:
         timer.timeout = timeout & UINT32
 
     def Clock_setFunc(self, timer: ClockObject, function: Function, arg: int) -> None:
-        """Another function and argument."""
+        """Replace the function and its argument."""
         timer.function = fitted(self.core, function, 1, "Clock function")
         timer.arg = arg
 

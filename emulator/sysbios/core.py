@@ -1,4 +1,4 @@
-"""What every kernel object needs: time, the running thread's type, assertions, and calls of firmware functions.
+"""What all kernel objects share: time, the type of the running thread, assertions, and calls of firmware functions.
 
 Sources: SYS/BIOS `BIOS.xdc` (thread types), XDCtools `xdc/runtime/Assert`, `Error`.
 """
@@ -24,7 +24,7 @@ MAIN: Final = 3
 FALSE: Final = 0
 TRUE: Final = 1
 NO_WAIT: Final = 0
-#: `~(0U)` with a 16-bit unsigned int, whatever the width of the parameter it is passed as.
+#: `~(0U)` with a 16-bit unsigned int.  The width of the parameter that takes it does not matter.
 WAIT_FOREVER: Final = 0xFFFF
 
 Function = Callable[..., Any]
@@ -73,7 +73,7 @@ class KernelCore:
             raise KernelError(identifier, message)
 
     def error(self, error_block: Any, identifier: str, message: str) -> None:
-        """`Error_raise`: kept in the caller's Error_Block, or the end of the program when there is none."""
+        """`Error_raise`: store the error in the caller's Error_Block; without one, end the program."""
         if error_block is None:
             raise KernelError(identifier, message)
         error_block.member("id").store(error_number(identifier))
@@ -114,7 +114,7 @@ def fitted(core: KernelCore, function: Function | None, given: int, what: str) -
 
 
 def _nowhere(core: KernelCore, what: str) -> Function:
-    """What is called through a pointer that points to no function."""
+    """The function that is called in place of a pointer that points to no function."""
     findings = core.findings
     path = findings.path(findings.position.at, findings.position.calls)
     message = f"the kernel calls the {what} that was given here, but it points to no function"
@@ -135,7 +135,7 @@ def function_name(function: Function) -> str:
 
 
 class UniqueNames:
-    """Names of one kind of object: the wanted name, `#2` and so on behind it when it is taken."""
+    """Unique names for one kind of object: the wanted name, with `#2` and so on appended if it is taken."""
 
     __slots__ = ("_taken",)
 
@@ -143,7 +143,7 @@ class UniqueNames:
         self._taken: dict[str, int] = {}
 
     def unique(self, wanted: str) -> str:
-        """A name that nobody has yet."""
+        """A name that no other object has."""
         count = self._taken.get(wanted, 0) + 1
         self._taken[wanted] = count
         return wanted if count == 1 else f"{wanted}#{count}"

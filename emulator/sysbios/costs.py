@@ -1,11 +1,12 @@
 """CPU cycles that kernel services take.
 
-CHOICE: proportions of the benchmark tables that TI publishes with SYS/BIOS for C28x devices (a semaphore post or pend
-without a switch is in the order of a hundred cycles, a task switch below two hundred, interrupt prologue and epilogue
-about a hundred together).  `scale` multiplies the whole table; the board of the robot uses what was
-measured on it: 5 us for the tick's interrupt and 4.05 us for entering and leaving a gate (TFG 3.4.2, 3.4.3).  The
-time of System_sprintf is what is left of TaskODO's 860..873 us (TFG figures 37 and 39), six calls of it: nothing else
-there can take so long, and almost all of it must be the same for every call, or the figures would differ more.
+CHOICE: the proportions are those of the benchmark tables that TI publishes with SYS/BIOS for C28x devices (a semaphore
+post or pend without a switch is in the order of a hundred cycles, a task switch below two hundred, interrupt prologue
+and epilogue about a hundred together).  `scale` multiplies the whole table.  The board of the robot uses the times that
+were measured on it: 5 us for the tick's interrupt and 4.05 us for entering and leaving a gate (TFG 3.4.2, 3.4.3).  The
+time of System_sprintf is computed from TaskODO, which takes 860..873 us and calls it six times (TFG figures 37 and 39):
+the rest of TaskODO's time is divided among the six calls, because nothing else there can take so long.  Almost all of
+it must be the same for every call, or the figures would differ more.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-#: Service -> cycles.  What a call costs is charged before it acts, so it can be pre-empted before, never within.
+#: Service -> cycles.  A call is charged its cycles before it acts.  So it can be pre-empted before it acts, not within.
 CYCLES: Final[Mapping[str, int]] = {
     # Interrupts: the dispatcher around the handler (the core's own 14 + 8 cycles are charged by the CPU).
     "hwi_prologue": 90,

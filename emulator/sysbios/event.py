@@ -43,12 +43,12 @@ class Event(KernelObject):
         return matching
 
     def sync(self, event_id: int, count: int) -> None:
-        """Set or clear bits as what they stand for can be had or not; wakes nobody (`Event_sync`)."""
+        """Set the bits if `count` is not 0, else clear them; wakes no task (`Event_sync`)."""
         self.posted = self.posted | event_id if count else self.posted & ~event_id
 
 
 class EventWaiter(Waiter):
-    """A task that waits for bits, and those that it got (`Event_PendElem`)."""
+    """A task that waits for bits, and the bits that it got (`Event_PendElem`)."""
 
     __slots__ = ("and_mask", "matching", "or_mask")
 
@@ -69,7 +69,7 @@ class EventModule:
         self._names = UniqueNames()
 
     def given(self, value: Any, function: str) -> Event | None:
-        """The event in a member of parameters: NULL is none."""
+        """The event in a member of a `*_Params` structure; None for NULL."""
         if value is None or value is NULL:
             return None
         event = self._handles.living("Event_Handle", value, function)
@@ -93,7 +93,7 @@ class EventModule:
     # C functions
 
     def Event_Params_init(self, params: Any) -> None:
-        """There is nothing to choose."""
+        """Set the defaults.  There is nothing to choose."""
         self.core.clock.charge(self.core.costs["params_init"])
         struct_params.initialise("Event_Params", params)
 
@@ -104,13 +104,16 @@ class EventModule:
         return Event(self._names.unique("Event"))
 
     def Event_delete(self, pointer: Any) -> None:
-        """Delete the event; a task that waits for it waits for ever, unless for a time."""
+        """Delete the event.  A task that waits for it without a timeout waits for ever."""
         self.core.clock.charge(self.core.costs["delete"])
         pointer.load().deleted = True
         pointer.store(NULL)
 
     def Event_pend(self, event: Event, and_mask: int, or_mask: int, timeout: int) -> int:
-        """Wait up to `timeout` ticks for all of one mask, or any of the other; the bits consumed, 0 on timeout."""
+        """Wait up to `timeout` ticks for all bits of `and_mask` or any of `or_mask`.
+
+        Returns the bits consumed, 0 on timeout.
+        """
         core, tasks = self.core, self.tasks
         core.clock.charge(core.costs["event_pend"])
         timeout &= tasks.timeout_mask
@@ -120,7 +123,7 @@ class EventModule:
             return matching
         tasks.check_blocking("Event_pend")
         task = tasks.current
-        if task is None:  # Only with asserts off, before tasks exist: there is nothing that could block.
+        if task is None:  # Only with asserts off and before tasks exist: no task could block.
             return 0
         core.check(
             not event.waiters, "Event_A_eventInUse", f"{event.name} has a task that waits already: only one can"
@@ -134,7 +137,7 @@ class EventModule:
         return 0 if tasks.wait(waiter, timeout) == TIMEOUT else waiter.matching
 
     def Event_post(self, event: Event, event_id: int) -> None:
-        """Set bits, and wake the task that waits if they are what it wants."""
+        """Set bits.  If the posted bits match what the waiting task wants, wake it."""
         core = self.core
         core.clock.charge(core.costs["event_post"])
         core.check(event_id != 0, "Event_A_nullEventId", "Event_post was given no bit")

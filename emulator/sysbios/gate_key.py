@@ -34,7 +34,7 @@ class GateKey(KernelObject):
     def __init__(self, name: str, kind: str) -> None:
         super().__init__(name)
         self.kind = kind
-        #: Of a GateAll: whether it is entered, and what it restores when it is left.
+        #: For a GateAll: whether it is entered, and the keys that it restores when it is left.
         self.entered = False
         self.hwi_key = 0
         self.swi_key = 0
@@ -73,7 +73,7 @@ class GateKeyModule:
     # C functions
 
     def GateTask_Params_init(self, params: Any) -> None:
-        """There is nothing to choose."""
+        """Set the defaults.  There is nothing to choose."""
         self._initialise("GateTask", params)
 
     def GateTask_create(self, params: Any = None, error_block: Any = None) -> GateKey:
@@ -100,7 +100,7 @@ class GateKeyModule:
         self.tasks.Task_restore(key)
 
     def GateSwi_Params_init(self, params: Any) -> None:
-        """There is nothing to choose."""
+        """Set the defaults.  There is nothing to choose."""
         self._initialise("GateSwi", params)
 
     def GateSwi_create(self, params: Any = None, error_block: Any = None) -> GateKey:
@@ -123,7 +123,7 @@ class GateKeyModule:
         self.swis.Swi_restore(key)
 
     def GateHwi_Params_init(self, params: Any) -> None:
-        """There is nothing to choose."""
+        """Set the defaults.  There is nothing to choose."""
         self._initialise("GateHwi", params)
 
     def GateHwi_create(self, params: Any = None, error_block: Any = None) -> GateKey:
@@ -145,7 +145,7 @@ class GateKeyModule:
         self.hwis.Hwi_restore(key)
 
     def GateAll_Params_init(self, params: Any) -> None:
-        """There is nothing to choose."""
+        """Set the defaults.  There is nothing to choose."""
         self._initialise("GateAll", params)
 
     def GateAll_create(self, params: Any = None, error_block: Any = None) -> GateKey:

@@ -34,7 +34,7 @@ class GateMutex(KernelObject):
 
     @property
     def free(self) -> bool:
-        """Whether nobody owns it; between a leave and the run of the next owner it is so for a moment."""
+        """Whether no task owns it.  This also holds between a leave and the moment when the next owner runs."""
         return self.owner is None
 
     def __repr__(self) -> str:
@@ -51,7 +51,7 @@ class GateMutexModule:
         self._names = UniqueNames()
 
     def GateMutex_Params_init(self, params: Any) -> None:
-        """There is nothing to choose."""
+        """Set the defaults.  There is nothing to choose."""
         self.core.clock.charge(self.core.costs["params_init"])
         struct_params.initialise("GateMutex_Params", params)
 

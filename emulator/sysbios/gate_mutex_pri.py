@@ -53,7 +53,7 @@ class GateMutexPriModule:
         self._cost_leave = core.costs["gate_leave"]
 
     def GateMutexPri_Params_init(self, params: Any) -> None:
-        """There is nothing to choose."""
+        """Set the defaults.  There is nothing to choose."""
         self.core.clock.charge(self.core.costs["params_init"])
         struct_params.initialise("GateMutexPri_Params", params)
 
@@ -111,7 +111,10 @@ class GateMutexPriModule:
         return FIRST_ENTER
 
     def _insert(self, gate: GateMutexPri, waiter: Waiter) -> None:
-        """Before the first waiter of lower priority; the faulty version compares with half an address instead."""
+        """Insert a waiter before the first one of lower priority.
+
+        The faulty version (`order_fault`) compares with the low half of an address instead of the priority.
+        """
         for i, other in enumerate(gate.waiters):
             compared = other.task.priority
             if self.order_fault:

@@ -1,8 +1,9 @@
-"""Handles: whether what a C function of the kernel is given is a living object of the kind that it wants.
+"""Checks handles: is the argument of a kernel function a living object of the right kind?
 
-Which arguments are handles is what the prototypes in `headers.py` say.  The kernel itself does not look: through a
-handle that was never created it reads and writes the RAM at address 0, through a deleted one what the heap has given
-to somebody else.  CHOICE: it ends here, as by an assertion, because what follows depends on bytes that nobody knows.
+The prototypes in `headers.py` tell which arguments are handles.  The real kernel does not check.  Through a handle that
+was never created it reads and writes the RAM at address 0.  Through a deleted one it uses memory that the heap may have
+given to another object.  CHOICE: here the program ends, as by an assertion, because what follows would depend on
+unknown bytes.
 Sources: XDCtools, `*_create` and `*_delete` of an instance; rule `kernel-handle`.
 """
 
@@ -18,9 +19,9 @@ from emulator.c28x.program import Program
 from emulator.sysbios import headers as declarations
 from emulator.sysbios.core import Function, KernelCore, KernelError, KernelObject
 
-#: Finds the object that a value stands for, if it is one of its kind.
+#: A function that finds the object of one kind that a value stands for; None if it stands for none.
 Find = Callable[[Any], "KernelObject | None"]
-#: Annotations of parameters that are no handles.
+#: Annotations of parameters that are not handles.
 _NUMBERS: Final = ("int", "float", "bool")
 #: Handles that may be NULL: the argument of a function.
 _OPTIONAL: Final = frozenset({
@@ -33,7 +34,7 @@ _NOT_BEFORE_TASKS: Final = frozenset({"GateMutexPri_enter", "GateMutexPri_leave"
 
 @lru_cache(maxsize=1)
 def headers() -> Mapping[str, Any]:
-    """What `headers.py` declares, read."""
+    """The declarations of `headers.py`."""
     return MappingProxyType(Program().module("emulator.sysbios.headers").symbols)
 
 
@@ -60,7 +61,7 @@ def _handle(text: str) -> tuple[str, bool]:
 
 
 def _may_take_handles(function: Function) -> bool:
-    """Whether a parameter may be a handle, as far as annotations say (a compiled function has none)."""
+    """Whether any parameter may be a handle.  The annotations tell; a compiled function has none."""
     annotations = getattr(function, "__annotations__", None)
     return annotations is None or any(
         kind not in _NUMBERS for name, kind in annotations.items() if name != "return"
@@ -68,10 +69,10 @@ def _may_take_handles(function: Function) -> bool:
 
 
 class Handles:
-    """Looks at the handles of calls.
+    """Checks the handles that calls pass.
 
-    `classes`: the name of a handle's type -> the class of its object; `finders`: what finds it where that does not do.
-    `in_task()`: whether a task runs.
+    `classes`: the name of a handle's type -> the class of its object.  `finders`: the same names -> a function that
+    finds the object, for types where the class is not enough.  `in_task()`: whether a task runs.
     """
 
     def __init__(
@@ -85,10 +86,10 @@ class Handles:
         self.finders = finders
 
     def guarded(self, name: str, function: Function) -> Function:
-        """A C function that looks at its handles before it does anything."""
+        """A C function that checks its handles before it does anything else."""
         if not _may_take_handles(function):
             return function
-        #: The class of its only handle, if that comes first: then a look at the class is enough.
+        #: The class of its only handle, if this is the first argument.  Then checking the class is enough.
         wanted: type[KernelObject] | None = None
 
         @wraps(function)
@@ -124,7 +125,7 @@ class Handles:
         return arguments
 
     def living(self, kind: str, value: Any, function: str) -> KernelObject:
-        """The object behind a handle, or the number that it was cast to.  Raises KernelError, after a finding."""
+        """The object of a handle, or of the number that it was cast to.  Raises KernelError, after a finding."""
         if isinstance(value, int) and self._memory is not None:
             value = self._memory.code_at(value) or value
         found = self._find(kind, value)

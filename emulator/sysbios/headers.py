@@ -1,6 +1,6 @@
-"""What `<ti/sysbios/...>` and `<xdc/...>` give a C file: types, constants and prototypes, in the firmware language.
+"""The types, constants and prototypes of `<ti/sysbios/...>` and `<xdc/...>`, in the firmware language.
 
-What the functions do stands in this package, one module an object; the linker binds them by name (`Kernel.externs`).
+The modules of this package implement the functions.  The linker binds them by name (`Kernel.externs`).
 A function pointer argument takes any function, as the casts of C code do; `Log_write` takes its arguments with their
 own type where C casts them to IArg.
 """
@@ -87,7 +87,7 @@ HeapBuf_Handle = handle("HeapBuf_Handle")
 
 
 class Error_Block(struct):
-    """`xdc.runtime.Error`: what a create call leaves here when it fails."""
+    """`xdc.runtime.Error`: a create call that fails stores its error here."""
 
     id: uint32
 
@@ -244,7 +244,7 @@ class Queue_Params(struct):
 
 
 class Queue_Elem(struct):
-    """`Queue_Elem`: what an element of a queue begins with."""
+    """`Queue_Elem`: each element of a queue begins with one."""
 
     next: ptr[Queue_Elem]
     prev: ptr[Queue_Elem]

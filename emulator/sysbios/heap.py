@@ -1,4 +1,4 @@
-"""What the heaps of the kernel share: blocks as objects of their own, and what is said of one given back wrongly.
+"""What the kernel's heaps share: blocks as objects of their own, and findings for a block that is freed wrongly.
 
 Sources: rules `invalid-free` and `use-after-free`.
 """
@@ -12,7 +12,7 @@ from emulator.c28x.memory import Memory, Pointer
 from emulator.c28x.sites import Place
 from emulator.sysbios.core import KernelCore, KernelObject
 
-#: What stands for a block that was not given out.
+#: Stands for a block that was not allocated.
 NONE_GIVEN: Final = (None, 0)
 
 
@@ -25,11 +25,11 @@ class Heap(KernelObject):
         super().__init__(name)
         self.base = base
         self.words = words
-        #: Blocks that are given out, with the words that they take, by the address that was given.
+        #: Address of an allocated block -> the block and the words that it takes.
         self.given: dict[int, tuple[HeapBlock, int]] = {}
 
     def rounded(self, words: int) -> int:
-        """How many words a block takes that is asked for so many."""
+        """The number of words that a block takes if `words` are requested."""
         return words
 
     def __repr__(self) -> str:
@@ -37,7 +37,7 @@ class Heap(KernelObject):
 
 
 class Blocks:
-    """Makes objects of blocks, and ends them."""
+    """Creates and ends the objects of blocks."""
 
     def __init__(self, core: KernelCore, memory: Memory | None) -> None:
         self._core = core
@@ -45,29 +45,29 @@ class Blocks:
 
     @property
     def memory(self) -> Memory:
-        """The memory of the C program: there is no heap without one."""
+        """The memory of the C program.  A heap needs it."""
         assert self._memory is not None
         return self._memory
 
     def place(self) -> Place | None:
-        """The statement that calls."""
+        """The statement of the firmware that makes the call."""
         places = self._core.findings.path(self._core.findings.position.at, self._core.findings.position.calls)
         return places[0] if places else None
 
     def give(self, call: str, address: int, words: int) -> HeapBlock:
-        """The object of a block that `call`, a C call as it is shown, was given."""
+        """Create the object of a block that `call` allocates; `call` is the text of the C call, for findings."""
         block = HeapBlock(self.memory, call, self.place(), address, words)
         self.memory.place_block(block)
         return block
 
     def end(self, block: HeapBlock) -> None:
-        """The block is given back: pointers to it dangle from now on."""
+        """End a block that is freed.  Pointers to it dangle from now on."""
         place = self.place()
         block.freed = f"at {place}" if place else "before"
         block.end()
 
     def pointer(self, block: HeapBlock) -> Pointer:
-        """What the program gets."""
+        """The pointer to a block that the program gets."""
         return Pointer(self.memory, block, 0, block.declaration.ctype)
 
     def check(self, function: str, heap: Heap, pointer: Pointer | None, words: int | None) -> bool:

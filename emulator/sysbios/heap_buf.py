@@ -40,7 +40,7 @@ class HeapBuf(Heap):
         self.free = deque(base + i * block_words for i in range(count))
 
     def rounded(self, words: int) -> int:
-        """A block, whatever was asked for."""
+        """The words of a block, the same for any request."""
         return self.block_words if words <= self.block_words else words
 
 
@@ -56,7 +56,7 @@ class HeapBufModule:
         self.core.clock.charge(self.core.costs["heap_service"])
 
     def give(self, heap: HeapBuf, words: int, align: int, error_block: Any, call: str) -> Pointer:
-        """A block as the object that a program gets; NULL if there is none."""
+        """Allocate a block and return the pointer that the program gets; NULL if there is no free block."""
         core = self.core
         self._charge()
         core.check(
@@ -74,7 +74,7 @@ class HeapBufModule:
         return self.blocks.pointer(block)
 
     def give_back(self, heap: HeapBuf, pointer: Pointer | None, words: int, call: str) -> None:
-        """What `give` gave."""
+        """Take back a block that `give` returned."""
         address = pointer.addr if pointer is not None else 0
         self._charge()
         self.blocks.check(call, heap, pointer, words)
@@ -126,7 +126,7 @@ class HeapBufModule:
         return HeapBuf(self._names.unique("HeapBuf"), base, count, block_words, align)
 
     def HeapBuf_delete(self, pointer: Any) -> None:
-        """Delete the heap; the buffer is the caller's, and so are blocks that were not given back."""
+        """Delete the heap.  The buffer, and blocks that were not freed, remain the caller's."""
         self.core.clock.charge(self.core.costs["delete"])
         pointer.load().deleted = True
         pointer.store(NULL)

@@ -28,13 +28,13 @@ from emulator.sysbios.heap import NONE_GIVEN, Blocks, Heap
 
 #: Words of a header, which is also the smallest block.
 HEADER_WORDS: Final = 4
-#: Words of the default heap where nobody says it (BIOS.xdc: heapSize).
+#: Words of the default heap if the configuration does not set it (BIOS.xdc: heapSize).
 HEAP_WORDS: Final = 0x1000
 _LIMIT: Final = 1 << 32
 
 
 def is_power_of_two(number: int) -> bool:
-    """Whether C's test for it says so: it does of 0."""
+    """Whether C's test for a power of two holds.  It also holds for 0."""
     return number & number - 1 == 0
 
 
@@ -48,11 +48,11 @@ class HeapMem(Heap):
         self.align = align
         #: Free blocks, lowest address first: address and words.
         self.free = [(base, words)]
-        #: How many free blocks the last search looked at.
+        #: The number of free blocks that the last search visited.
         self.looked_at = 0
 
     def rounded(self, words: int) -> int:
-        """How many words a block takes that is asked for so many."""
+        """The number of words that a block takes if `words` are requested."""
         return -(-words // self.align) * self.align
 
     def take(self, words: int, align: int) -> int | None:
@@ -76,7 +76,7 @@ class HeapMem(Heap):
         return None
 
     def put(self, address: int, words: int) -> str:
-        """Take a block back; what the assertions have against it, or "" (HeapMem_freeUnprotected)."""
+        """Take a block back (HeapMem_freeUnprotected).  Returns the assertion that it breaks, or ""."""
         size = self.rounded(words) % _LIMIT
         self.looked_at = 0
         if address & self.align - 1:
@@ -114,7 +114,7 @@ class HeapMemModule:
 
     @property
     def default(self) -> HeapMem:
-        """The heap that NULL stands for, made when it is wanted first."""
+        """The default heap, which NULL stands for.  It is created at its first use."""
         if self._default is None:
             words = self._default_words // HEADER_WORDS * HEADER_WORDS
             name = "the default heap"
@@ -125,7 +125,7 @@ class HeapMemModule:
         return self._default
 
     def _write_headers(self, heap: HeapMem) -> None:
-        """Each free block begins with the address of the next one and its size."""
+        """Write the headers of free blocks into memory: the address of the next free block, and the size."""
         memory = self.blocks.memory
         for i, (at, words) in enumerate(heap.free):
             behind = heap.free[i + 1][0] if i + 1 < len(heap.free) else 0
@@ -161,7 +161,7 @@ class HeapMemModule:
         self.gates.GateMutex_leave(self._gate, key)
 
     def give(self, heap: HeapMem, words: int, align: int, error_block: Any, call: str) -> Pointer:
-        """A block as the object that a program gets; NULL if there is none."""
+        """Allocate a block and return the pointer that the program gets; NULL if no free block has room."""
         address = self.take(heap, words, align, error_block)
         if address is None:
             return NULL
@@ -170,7 +170,7 @@ class HeapMemModule:
         return self.blocks.pointer(block)
 
     def give_back(self, heap: HeapMem, pointer: Pointer | None, words: int, call: str) -> None:
-        """What `give` gave."""
+        """Take back a block that `give` returned."""
         address = pointer.addr if pointer is not None else 0
         self.blocks.check(call, heap, pointer, words)
         block, _ = heap.given.pop(address, NONE_GIVEN)
@@ -211,7 +211,7 @@ class HeapMemModule:
         return heap
 
     def HeapMem_delete(self, pointer: Any) -> None:
-        """Delete the heap; the buffer is the caller's, and so are blocks that were not given back."""
+        """Delete the heap.  The buffer, and blocks that were not freed, remain the caller's."""
         self.core.clock.charge(self.core.costs["delete"])
         pointer.load().deleted = True
         pointer.store(NULL)
@@ -234,7 +234,7 @@ class HeapMemModule:
 
 
 def buffer_address(core: KernelCore, buffer: Any, words: int, function: str) -> int:
-    """Where the buffer of a heap lies; NULL, and one that is smaller than said, are findings."""
+    """The address of a heap's buffer.  NULL, and a buffer that is smaller than its given size, are findings."""
     if buffer is None or not buffer:
         core.findings.report("null-dereference", f"{function}: buf is NULL", object=function)
         return 0

@@ -85,7 +85,7 @@ class Hwi(KernelObject):
 
 
 class HwiModule:
-    """`Hwi_*`.  The board gives the three ways to the PIE; what its table does not hold goes straight to the core."""
+    """`Hwi_*`.  The board gives the three functions for the PIE.  Interrupts without a PIE vector go to the core."""
 
     def __init__(
         self,
@@ -168,7 +168,7 @@ class HwiModule:
         return hwi
 
     def handler(self, number: int) -> Callable[[], None]:
-        """What the core calls for interrupt `number`."""
+        """The function that the core calls for interrupt `number`."""
         return partial(self._dispatch, self.table[number])
 
     # C functions
@@ -219,13 +219,13 @@ class HwiModule:
         pointer.store(NULL)
 
     def _unplugged(self, number: int) -> None:
-        """An interrupt that has lost its handler: `Hwi_unPluggedInterrupt` ends the program."""
+        """An interrupt occurs whose handler was deleted: `Hwi_unPluggedInterrupt` ends the program."""
         raise KernelError("Hwi_E_unpluggedInterrupt", f"interrupt {number} came, whose Hwi was deleted")
 
     def Hwi_enableInterrupt(self, number: int) -> int:
         """Let interrupt `number` through: its PIEIER bit if it has one, and its IER bit.
 
-        Returns the old PIEIER bit, of a CPU interrupt the old IER bit, in its place.
+        Returns the old PIEIER bit, or for a CPU interrupt the old IER bit, at the bit's own position.
         """
         self._check_number(number, LAST_ENABLED)
         cpu, bit = self.core.cpu, ier_bit(number)
@@ -236,7 +236,7 @@ class HwiModule:
     def Hwi_disableInterrupt(self, number: int) -> int:
         """Hold interrupt `number` back: its PIEIER bit, or its IER bit if it does not come from the PIE.
 
-        Returns the old bit, in its place.
+        Returns the old bit at its own position.
         """
         self._check_number(number, LAST_ENABLED)
         if number >= FIRST_PIE:
@@ -252,7 +252,7 @@ class HwiModule:
         self.core.check(valid, "Hwi_A_badIntNum", message)
 
     def _pie_key(self, number: int, on: bool) -> int:
-        """Write a PIEIER bit; its old state, where it stands in PIEIER."""
+        """Write a PIEIER bit.  Returns the old bit at its position in PIEIER."""
         bit = 1 << (number & 7) + (8 if number >= FIRST_PIE_EXTENSION else 0)
         return bit if self._enable(number, on) else 0
 
@@ -265,7 +265,7 @@ class HwiModule:
         return int(key)
 
     def Hwi_enable(self) -> int:
-        """EINT; returns whether interrupts were off.  What is latched is taken within this call."""
+        """EINT; returns whether interrupts were off.  Latched interrupts are taken within this call."""
         cpu = self.core.cpu
         key = cpu.intm
         cpu.enable_interrupts()
@@ -273,7 +273,7 @@ class HwiModule:
         return int(key)
 
     def Hwi_restore(self, key: int) -> None:
-        """Interrupts as they were at the `Hwi_disable` that gave `key`."""
+        """Restore the interrupts to their state before the `Hwi_disable` that returned `key`."""
         cpu = self.core.cpu
         if key:
             cpu.intm = True

@@ -1,4 +1,4 @@
-"""SYS/BIOS on a board: ties the kernel's objects to time, to the CPU and to each other, and lets a host drive them.
+"""SYS/BIOS on a board: connects the kernel's modules with time, the CPU and each other, and lets a host run them.
 
 Modelled
     Start-up in the kernel's order (main with interrupts off; then tick timer, interrupts, posted Swis, tasks);
@@ -52,12 +52,12 @@ from emulator.sysbios.timer import StartTick, TickTimer
 from emulator.trace import Trace
 
 IDLE_STACK_WORDS: Final = 256
-#: What stands for the status of a program that a reset of the chip has ended.
+#: The exit status of a program that a reset of the chip has ended.
 RESET_STATUS: Final = -1
 
 
 def _key_gate(kind: str) -> Find:
-    """Finds the gates of a kind among those that share a class."""
+    """A function that finds gates of one kind; all kinds share the class GateKey."""
 
     def find(value: Any) -> KernelObject | None:
         return value if isinstance(value, GateKey) and value.kind == kind else None
@@ -68,14 +68,16 @@ def _key_gate(kind: str) -> Find:
 class Kernel:
     """One SYS/BIOS.  Its C functions are attributes (`kernel.Semaphore_post`), all of them in `externs`.
 
-    The board gives `pie_set_vector(id, handler)`, `pie_enable(id, on)` (PIEIER bit of vector id 32..223; returns
-    whether it was set), `pie_acknowledge(group)` and `start_tick(period_register, handler)`: load PRD of CPU timer 2
-    (the timer counts one more), start it, and have its interrupt raise CPU line 14, which is connected to `handler`
-    already; it returns the timer if that can `skip` idle ticks.  `join_idle_ticks` False takes every tick by itself,
-    with the same outcome.  `string_at(address)` gives the text of the string constant there, None where none is.
-    Queues and heaps need the `memory` of the C program; `heap_words` is `BIOS.heapSize`, or what the linker of a
-    program without SYS/BIOS is told by `-heap`.  `start_up()` is what the start-up of SYS/BIOS does to the chip before
-    `main`.
+    The board gives four functions.  `pie_set_vector(id, handler)` writes a vector.  `pie_enable(id, on)` writes the
+    PIEIER bit of vector id 32..223, and returns whether it was set.  `pie_acknowledge(group)` acknowledges a group.
+    `start_tick(period_register, handler)` loads PRD of CPU timer 2 (the timer counts one more) and starts it.  The
+    timer's interrupt raises CPU line 14, which is connected to `handler` already.  `start_tick` returns the timer if
+    that can `skip` idle ticks.
+
+    With `join_idle_ticks` False every tick is taken singly, with the same result.  `string_at(address)` returns the
+    text of the string constant there, or None.  Queues and heaps need the `memory` of the C program.  `heap_words` is
+    `BIOS.heapSize`, or in a program without SYS/BIOS the linker's option `-heap`.  `start_up()` does what the start-up
+    of SYS/BIOS does to the chip before `main`.
     """
 
     def __init__(
@@ -113,7 +115,7 @@ class Kernel:
         self.tasks = TaskModule(
             core, StackSpace(core, task_stack_base, memory, check=check_stacks), system_stack=stack,
             object_base=task_object_base, fail=self._fail, exit_program=self._exit, host=self._falls_back_to,
-            # The idle task is a static one: it is counted before main begins.
+            # The idle task is static, so it counts before main begins.
             vital_tasks=int(idle_vital), timeout_mask=0xFFFF if narrow_timeouts else 0xFFFFFFFF,
             tick_period_us=tick_period_us,
         )  # fmt: skip
@@ -151,25 +153,25 @@ class Kernel:
         )  # fmt: skip
         #: Every C function by name, as the linker wants them.
         self.externs: Mapping[str, Function] = self._externs()
-        #: What BIOS_exit was called with, or RESET_STATUS; None while the program runs.
+        #: The argument of BIOS_exit, or RESET_STATUS; None while the program runs.
         self.exit_status: int | None = None
         self._idle_functions = tuple(idle_functions)
         self._idle_vital = idle_vital
-        #: Whether `main` has come to BIOS_start.
+        #: Whether `main` has reached BIOS_start.
         self.started = False
         self._main: greenlet | None = None
         self._host = getcurrent()
         self._running: greenlet | None = None
         self._failure: BaseException | None = None
         self._stopped = ""
-        #: Whether firmware runs now: False between two runs, when the host may call it by itself.
+        #: Whether firmware runs now.  False between two runs, when the host may call its functions.
         self.active = False
         self._pause = False
         self._reset = False
-        #: The host moved time itself, and the CPU has not looked yet.
+        #: Whether the host has moved time itself, and the CPU has not yet handled what became due.
         self._deferred = False
         self._start_up = start_up
-        #: Told once by `shutdown`, before the tasks are ended: what only the end of a run shows is looked at then.
+        #: Emitted once by `shutdown` before the tasks end.  Checks that need the end of a run listen to it.
         self.ending: Signal[[]] = Signal()
         self._ended = False
         if memory is not None:
@@ -222,7 +224,7 @@ class Kernel:
             return self.externs[name]
         raise AttributeError(f"the kernel has no function {name}")
 
-    # The host's face
+    # The interface of the host
 
     def start(self, main: Callable[[], Any]) -> None:
         """Run the firmware's `main` until its BIOS_start has started the kernel (or until it returns).
@@ -238,8 +240,8 @@ class Kernel:
     def run_until(self, cycles: int) -> None:
         """Run until virtual time is `cycles`; returns at once if it has passed.
 
-        An exception that ends a task, a Swi or a handler is raised here once, with a note of who it was; after it the
-        kernel does not run again (ValueError).  After BIOS_exit only the world goes on.
+        An exception that ends a task, a Swi or a handler is raised here once, with a note that names the thread.  After
+        it the kernel does not run again (ValueError).  After BIOS_exit only time and the world go on.
         """
         if self._stopped:
             raise ValueError(f"the kernel has stopped: {self._stopped}")
@@ -260,12 +262,12 @@ class Kernel:
             clock.advance_to(cycles)
 
     def pause(self) -> None:
-        """From a listener or an event of the run: `run_until` returns at the CPU's next charge."""
+        """Make `run_until` return at the CPU's next charge.  A listener or an event of the run calls it."""
         self._pause = True
         self.core.clock.request_attention()
 
     def stop(self) -> None:
-        """From an event or a register: the chip has been reset, and the program does not go on."""
+        """End the program because the chip has been reset.  An event or a register calls it."""
         self._reset = True
         self.core.clock.request_attention()
 
@@ -284,7 +286,7 @@ class Kernel:
                 victim.throw(GreenletExit)
 
     def context(self) -> str:
-        """Who runs now (`Position.who`)."""
+        """The name of the thread that runs now (`Position.who`)."""
         return self.core.cpu.position.who
 
     # Between host and firmware
@@ -306,7 +308,7 @@ class Kernel:
             raise failure
 
     def _leave(self) -> None:
-        """Back to the host, from whatever greenlet is running; returns when the host resumes it."""
+        """Switch from the running greenlet back to the host; returns when the host resumes it."""
         self._running = getcurrent()
         position = self.core.cpu.position
         at, calls = position.at, position.calls
@@ -314,7 +316,7 @@ class Kernel:
         position.at, position.calls = at, calls
 
     def _falls_back_to(self) -> greenlet:
-        """Where a task that dies goes."""
+        """The greenlet that runs after a task has ended: the host's."""
         return self._host
 
     def _leave_for_good(self) -> NoReturn:
@@ -322,7 +324,7 @@ class Kernel:
             self._leave()
 
     def _fail(self, error: BaseException, name: str) -> NoReturn:
-        """A greenlet ended with an exception: the host gets it."""
+        """A greenlet has ended with an exception.  Pass it to the host."""
         who = self.context()
         where = name if who == name else f"{who}, on the stack of {name}"
         error.add_note(f"in {where} at {us(self.core.clock.now):.3f} us of virtual time")
@@ -331,7 +333,7 @@ class Kernel:
         self._leave_for_good()
 
     def _exit(self, status: int) -> NoReturn:
-        """The program has ended: schedulers off, and the CPU spins."""
+        """End the program: the schedulers are off, and the CPU spins."""
         self.exit_status = status
         self.swis.locked = self.tasks.locked = True
         self.core.cpu.intm = True
@@ -350,7 +352,7 @@ class Kernel:
     # The CPU's attention
 
     def _attention(self) -> None:
-        """Between two charges of the CPU: pause, interrupts, Swis, task switch, in this order."""
+        """Handle what is due between two charges of the CPU: pause, interrupts, Swis, task switch, in this order."""
         if self._pause:
             self._pause = False
             self._leave()
@@ -369,7 +371,7 @@ class Kernel:
             return
         swis, tasks = self.swis, self.tasks
         if swis.ready_set and not swis.locked:
-            # An interrupt clears EALLOW, and its return restores it: what runs before that return does not see it set.
+            # An interrupt clears EALLOW, and its return restores it.  Code that runs before the return sees it cleared.
             eallow, cpu.eallow = cpu.eallow, False
             swis.run_ready()
             if tasks.work and not tasks.locked and not swis.locked:
@@ -381,7 +383,7 @@ class Kernel:
             cpu.eallow = eallow
 
     def _idle(self, _arg0: int, _arg1: int) -> None:
-        """The idle task: with functions they run again and again, without any time is carried to the next event."""
+        """The idle task.  It calls the idle functions in a loop; without any, it moves time on to the next event."""
         clock = self.core.clock
         functions = self._idle_functions
         pass_idle_ticks = self.timer.pass_idle_ticks

@@ -23,7 +23,7 @@ UIABENCHMARK_STOP: Final = 2
 
 
 class LogModule:
-    """`Log_*` and `Error_*`.  `string_at` gives the text of the string constant at a word address, None: none is."""
+    """`Log_*` and `Error_*`.  `string_at` returns the text of the string constant at a word address, or None."""
 
     def __init__(self, core: KernelCore, string_at: Callable[[int], str | None] = lambda address: None) -> None:
         self.core = core
@@ -64,7 +64,7 @@ class LogModule:
 
     @staticmethod
     def _counted(wanted: int, arguments: tuple[tuple[Any, Any], ...]) -> tuple[tuple[Any, Any], ...]:
-        """C would not compile another number."""
+        """Check the number of arguments: C would not compile another one."""
         if len(arguments) != wanted:
             raise ValueError(f"Log_write{wanted} takes {wanted} arguments behind the event, not {len(arguments)}")
         return arguments
@@ -76,7 +76,7 @@ class LogModule:
             error_block.member("id").store(0)
 
     def Error_check(self, error_block: Any) -> int:
-        """Whether an Error_Block holds an error: not for NULL (Error_ABORT)."""
+        """Whether an Error_Block holds an error; false for NULL (Error_ABORT)."""
         return int(error_block is not None and error_block.member("id").load() != 0)
 
     def Error_getId(self, error_block: Any) -> int:

@@ -27,7 +27,7 @@ from emulator.sysbios.task import TaskModule
 
 #: Words of Mailbox_MbxElem in front of each message: two pointers.
 HEAD_WORDS: Final = 4
-#: A piece of a message: word, type, value; a plain word has no type.
+#: A piece of a message: (word, type, value).  A plain word has the type None.
 Piece = tuple[int, "CType | None", Any]
 
 
@@ -40,7 +40,7 @@ class Mailbox(KernelObject):
         super().__init__(name)
         self.size = size
         self.count = count
-        #: Places without a message, as `Mailbox_getNumFreeMsgs` tells it.
+        #: The number of free places, as `Mailbox_getNumFreeMsgs` returns it.
         self.places = count
         self.messages: deque[list[Piece]] = deque()
         self.full = Semaphore(f"{name}.messages", 0, COUNTING)
@@ -59,7 +59,7 @@ class MailboxModule:
         self.semaphores = semaphores
         self.events = events
         self._names = UniqueNames()
-        #: (mailbox, where to): a message has been copied out.
+        #: (mailbox, target): a message has been copied out to `target`.
         self.taken: Signal[[Mailbox, Any]] = Signal()
 
     # C functions
@@ -86,7 +86,7 @@ class MailboxModule:
         return mailbox
 
     def Mailbox_delete(self, pointer: Any) -> None:
-        """Delete the mailbox with its messages; a task that waits for it waits for ever, unless for a time."""
+        """Delete the mailbox with its messages.  A task that waits for it without a timeout waits for ever."""
         self.core.clock.charge(self.core.costs["delete"])
         mailbox = pointer.load()
         mailbox.deleted = True
@@ -125,7 +125,7 @@ class MailboxModule:
         self.core.clock.charge(costs["mailbox_copy"] + costs["mailbox_word"] * mailbox.size)
 
     def _buffer(self, mailbox: Mailbox, message: Any, function: str, verb: str) -> Any:
-        """Where a message is copied from or to; what is too small for it, or NULL, is a finding."""
+        """The buffer that a message is copied from or to.  NULL, and a buffer that is too small, are findings."""
         if message is None:
             self.core.findings.report("null-dereference", f"{function} was given NULL for a message", object=function)
             return None
@@ -157,7 +157,7 @@ class MailboxModule:
 
 
 def lift(source: Pointer | None, words: int) -> list[Piece]:
-    """What `words` words hold, by whole scalars where there are such: never written stays so, a handle a handle."""
+    """Read `words` words, as whole scalars where possible.  So a handle stays a handle, and unwritten words stay so."""
     pieces: list[Piece] = []
     if source is None:
         return pieces
@@ -176,7 +176,7 @@ def lift(source: Pointer | None, words: int) -> list[Piece]:
 
 
 def lay(target: Pointer | None, pieces: list[Piece]) -> None:
-    """Put down what `lift` has taken up: as a whole where the target has such a scalar, else word by word."""
+    """Write what `lift` has read: as a whole scalar where the target has the same one, else word by word."""
     if target is None:
         return
     memory, obj = target.memory, target.obj

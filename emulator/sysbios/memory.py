@@ -1,4 +1,4 @@
-"""The run-time's face of heaps: `xdc.runtime.Memory`, and the `malloc` of C's library.
+"""The functions that allocate from heaps: `xdc.runtime.Memory`, and the `malloc` of C's library.
 
 Modelled
     The default heap behind NULL, the default alignment behind 0, `Error_E_memory` when a heap gave nothing and raised
@@ -25,7 +25,7 @@ from emulator.sysbios.heap import NONE_GIVEN, Blocks, Heap
 from emulator.sysbios.heap_buf import HeapBuf, HeapBufModule
 from emulator.sysbios.heap_mem import HEADER_WORDS, HeapMem, HeapMemModule, store_statistics
 
-#: Words that the most demanding type is aligned to.
+#: The largest alignment that a type needs, in words.
 MAX_ALIGN: Final = 2
 _SIZE: Final = 0xFFFFFFFF
 
@@ -106,7 +106,7 @@ class MemoryModule:
         """The alignment that 0 stands for."""
         return MAX_ALIGN
 
-    # C's library (the functions that SYS/BIOS puts in the place of TI's)
+    # The C library (SYS/BIOS replaces TI's functions by these)
 
     def malloc(self, size: int) -> Pointer:
         """A block of `size` words; NULL if there is none, and for 0."""
@@ -119,7 +119,7 @@ class MemoryModule:
             return NULL
         block = self._packet(words, "calloc")
         if block and words > _SIZE - HEADER_WORDS:
-            # CHOICE: in C the memset goes over all of the memory; here it is said, and nothing is set.
+            # CHOICE: in C the memset overwrites all of the memory.  Here it is reported, and nothing is written.
             what = f"calloc({count}, {size}): the size of the block wraps; its words reach over all of the memory"
             self.core.findings.report("pointer-outside", what, object="calloc", value=words)
         elif block:
@@ -127,7 +127,7 @@ class MemoryModule:
         return block
 
     def realloc(self, block: Pointer | None, size: int) -> Pointer:
-        """A new block with what the old one held, which is given back; the old one stays if there is none."""
+        """A new block with the content of the old one, which is freed.  If there is none, the old one stays."""
         if block is None:
             return self._packet(size, "realloc")
         if size == 0:
@@ -149,7 +149,7 @@ class MemoryModule:
             self._free(block, "free")
 
     def _packet(self, size: int, call: str) -> Pointer:
-        """A header, and the block behind it."""
+        """Allocate a header and the block after it; returns the block."""
         whole = size + HEADER_WORDS & _SIZE
         if size == 0:
             return NULL
@@ -165,7 +165,7 @@ class MemoryModule:
         return self.blocks.pointer(block)
 
     def _free(self, pointer: Pointer, call: str) -> None:
-        """Give back what the header before a block says."""
+        """Free a block: the header before it tells the address and size."""
         heap = self.mem.default
         self.blocks.check(call, heap, pointer, None)
         block, _ = heap.given.pop(pointer.addr, NONE_GIVEN)
@@ -180,7 +180,7 @@ class MemoryModule:
 
 
 class _Ignored:
-    """An Error_Block that nobody looks at."""
+    """An Error_Block whose content is not used."""
 
     def member(self, name: str) -> _Ignored:
         """Any member."""

@@ -1,6 +1,6 @@
 """`*_Params` structures: members, widths in words and defaults, in one table each.
 
-Every one starts with the four members that xdc.runtime gives all of them; `__size` is how `*_create` knows that
+Each structure starts with the four members that xdc.runtime gives all of them.  `__size` tells `*_create` whether
 `*_Params_init` was called (assertion `Core_A_initializedParams`).  Sources: the `instance` part of each module's
 `.xdc`.
 """
@@ -15,7 +15,7 @@ from emulator.c28x.memory import NULL, Memory, Pointer
 from emulator.c28x.tree import Declaration
 from emulator.sysbios.core import KernelCore, KernelError
 
-#: What C calls the structure behind `instance`.
+#: The C name of the structure that `instance` points to.
 _IPRMS: Final = "__iprms"
 NO_PRIORITY: Final = 0xFFFF
 MASKING_SELF: Final = 2
@@ -64,14 +64,15 @@ def size(struct: str) -> int:
 
 
 def initialise(struct: str, pointer: Any) -> None:
-    """`*_Params_init`: every member gets its default, and `instance` a structure whose `name` is NULL; NULL is let be.
+    """`*_Params_init`: set every member to its default, and `instance` to a structure whose `name` is NULL.
 
-    CHOICE: that structure stands beside the objects of the image; in C it is the last member, `__iprms`.
+    Does nothing for NULL.
+    CHOICE: the structure of `instance` lies outside of the objects of the image; in C it is the last member, `__iprms`.
     """
     if pointer is None:
         return
     if not hasattr(pointer, "member"):
-        # CHOICE: the words at any other address are not written over; the kernel would find them uninitialised later.
+        # CHOICE: words at any other address are not overwritten.  The kernel will later find them uninitialised.
         raise KernelError("Core_A_initializedParams", f"what {struct}_init got points to no {struct}")
     instance = pointer.member("instance")
     behind = _instance(instance, instance.memory) if instance.memory is not None else NULL
@@ -82,7 +83,7 @@ def initialise(struct: str, pointer: Any) -> None:
 
 
 def _instance(member: Any, memory: Memory) -> Pointer:
-    """The structure that `instance` points to, made ready; one that was made before is taken again."""
+    """The structure that `instance` points to, set to its defaults.  It is created once per structure."""
     known = member.load()
     if isinstance(known, Pointer) and known.obj is not None and known.obj.declaration.name == _IPRMS:
         made = known

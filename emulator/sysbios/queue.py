@@ -47,11 +47,11 @@ class QueueModule:
         self._cost_look = core.costs["queue_look"]
 
     def find(self, handle: Any) -> Queue | None:
-        """The queue that a handle points to."""
+        """The queue that a handle points to; None if there is none."""
         return self._queues.get(handle.addr) if isinstance(handle, Pointer) else None
 
     def _put_before(self, place: Pointer, element: Pointer) -> None:
-        """Tie an element in before another (`Queue_insert`)."""
+        """Insert an element before another one (`Queue_insert`)."""
         before = self._link(place, "prev")
         element.member("next").store(place)
         element.member("prev").store(before)
@@ -59,11 +59,11 @@ class QueueModule:
         place.member("prev").store(element)
 
     def _link(self, element: Pointer, name: str) -> Pointer:
-        """Where a link leads to."""
+        """The element that a link (`next` or `prev`) points to."""
         return self._real(element.member(name).read(), name)
 
     def _real(self, element: Any, what: str) -> Pointer:
-        """An element that a pointer leads to; NULL is a finding, and leads to address 0."""
+        """The element that a pointer points to.  NULL is a finding; then the element is at address 0."""
         if isinstance(element, Pointer) and element:
             return element
         self.core.findings.report("null-dereference", f"{what} of a queue is NULL", object="Queue_Elem")
@@ -72,14 +72,14 @@ class QueueModule:
         return Pointer(self._memory, None, 0, elem)
 
     def _head(self, queue: Pointer) -> Pointer:
-        """The element that a queue itself is."""
+        """The head element of a queue, which is part of the queue itself."""
         found = self._queues[queue.addr]
         return found.pointer.member("elem")
 
     # C functions
 
     def Queue_Params_init(self, params: Any) -> None:
-        """There is nothing to choose."""
+        """Set the defaults.  There is nothing to choose."""
         self.core.clock.charge(self.core.costs["params_init"])
         struct_params.initialise("Queue_Params", params)
 
@@ -103,17 +103,17 @@ class QueueModule:
         pointer.store(NULL)
 
     def Queue_empty(self, queue: Pointer) -> int:
-        """Whether nothing stands in it."""
+        """Whether the queue has no elements."""
         self.core.clock.charge(self._cost_look)
         head = self._head(queue)
         return int(self._link(head, "next") == head)
 
     def Queue_get(self, queue: Pointer) -> Pointer:
-        """Take the first; of an empty queue the queue itself."""
+        """Take the first element; an empty queue returns itself."""
         return self._taken(queue, "next", "prev")
 
     def Queue_getTail(self, queue: Pointer) -> Pointer:
-        """Take the last; of an empty queue the queue itself."""
+        """Take the last element; an empty queue returns itself."""
         return self._taken(queue, "prev", "next")
 
     def Queue_dequeue(self, queue: Pointer) -> Pointer:
@@ -149,17 +149,17 @@ class QueueModule:
         head.member("next").store(real)
 
     def Queue_head(self, queue: Pointer) -> Pointer:
-        """The first; of an empty queue the queue itself."""
+        """The first element; an empty queue returns itself."""
         self.core.clock.charge(self._cost_look)
         return self._link(self._head(queue), "next")
 
     def Queue_next(self, element: Any) -> Pointer:
-        """The one behind an element; behind the last the queue itself."""
+        """The element after another; after the last the queue itself."""
         self.core.clock.charge(self._cost_look)
         return self._link(self._real(element, "Queue_next: the element"), "next")
 
     def Queue_prev(self, element: Any) -> Pointer:
-        """The one before an element; before the first the queue itself."""
+        """The element before another; before the first the queue itself."""
         self.core.clock.charge(self._cost_look)
         return self._link(self._real(element, "Queue_prev: the element"), "prev")
 
@@ -170,7 +170,7 @@ class QueueModule:
         self._put_before(self._real(place, "Queue_insert: the place"), real)
 
     def Queue_remove(self, element: Any) -> None:
-        """Take an element out of the queue that it stands in."""
+        """Take an element out of its queue."""
         self.core.clock.charge(self._cost_link)
         real = self._real(element, "Queue_remove: the element")
         before, behind = self._link(real, "prev"), self._link(real, "next")
@@ -178,14 +178,14 @@ class QueueModule:
         behind.member("prev").store(before)
 
     def Queue_elemClear(self, element: Any) -> None:
-        """Make an element stand in no queue: its links lead to itself."""
+        """Mark an element as being in no queue: its links point to itself."""
         self.core.clock.charge(self._cost_look)
         real = self._real(element, "Queue_elemClear: the element")
         real.member("next").store(real)
         real.member("prev").store(real)
 
     def Queue_isQueued(self, element: Any) -> int:
-        """Whether an element that was cleared once stands in a queue."""
+        """Whether an element is in a queue.  It must have been cleared once before."""
         self.core.clock.charge(self._cost_look)
         real = self._real(element, "Queue_isQueued: the element")
         return int(self._link(real, "prev") != real or self._link(real, "next") != real)

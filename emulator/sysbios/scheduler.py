@@ -1,7 +1,7 @@
-"""The task scheduler: ready queues, selection, the switch of greenlets (`ti.sysbios.knl.Task`, its inner part).
+"""The task scheduler: ready queues, selection, the switch of greenlets (the inner part of `ti.sysbios.knl.Task`).
 
-What a task can call stands in task.py.  Sources: BIOS; `knl/Task.c` 6.83 (Task_schedule, Task_setPri, Task_blockI,
-Task_unblockI, Task_exit).
+task.py holds the functions that firmware calls.  Sources: BIOS; `knl/Task.c` 6.83 (Task_schedule, Task_setPri,
+Task_blockI, Task_unblockI, Task_exit).
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ TIMEOUT: Final = 0
 POSTED: Final = 1
 CLOCK_WAIT: Final = 2
 WAITING: Final = 3
-#: Task objects lie this far apart; only the ordering fault of old gates ever looks at the address.
+#: The distance of two task objects in words.  Only the ordering fault of old gates uses their addresses.
 OBJECT_WORDS: Final = 40
 
 
 class Task(KernelObject):
-    """A task: what a `Task_Handle` points to.  Its greenlet runs `run(task)`, and falls back to `parent`."""
+    """A task: what a `Task_Handle` points to.  Its greenlet runs `run(task)`.  When it ends, `parent` runs."""
 
     __slots__ = (
         "address", "arguments", "at", "calls", "env", "function", "greenlet", "mode", "pend", "priority", "stack",
@@ -53,11 +53,11 @@ class Task(KernelObject):
         self.mode = READY if priority >= 0 else INACTIVE
         self.vital = vital
         self.env: Any = None
-        #: What it waits in.
+        #: Its current wait for a semaphore, event or gate; None if it does not wait for one.
         self.pend: Waiter | None = None
         self.address = address
         self.greenlet = greenlet(lambda: run(self), parent=parent)
-        #: Where it stands while it does not run (`Position`).
+        #: Its position in the firmware while it does not run (`Position`).
         self.at = 0
         self.calls: Calls | None = None
 
@@ -66,7 +66,7 @@ class Task(KernelObject):
 
 
 class Waiter:
-    """A task that waits (`Task_PendElem`): the queue that it stands in, how it ended, the timeout's Clock object."""
+    """The wait of a task (`Task_PendElem`): the queue it is in, how the wait ended, the Clock object of the timeout."""
 
     __slots__ = ("queue", "state", "task", "timer")
 
@@ -78,11 +78,10 @@ class Waiter:
 
 
 class Scheduler:
-    """Ready queues, switches, the life of a task.
+    """Ready queues, task switches, the begin and end of tasks.
 
-    Swis and tasks hold each other back, so the scheduler makes the Swis, on their `system_stack`.  `host()` is the
-    greenlet that a task falls back to when it dies; `vital_tasks` says how many tasks are there, and vital, before main
-    begins.
+    Swis and tasks can lock each other, so the scheduler creates the Swi module; Swis run on `system_stack`.  `host()`
+    is the greenlet that runs when a task ends.  `vital_tasks`: how many vital tasks exist before main begins.
     """
 
     def __init__(
@@ -134,7 +133,7 @@ class Scheduler:
                 self.locked = False
 
     def rotate(self, priority: int) -> None:
-        """The head of a ready queue goes to its tail."""
+        """Move the head of a ready queue to its tail."""
         self._ready[priority].rotate(-1)
 
     def block(self, task: Task) -> None:
@@ -151,7 +150,7 @@ class Scheduler:
             self.core.trace.emit("block", task.name)
 
     def unblock(self, task: Task) -> None:
-        """Put a task at the tail of its ready queue; the caller sees to the switch."""
+        """Put a task at the tail of its ready queue.  The caller must call `schedule`."""
         if task.priority < 0:
             task.mode = INACTIVE
             return
@@ -214,12 +213,12 @@ class Scheduler:
                 stacks.overflow(task.name, task.stack, "Task_E_spOutOfBounds", top)
 
     def overrun(self, sp: int) -> None:
-        """The running task's stack was written above its end, up to `sp`: the check at the next switch will see it."""
+        """Note that the running task's stack was written above its end, up to `sp`.  The next switch reports it."""
         if self.current is not None:
             self.current.stack.overrun_sp = max(sp, self.current.stack.overrun_sp)
 
     def start(self) -> greenlet:
-        """The first task takes the CPU: the greenlet to switch to."""
+        """Give the CPU to the first task; returns the greenlet to switch to."""
         core = self.core
         self.work = False
         self.current_queue = self._ready_set.bit_length() - 1
@@ -233,7 +232,7 @@ class Scheduler:
         return task.greenlet
 
     def _run(self, task: Task) -> None:
-        """A task's life, in its own greenlet."""
+        """Run a task from begin to end, in its own greenlet."""
         clock = self.core.clock
         position = self.core.cpu.position
         position.at, position.calls = 0, None
@@ -265,7 +264,7 @@ class Scheduler:
         self.restore(False)
 
     def drop(self, task: Task) -> None:
-        """What `Task_delete` does to a task that does not run and stands in no queue of a semaphore, event or gate."""
+        """`Task_delete` of a task that does not run and is in no queue of a semaphore, event or gate."""
         if task.mode == READY:
             queue = self._ready[task.priority]
             queue.remove(task)
@@ -287,7 +286,7 @@ class Scheduler:
     def add(
         self, function: Function, priority: int, stack: Stack, arguments: tuple[int, int], vital: bool, name: str
     ) -> Task:
-        """A task in its ready queue (or inactive), with its greenlet."""
+        """Create a task with its greenlet, in its ready queue or inactive."""
         name = self._names.unique(name or function_name(function))
         task = Task(
             name, fitted(self.core, function, 2, "task"), arguments, priority, stack, vital=vital,

@@ -73,7 +73,7 @@ class SemaphoreModule:
         return semaphore
 
     def register(self, semaphore: Semaphore, event: Event | None, event_id: int) -> None:
-        """Tie a new semaphore to an event, which says from now on whether the semaphore can be taken."""
+        """Tie a new semaphore to an event.  From now on the event's bits tell whether the semaphore can be taken."""
         semaphore.event, semaphore.event_id = event, event_id & 0xFFFF
         if event is not None:
             if semaphore.count:
@@ -91,7 +91,10 @@ class SemaphoreModule:
         pointer.store(NULL)
 
     def Semaphore_pend(self, semaphore: Semaphore, timeout: int) -> int:
-        """Take one, waiting up to `timeout` ticks: (timeout-1, timeout] periods, 0xFFFF for ever.  FALSE on timeout."""
+        """Take one, and wait up to `timeout` ticks for it: (timeout-1, timeout] periods; 0xFFFF: for ever.
+
+        Returns FALSE on timeout.
+        """
         core = self.core
         clock = core.clock
         clock.now += self._cost_pend
@@ -112,7 +115,7 @@ class SemaphoreModule:
         tasks = self.tasks
         tasks.check_blocking("Semaphore_pend")
         task = tasks.current
-        if task is None:  # Only with asserts off, before tasks exist: there is nothing that could block.
+        if task is None:  # Only with asserts off and before tasks exist: no task could block.
             return 0
         waiter = Waiter(task, semaphore.waiters)
         clock.now += self._cost_block
@@ -127,7 +130,7 @@ class SemaphoreModule:
 
     @staticmethod
     def _enqueue(semaphore: Semaphore, waiter: Waiter) -> None:
-        """FIFO, or before the first waiter that has a lower priority now."""
+        """Queue a waiter: at the end (FIFO), or before the first waiter that has a lower priority now."""
         if semaphore.mode & 2:
             for i, other in enumerate(semaphore.waiters):
                 if waiter.task.priority > other.task.priority:
@@ -171,6 +174,6 @@ class SemaphoreModule:
             semaphore.event.sync(semaphore.event_id, semaphore.count)
 
     def Semaphore_registerEvent(self, semaphore: Semaphore, event: Event | None, event_id: int) -> None:
-        """Tie the semaphore to an event, or (NULL) to none; the event's bits stay as they are."""
+        """Tie the semaphore to an event; NULL removes the tie.  The event's bits stay as they are."""
         self.core.clock.charge(self.core.costs["semaphore_service"])
         semaphore.event, semaphore.event_id = event, event_id

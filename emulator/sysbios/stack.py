@@ -1,4 +1,4 @@
-"""Task stacks in 16-bit words: where they lie, what they are filled with, how an overflow is noticed.
+"""Task stacks in 16-bit words: their addresses, their fill, and how an overflow is detected.
 
 Modelled
     Consecutive stacks below 0x10000; every word 0x00BE (0xBE stored through a 16-bit char), the initial frame on top
@@ -30,7 +30,7 @@ REGISTERS_AT: Final = 12
 #: Words the Hwi dispatcher pushes on the interrupted stack before it moves to the system stack: RB, XAR4-7, AR1H:AR0H,
 #: XT, STF, R0H-R3H, the aligned SP, two return addresses and the locals of Hwi_dispatchC (`Hwi_disp_asm.s28`).
 DISPATCHER_WORDS: Final = 34
-#: What an interrupt, which can come at any time, takes of a task's stack.
+#: The words that an interrupt needs on a task's stack.  It can come at any time.
 INTERRUPT_ROOM: Final = INTERRUPT_CONTEXT_WORDS + DISPATCHER_WORDS
 REGISTER_WORDS: Final = 14
 #: CHOICE: a code address in the initial frame reads as the start of flash.
@@ -45,10 +45,10 @@ class Stack:
     def __init__(self, base: int, words: int, *, own: bool = True) -> None:
         self.base = base
         self.words = words
-        #: Whether the kernel has found the place, not the program.
+        #: Whether the kernel chose the address, and not the program.
         self.own = own
         self.limit = base + words
-        #: Where the functions of the task must end, so that an interrupt finds room.
+        #: The highest address that the task's functions may use, so that an interrupt finds room.
         self.usable = self.limit - INTERRUPT_ROOM
         self.sp = base + FIRST_FRAME
         #: Highest stack pointer seen above the end, 0 for none.
@@ -56,15 +56,15 @@ class Stack:
 
 
 class StackSpace:
-    """Hands out stacks and checks them."""
+    """Allocates stacks and checks them."""
 
     def __init__(self, core: KernelCore, base: int, memory: Memory | None, *, check: bool) -> None:
         self._core = core
         self._memory = memory
         self._next = base
-        #: First words and sizes of stacks that deleted tasks have left.
+        #: First words and sizes of the free stacks of deleted tasks.
         self._freed: list[tuple[int, int]] = []
-        #: Top words that no object of the linker covers: those stay where they are once tasks run.
+        #: Top words of stacks that no object of the linker covers.  They do not move once tasks run.
         self._plain: set[int] = set()
         self.checked = check
 
@@ -94,7 +94,7 @@ class StackSpace:
         return Stack(base, words, own=not at)
 
     def free(self, stack: Stack) -> None:
-        """A deleted task's stack: its locals have ended, and (unless the program gave it) the words are there again."""
+        """Free a deleted task's stack.  Its locals end; the words can be used again, unless the program gave them."""
         memory = self._memory
         if memory is not None:
             for local in [local for local in memory.live_locals if stack.base <= local.base < stack.limit]:
@@ -117,7 +117,7 @@ class StackSpace:
         memory.fill(base + REGISTERS_AT, REGISTER_WORDS, 0)
 
     def intact(self, stack: Stack) -> bool:
-        """Whether the top word still holds its fill and nothing was seen above the end."""
+        """Whether the top word still holds its fill, and no access above the end was seen."""
         if stack.overrun_sp:
             return False
         memory = self._memory
@@ -143,7 +143,7 @@ class StackSpace:
         raise KernelError(identifier, message)
 
     def used(self, stack: Stack) -> int:
-        """Words used so far, as `Task_stat` counts them: down to the highest word that lost its fill."""
+        """Words used so far, as `Task_stat` counts them: up to the highest word that lost its fill."""
         if self._memory is None:
             return 0
         sp = stack.limit

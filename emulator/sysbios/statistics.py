@@ -1,4 +1,4 @@
-"""What a run says about its tasks: computation time, response time, CPU load; from the trace alone.
+"""Statistics of tasks in a run: computation time, response time, CPU load.  They come from the trace alone.
 
 An activation of a task begins when it is made ready and ends when it blocks.  Its computation time is the CPU time it
 got: pre-emption by other tasks, Swis and interrupts (with the core's own entry and exit) do not count; a task switch
@@ -62,14 +62,14 @@ class Activity:
         self.computation = CycleStatistics()
         self.response = CycleStatistics()
         self.cpu = 0
-        #: Cycle at which the running activation began, None outside one; CPU time it has had; whether a gate blocks it.
+        #: The cycle when the running activation began (None outside one), its CPU time, and whether a gate blocks it.
         self.ready_at: int | None = None
         self.used = 0
         self.waits = False
 
 
 class TaskStatistics:
-    """Listen with it: `trace.listen(TaskStatistics())`.  `reset` forgets the past, but not the running task."""
+    """Listens to a trace: `trace.listen(TaskStatistics())`.  `reset` forgets the past, but not the running task."""
 
     def __init__(self) -> None:
         self.tasks: dict[str, Activity] = {}
@@ -130,7 +130,7 @@ class TaskStatistics:
         return 1.0 - shares[IDLE] if IDLE in shares else float(bool(shares))
 
     def _account(self, cycles: int) -> None:
-        """Give the time since the last event to whoever had the CPU."""
+        """Add the time since the last event to the thread that had the CPU."""
         used = cycles - self._since
         if used <= 0:
             return

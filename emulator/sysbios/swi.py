@@ -51,7 +51,7 @@ class Swi(KernelObject):
 
 
 class SwiModule:
-    """`Swi_*`.  A running Swi holds the scheduler of the `tasks`, which makes this module for itself."""
+    """`Swi_*`.  A running Swi locks the task scheduler `tasks`, which creates this module."""
 
     def __init__(self, core: KernelCore, tasks: Scheduler, *, system_stack: tuple[int, int]) -> None:
         self.core = core
@@ -70,7 +70,7 @@ class SwiModule:
     # Scheduling
 
     def post(self, swi: Swi) -> None:
-        """Make a Swi ready; true work of `Swi_post`, without its time."""
+        """Make a Swi ready: `Swi_post` without its time."""
         if not swi.posted:
             swi.posted = True
             self._ready[swi.priority].append(swi)
@@ -132,7 +132,7 @@ class SwiModule:
     def create(
         self, function: Function, priority: int, *, arg0: int = 0, arg1: int = 0, trigger: int = 0, name: str = ""
     ) -> Swi:
-        """A Swi that the kernel or a test makes itself."""
+        """Create a Swi for the kernel itself or for a test."""
         if priority in (NO_PRIORITY, -1):
             priority = PRIORITIES - 1
         self.core.check(
@@ -225,7 +225,7 @@ class SwiModule:
         return int(key)
 
     def Swi_restore(self, key: int) -> None:
-        """Undo the `Swi_disable` that gave `key`; what was held back runs now."""
+        """Undo the `Swi_disable` that returned `key`.  Swis and tasks that were held back run now."""
         self.core.clock.charge(self.core.costs["swi_disable"])
         if key:
             return

@@ -1,4 +1,4 @@
-"""`xdc.runtime.System`: formatted output with the grammar it really has, and the end of the program.
+"""`xdc.runtime.System`: formatted output with its exact format grammar, and the end of the program.
 
 Modelled
     `% [-] [0] [width|*] [.prec|.*] [l|L] conv` in this order; d i u x o p c s, `$S` and `$F`; anything else printed
@@ -46,7 +46,7 @@ def text_of(pointer: Any) -> str:
 
 
 class _Printer:
-    """One walk over a format string (`System_doPrint`)."""
+    """Prints one format string (`System_doPrint`)."""
 
     __slots__ = ("_core", "_cost_character", "_cost_conversion", "_cost_digit", "_float", "_put", "_va", "count")
 
@@ -67,7 +67,7 @@ class _Printer:
         self._core.clock.charge(self._cost_character * len(text))
 
     def number(self, value: int, padding: int, base: int, *, minus: bool = False) -> str:
-        """`System_formatNum`: digits, zeros up to `padding` (a minus counts as one), the sign."""
+        """`System_formatNum`: the sign, zeros up to `padding` characters (the sign counts), the digits."""
         digits = ""
         while True:
             digits = DIGITS[value % base] + digits
@@ -142,7 +142,7 @@ class _Printer:
     def _convert(
         self, c: str, long: bool, left: bool, width: int, precision: int, padding: int, form: str, at: int
     ) -> int:
-        """One conversion; returns where the format goes on."""
+        """Print one conversion; returns the index where the format goes on."""
         va = self._va
         if c in ("d", "i"):
             value = signed32(va.long()) if long else signed16(va.word())
@@ -175,7 +175,7 @@ class _Printer:
         return at
 
     def _extended(self, form: str, at: int, precision: int, left: bool, width: int) -> int:
-        """`%$S`: a format with the following arguments; `%$F`: file and line.  The width pads behind."""
+        """`%$S` prints a format with the following arguments, `%$F` file and line.  The width pads at the end."""
         kind = form[at] if at < len(form) else ""
         before = self.count
         if kind == "S":
@@ -195,7 +195,7 @@ class _Printer:
         return at + 1
 
     def _site(self, file: str, line: int, precision: int) -> None:
-        """`Text_putSite`: file and line as far as a given precision leaves room."""
+        """`Text_putSite`: print file and line, each only if a given precision leaves room for it."""
         room = precision if precision >= 0 else 0x7FFF
         if room <= 0 or line == 0:
             return
@@ -206,7 +206,7 @@ class _Printer:
             self._out(f"line {line}: ")
 
     def _fixed(self, value: float, padding: int) -> str:
-        """`%f` as the optional code prints it: float32 arithmetic, four digits cut off, precision not looked at."""
+        """`%f` as the optional code prints it: float32 arithmetic, cut off after four digits, precision ignored."""
         minus = value < 0.0
         if minus:
             value = -value
@@ -220,7 +220,7 @@ class _Printer:
 
 
 class SystemModule:
-    """`System_*`.  `flushed` is what a debugger's console would show."""
+    """`System_*`.  `flushed` is the text that a debugger's console would show."""
 
     def __init__(self, core: KernelCore, *, extended_formats: str, exit_program: Callable[[int], None]) -> None:
         self.core = core

@@ -40,7 +40,7 @@ from emulator.sysbios.stack import StackSpace
 
 
 class TaskModule(Scheduler):
-    """`Task_*`.  Waits end by the `clocks`, which run in a Swi and so are made here; timeouts have `timeout_mask`."""
+    """`Task_*`.  The `clocks` end waits that time out.  `timeout_mask` is the width of a timeout."""
 
     def __init__(
         self, core: KernelCore, stacks: StackSpace, *, system_stack: tuple[int, int], object_base: int,
@@ -57,7 +57,7 @@ class TaskModule(Scheduler):
     # Waiting
 
     def wait(self, waiter: Waiter, timeout: int) -> int:
-        """Block the running task in its queue, up to `timeout` ticks; the state in which it was woken."""
+        """Block the running task in its queue for up to `timeout` ticks; returns how the wait ended."""
         forever = timeout == WAIT_FOREVER
         waiter.state = WAITING if forever else CLOCK_WAIT
         waiter.task.pend = waiter
@@ -70,7 +70,7 @@ class TaskModule(Scheduler):
         return waiter.state
 
     def _expired(self, waiter: Waiter) -> None:
-        """A pend's Clock function: too late if a post came first."""
+        """The Clock function of a pend's timeout.  It does nothing if a post came first."""
         if waiter.state == CLOCK_WAIT:
             waiter.queue.remove(waiter)
             waiter.state = TIMEOUT
@@ -78,14 +78,14 @@ class TaskModule(Scheduler):
             self.unblock(waiter.task)
 
     def wake(self, waiter: Waiter) -> None:
-        """A post ends a pend; the waiter has left its queue, and the caller sees to the switch."""
+        """End a pend because of a post.  The waiter has left its queue; the caller must call `schedule`."""
         waiter.state = POSTED
         if waiter.timer is not None:
             waiter.timer.active = False
         self.unblock(waiter.task)
 
     def check_blocking(self, function: str) -> None:
-        """The two assertions of a pend that has to wait."""
+        """Check the two assertions of a pend that has to wait."""
         if self.core.thread_type != TASK:
             module = function.partition("_")[0]
             self.core.check(False, f"{module}_A_badContext", f"{function} can only block a task")
@@ -124,7 +124,7 @@ class TaskModule(Scheduler):
         return task
 
     def Task_delete(self, pointer: Any) -> None:
-        """Delete another task, whatever it waits for or holds; the last vital one ends the program."""
+        """Delete another task, whatever it waits for or holds.  Deleting the last vital task ends the program."""
         core = self.core
         core.clock.charge(core.costs["delete"])
         task: Task = pointer.load()
@@ -168,7 +168,7 @@ class TaskModule(Scheduler):
         task.pend = None
 
     def Task_yield(self) -> None:
-        """Go to the tail of the own ready queue.  From a Swi or Hwi this sends the running task there."""
+        """Move the running task to the tail of its ready queue, also when a Swi or Hwi calls it."""
         self.core.clock.charge(self.core.costs["task_yield"])
         if self.current_queue >= 0:
             self.rotate(self.current_queue)
@@ -182,7 +182,7 @@ class TaskModule(Scheduler):
         return int(self.lock())
 
     def Task_restore(self, key: int) -> None:
-        """Undo the `Task_disable` that gave `key`."""
+        """Undo the `Task_disable` that returned `key`."""
         self.core.clock.charge(self.core.costs["task_service"])
         self.restore(bool(key))
 
@@ -215,7 +215,7 @@ class TaskModule(Scheduler):
         return self.idle
 
     def Task_exit(self) -> None:
-        """End the running task.  The last vital one ends the program."""
+        """End the running task.  If it was the last vital task, the program ends."""
         core = self.core
         core.clock.charge(core.costs["task_service"])
         core.check(core.thread_type not in (MAIN, HWI, SWI), "Task_A_badThreadType", "only a task can end itself")

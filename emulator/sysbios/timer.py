@@ -27,13 +27,13 @@ _LINE: Final = 1 << TIMER_INTERRUPT - 1
 
 
 class TickSource(Protocol):
-    """The timer that raises the tick's interrupt, as far as idle ticks can be taken together."""
+    """The timer of the tick, as `pass_idle_ticks` needs it."""
 
     def skip(self, most: int, cycles: int) -> range:
-        """Take up to `most` underflows that occupy the CPU for `cycles` each; when those were that were taken."""
+        """Take up to `most` underflows, each of which occupies the CPU for `cycles`; returns when those were taken."""
 
 
-#: Load the period register, start the timer; the timer, if it can take idle ticks together.
+#: Loads the period register and starts the timer; returns the timer if it can take idle ticks together.
 StartTick = Callable[[int, Callable[[], None]], TickSource | None]
 
 
@@ -44,7 +44,7 @@ class TickTimer:
         self, hwis: HwiModule, clocks: ClockModule, tasks: TaskModule, *, cpu_frequency_hz: int, start_tick: StartTick,
         join_idle_ticks: bool = True,
     ) -> None:  # fmt: skip
-        """`join_idle_ticks` False takes every tick by itself, with the same outcome."""
+        """With `join_idle_ticks` False every tick is taken singly, with the same result."""
         self._hwis = hwis
         self._clocks = clocks
         self._tasks = tasks
@@ -57,7 +57,7 @@ class TickTimer:
         self._interrupt_cycles = self._handler_cycles + INTERRUPT_EXIT_CYCLES
         self._swi_cycles = costs["swi_run"] + costs["clock_work"]
         self._cycles_per_object = costs["clock_walk"]
-        #: What the kernel writes to PRD; the timer counts one more.
+        #: The value that the kernel writes to PRD.  The timer counts one more.
         self.period_register = cpu_frequency_hz // 1000 * clocks.tick_period_us // 1000
         self._hwi = hwis.create(TIMER_INTERRUPT, clocks.tick, name="Clock_tick")
 
@@ -69,10 +69,10 @@ class TickTimer:
             self._source = source
 
     def pass_idle_ticks(self) -> None:
-        """Take the ticks that come next in one step, as long as each would only be counted.
+        """Take the next ticks in one step, as long as each would only be counted.
 
-        Called by the idle task between two events: nobody wants to know of each tick, no interrupt, Swi or task waits,
-        the interrupted stack has room for the dispatcher.
+        The idle task calls it between two events.  It takes ticks so only if no listener wants each tick, no interrupt,
+        Swi or task waits, and the interrupted stack has room for the dispatcher.
         """
         source, core, clocks, tasks = self._source, self._hwis.core, self._clocks, self._tasks
         quiet = clocks.quiet_ticks()

@@ -1,11 +1,11 @@
-"""Watching a linked image for what only shows between tasks.
+"""Watches a linked image for errors that show only between threads.
 
     watch = KernelWatch(kernel, linked)      # the image must be linked with `watch=True`
     ...
-    watch.finish()                           # what only the end of a run shows; the kernel's shutdown does it too
+    watch.finish()                           # findings at the end of a run; the kernel's shutdown calls it too
 
-The detectors listen to the kernel's trace, to the calls of its C functions and to the accesses of objects; they change
-nothing, and cost nothing in an image that nobody watches.  Which rules there are stands in `emulator/rules/kernel.py`.
+The detectors listen to the kernel's trace, to the calls of its C functions and to the accesses of objects.  They change
+nothing.  An image that is not watched pays nothing for them.  `emulator/rules/kernel.py` lists the rules.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ __all__ = ["KernelWatch"]
 
 
 class Vectors(Protocol):
-    """The vector table, which signals the begin and the end of each routine, by number and name."""
+    """The vector table.  It signals when a routine begins and ends, with the interrupt's number and the name."""
 
     @property
     def began(self) -> Signal[int, str]:
@@ -47,26 +47,28 @@ class Vectors(Protocol):
 
     @property
     def ended(self) -> Signal[int, str]:
-        """It has ended."""
+        """A routine has ended."""
 
 
 class Tapped(Protocol):
-    """A register that tells of its writes (`emulator.registers.cell.Cell`)."""
+    """A register that reports its writes to listeners (`emulator.registers.cell.Cell`)."""
 
     def tap(self, listener: Callable[[Any, str, int, int], None]) -> object:
-        """`listener(register, access, word, lanes)` at each write."""
+        """Call `listener(register, access, word, lanes)` at each write."""
 
 
 class Transfer(Protocol):
-    """Words that move beside the CPU (`emulator.peripherals.dma_doubts.TransferDoubts`)."""
+    """A DMA transfer that is under way (`emulator.peripherals.dma_doubts.TransferDoubts`)."""
 
     def touched(self, base: int, *, write: bool) -> None:
-        """The CPU reads or writes the object at `base` meanwhile."""
+        """The CPU reads or writes the object at `base` during the transfer."""
 
 
 class KernelWatch:
-    """All detectors on one kernel and one image.  `starved_cycles`: patience of a ready task without a period;
-    `transfers`: those that move words at the moment.
+    """All detectors on one kernel and one image.
+
+    `starved_cycles`: a ready task without a period counts as starved after this time.  `transfers`: the DMA transfers
+    that are under way.
     """
 
     def __init__(
@@ -90,7 +92,7 @@ class KernelWatch:
         self.releases = Releases(threads, spots, names, findings, calls)
         self.lost_posts = LostPosts(spots, names, findings, calls, linked)
         self.lost_events = LostEvents(threads, spots, findings, linked.program.modules.values())
-        #: Register -> the interrupts that a write to it starts, each with the words that do.
+        #: Register -> the interrupts that a write to it can bring, each with a test of the word that is written.
         self._started: dict[Tapped, list[tuple[int, Callable[[int], bool]]]] = {}
         self.patience = Patience(threads, spots, findings, self.releases, calls, starved_cycles)
         runtime = linked.runtime
@@ -122,7 +124,7 @@ class KernelWatch:
         kernel.ending.connect(self.finish)
 
     def _watcher(self, kernel: Kernel) -> Callable[[Object, int, bool], None]:
-        """What is told of every access: the generated code calls it without a step between."""
+        """The function that the generated code calls directly at every access."""
         cpu, threads, transmission = kernel.core.cpu, self.threads, self.transmission
         races, sending, events = self.races.touch, transmission.sending, self.lost_events.touch
         transfers = self.transfers
@@ -132,7 +134,7 @@ class KernelWatch:
                 for transfer in transfers:
                     transfer.touched(obj.base, write=write)
             if not kernel.active:
-                # A program without the kernel: `main` needs no protection before the first interrupt.
+                # The program has no kernel.  `main` needs no protection before the first interrupt.
                 if threads.routines:
                     races(obj, offset, write)
                     events(obj, write)
@@ -147,7 +149,7 @@ class KernelWatch:
         return touch
 
     def finish(self) -> None:
-        """Report what only the end of a run shows: gates that nobody used, tasks that wait still, or for ever."""
+        """Report what shows at the end of a run: unused gates, and tasks that still wait or wait for ever."""
         self.gates.finish()
         self.standstill.finish()
         self.patience.finish()
@@ -155,19 +157,19 @@ class KernelWatch:
     # Peripherals
 
     def vectors(self, vectors: Vectors, line: Callable[[int], Enable]) -> None:
-        """Watch the routines of the vector table; `line` gives the PIEIER bit of an interrupt behind the PIE."""
+        """Watch the routines of the vector table.  `line` returns the PIEIER bit of a PIE interrupt."""
         self.threads.line = line
         vectors.began.connect(self.threads.routine_begins)
         vectors.ended.connect(self.threads.routine_ends)
 
     def interrupt(self, number: int, enables: Enables) -> None:
-        """What lets interrupt `number` of a peripheral through: a driver may hold its own handler off that way."""
+        """Register the enable bits of a peripheral's interrupt `number`.  A driver can clear them to hold it off."""
         self.threads.enables[number] = enables
 
     def starts(self, number: int, register: Tapped, begins: Callable[[int], bool]) -> None:
-        """A write to `register` of a word that `begins` accepts starts what ends in interrupt `number`.
+        """Writing a word that `begins` accepts to `register` starts an operation that ends in interrupt `number`.
 
-        Whatever its writer did before, the routine comes behind it.
+        What the writer did before the write is therefore ordered before the interrupt routine.
         """
 
         started = self._started.get(register)
@@ -180,9 +182,10 @@ class KernelWatch:
     def _starting(
         self, register: Tapped, started: list[tuple[int, Callable[[int], bool]]]
     ) -> Callable[[Any, str, int, int], None]:  # fmt: skip
-        """What is told of each write to a register of `starts`."""
+        """The listener for writes to a register of `starts`."""
         threads, kernel, table = self.threads, self.threads.kernel, self.threads.kernel.hwis.table
-        #: Those that have a handler, when there were so many handlers.  Who makes one later hands on what it knows.
+        #: The tests of interrupts that have a handler.  It is valid while the table holds `handlers` handlers.  A
+        #: thread that creates a handler later passes its own knowledge on to it.
         handled: list[Callable[[int], bool]] = []
         handlers = 0
 
@@ -218,13 +221,13 @@ class KernelWatch:
         self.transactions.watch_select(regs.name, chip_select)
 
     def sci(self, regs: TappedBlock, character_cycles: Callable[[], int]) -> None:
-        """Watch what an SCI sends, and from where; `character_cycles()` is the time of one character."""
+        """Watch what an SCI sends and from which buffer.  `character_cycles()` is the time of one character."""
         register = f"{regs.name}.SCITXBUF"
         self.transactions.watch_sci(regs, lambda: self.transmission.sent(register, character_cycles()))
 
 
 def _order(calls: Calls, threads: ThreadWatch) -> None:
-    """What orders threads: a post and its pend, a Swi and its poster, an interrupt and whoever enabled it."""
+    """Report the calls that order threads, e.g. a post before its pend, or Swi_post before the Swi."""
     acquire, release = threads.acquire, threads.release
 
     def released(what: Any, *_arguments: Any) -> None:
@@ -248,7 +251,7 @@ def _order(calls: Calls, threads: ThreadWatch) -> None:
             acquire(semaphore)
 
     def passed(taken: int, mailbox: Any, _message: Any, _timeout: int) -> None:
-        """A message orders reader behind writer, its place the next writer behind the reader."""
+        """A message orders its reader after its writer.  A free place orders the next writer after that reader."""
         if taken:
             acquire(mailbox)
 

@@ -1,12 +1,12 @@
-"""Accesses of one memory cell or one piece of a peripheral by several threads, and which of them nothing keeps apart.
+"""Accesses of several threads to one memory cell or one part of a peripheral; finds those that conflict.
 
-Hybrid of Eraser (S. Savage et al. 1997) and vector clocks (R. O'Callahan, J. Choi 2003).  A cell belongs to the thread
-that uses it first until another one comes: initialisation needs no protection.  From then on every access is kept, by
-thread, direction and protection.  Two accesses conflict if one of them writes, nothing excludes them (threads.py), and
-no semaphore, post or plain hand-over word orders them.
+The method combines Eraser (S. Savage et al. 1997) with vector clocks (R. O'Callahan, J. Choi 2003).  A cell belongs to
+the first thread that uses it, until a second thread uses it: initialisation needs no protection.  From then on the
+latest access is kept per thread, direction and protection.  Two accesses conflict if one of them writes, nothing
+excludes them (threads.py), and no semaphore, post or plain hand-over word orders them.
 
-Only what a later access finds written counts: that a buffer is written again after it was read follows from its being
-handed over, and whether the reader has finished by then is a matter of time, not of order.
+`conflicts` compares an access with earlier writes only.  A buffer that was handed over is written again after it was
+read.  Whether its reader has finished by then is a question of time, and the order of events does not answer it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from emulator.sysbios.watch.threads import Protection, Thread, VectorClock, excl
 
 
 class LatestAccess:
-    """The latest access of one thread, direction and protection."""
+    """The latest access with one thread, one direction (read or write) and one protection."""
 
     __slots__ = ("clock", "protection", "spot", "thread", "time", "write")
 
@@ -35,31 +35,31 @@ NONE: Final[tuple[LatestAccess, ...]] = ()
 
 
 class SharedObject:
-    """A scalar, or what else can be used by one thread at a time."""
+    """A scalar, or another part that only one thread may use at a time."""
 
     __slots__ = (
         "accesses", "changed", "handed", "hands_over", "last", "owner", "reader", "reader_spot", "writers", "writes",
     )  # fmt: skip
 
     def __init__(self, owner: Thread, hands_over: bool = False) -> None:
-        #: The only thread so far; None once there are two.
+        #: The only thread that has used it so far; None once there are two.
         self.owner: Thread | None = owner
-        #: Whether its value may say that something else is ready.
+        #: Whether its value may tell a reader that other data is ready.
         self.hands_over = hands_over
         self.accesses: dict[tuple[Thread, bool, Protection], LatestAccess] = {}
-        #: The latest of them, and those that write.
+        #: The latest of `accesses`, and the writes among them.
         self.last: LatestAccess | None = None
         self.writes: list[LatestAccess] = []
         self.writers: set[Thread] = set()
-        #: Threads that changed it by one statement which reads it too: the latest one under each protection.
+        #: Thread -> the statement by which it last read and wrote the cell in one step, per protection.
         self.changed: dict[Thread, dict[Protection, Spot]] = {}
-        #: Last reader with its statement, and what the last writer knew of the others, at its own clock.
+        #: The last reader and its statement.  The last writer, with its clock and its vector clock at the write.
         self.reader: Thread | None = None
         self.reader_spot: Spot = 0
         self.handed: tuple[Thread, int, VectorClock] | None = None
 
     def conflicts(self, thread: Thread, protection: Protection) -> tuple[LatestAccess, ...]:
-        """Writes of other threads that nothing keeps apart from an access of `thread` under `protection`."""
+        """Writes of other threads that conflict with an access of `thread` under `protection`."""
         found = NONE
         for other in self.writes:
             if (
@@ -71,7 +71,7 @@ class SharedObject:
         return found
 
     def unfinished(self, thread: Thread, protection: Protection) -> tuple[LatestAccess, ...]:
-        """Reads of other threads that a write of `thread` may come into, because nothing says that they are over."""
+        """Reads of other threads that may not be over when `thread` writes: nothing orders or excludes them."""
         return tuple(
             other for other in self.accesses.values()
             if not other.write
@@ -81,14 +81,14 @@ class SharedObject:
         )  # fmt: skip
 
     def cut(self, low: Thread, high: LatestAccess) -> Spot | None:
-        """The statement by which `low` changed it, and which nothing keeps `high` from coming into."""
+        """The statement by which `low` read and wrote the cell, if `high` can interrupt it and write too; else None."""
         for protection, spot in self.changed.get(low, {}).items():
             if high.thread in self.writers and not excluded(low, protection, high.thread, high.protection):
                 return spot
         return None
 
     def keep(self, thread: Thread, write: bool, protection: Protection, spot: Spot, time: int) -> None:
-        """Remember an access, once the cell is shared."""
+        """Remember an access to a cell that several threads use."""
         known = self.last
         if known is None or known.thread is not thread or known.write != write or known.protection is not protection:
             key = (thread, write, protection)

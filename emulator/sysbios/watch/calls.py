@@ -18,7 +18,7 @@ After = Callable[..., None]
 
 
 class Calls:
-    """Collects the listeners of each function; `install` puts it between the image and its externs.
+    """Collects the listeners of each function.  `install` puts them between the image and its external functions.
 
     Calls by the host, while the kernel does not run, are not reported.
     """
@@ -29,12 +29,12 @@ class Calls:
         self._after: dict[str, list[After]] = {}
 
     def before(self, *names: str, tell: Before) -> None:
-        """Call `tell(*arguments)` before these functions."""
+        """Call `tell(*arguments)` before each call of these functions."""
         for name in names:
             self._before.setdefault(name, []).append(tell)
 
     def after(self, *names: str, tell: After) -> None:
-        """Call `tell(result, *arguments)` behind these functions."""
+        """Call `tell(result, *arguments)` after each call of these functions."""
         for name in names:
             self._after.setdefault(name, []).append(tell)
 

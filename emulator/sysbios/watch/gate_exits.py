@@ -1,7 +1,8 @@
-"""Ways through a function on which a gate that was entered is not left: a `continue` or a `return` in between.
+"""Paths through a function that enter a gate and do not leave it: a `continue` or `return` comes in between.
 
-Looked for in the source, because the way may not be taken in a run.  A gate that some function only leaves is entered
-and left by partners, on purpose: nothing is said of it.  Nor of `main`: before tasks run, a gate keeps nobody out.
+The source is searched, because a run may not take the path.  If some function leaves a gate without entering it, two
+functions enter and leave the gate as partners, on purpose.  Nothing is reported of such a gate.  Nothing is reported of
+`main` either: before tasks run, a gate keeps nobody out.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from emulator.c28x.tree import (
 )
 from emulator.sysbios.watch.names import calls, first_arguments
 
-#: The calls by which a task comes to own a gate, and gives it back.
+#: The calls that enter a gate, and (`LEAVE`) those that leave it.
 ENTER: Final = ("GateMutexPri_enter", "GateMutex_enter")
 LEAVE: Final = ("GateMutexPri_leave", "GateMutex_leave")
 
@@ -34,7 +35,7 @@ Held = dict[str, Where]
 
 
 class GateExit(NamedTuple):
-    """A statement that goes on without leaving the gate in the file-scope object `path`."""
+    """A `continue` or `return` that does not leave the gate whose handle is in the file-scope object `path`."""
 
     statement: Continue | Return
     path: str
@@ -42,7 +43,7 @@ class GateExit(NamedTuple):
 
 
 def exits(functions: Iterable[Function]) -> Iterator[tuple[Function, GateExit]]:
-    """Every way out of these functions, or into the next turn of a loop, that does not leave a gate."""
+    """Every `return` of these functions, and every `continue`, that does not leave a gate."""
     functions = list(functions)
     entered = {f.path: _paths(f.body, ENTER) for f in functions}
     left = {f.path: _paths(f.body, LEAVE) for f in functions}
@@ -60,14 +61,14 @@ def _paths(body: list[Stmt], functions: tuple[str, ...]) -> set[str | None]:
 
 
 def _walk(body: list[Stmt], held: Held, outside: Held, found: list[GateExit]) -> Held | None:
-    """What is held behind `body`; None if no way comes there.  `outside`: what was held before the loop around it."""
+    """The gates held after `body`; None if no path reaches its end.  `outside`: those held before the loop around."""
     held = dict(held)
     for s in body:
         match s:
             case If(then=then, otherwise=otherwise):
                 ways = [_walk(then, held, outside, found), _walk(otherwise, held, outside, found)]
             case Switch(cases=cases):
-                # What a case falls into begins with what the switch began with: it holds no more then.
+                # A case that is fallen into starts with the gates held before the switch: it holds no more than these.
                 ways = [_walk(case, held, outside, found) for _, case in cases] + [held]
             case While(body=turn) | For(body=turn):
                 _walk(turn, held, held, found)
@@ -89,13 +90,13 @@ def _walk(body: list[Stmt], held: Held, outside: Held, found: list[GateExit]) ->
         through = [way for way in ways if way is not None]
         if not through:
             return None
-        # Held on one way only: nobody knows.
+        # A gate that is held on some paths only is not followed further.
         held = {path: at for path, at in through[0].items() if all(path in way for way in through)}
     return held
 
 
 def _calls(s: Stmt, held: Held) -> None:
-    """What a statement without parts of its own enters and leaves."""
+    """Update `held` with the gates that a statement without inner blocks enters and leaves."""
     for call in calls([s]):
         name = call.function.name
         for path in first_arguments([s], name) if name in ENTER + LEAVE else ():

@@ -22,24 +22,24 @@ from emulator.sysbios.watch.spots import Call, Spot, StatementSpots
 from emulator.sysbios.watch.threads import Gate, Thread, ThreadWatch
 from emulator.trace import Trace
 
-#: A gate that some statement enters has had its chance in a run of this length.
+#: In a run of at least this many cycles, a statement that enters a gate should have run.
 LONG_ENOUGH: Final = 5 * SYSCLK_HZ
 
 
 @dataclass(slots=True)
 class GateEntry:
-    """One enter that has not been left."""
+    """A gate that a thread has entered and not left."""
 
     gate: Gate
     key: int
     spot: Spot
-    #: The call that entered it.
+    #: The running call of the C function that entered it.
     call: Call | None
 
 
 @dataclass(slots=True)
 class Edge:
-    """One gate was entered while another was held."""
+    """A thread entered one gate while it held another."""
 
     thread: Thread
     spot: Spot
@@ -48,7 +48,7 @@ class Edge:
 
 
 class Gates:
-    """Listens to enter and leave, and to whatever makes a task wait."""
+    """Listens to the calls that enter and leave gates, and to the calls that make a task wait."""
 
     def __init__(
         self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings, calls: Calls
@@ -76,7 +76,7 @@ class Gates:
         calls.before("Task_sleep", tell=self._sleeping)
 
     def listen(self, trace: Trace) -> None:
-        """Be told of tasks that wait for a gate, or block."""
+        """Listen to tasks that wait for a gate, and to tasks that block."""
         trace.listen(self._gate_waits, "gate wait", each_tick=False)
         trace.listen(self._blocks, "block", each_tick=False)
 
@@ -104,20 +104,20 @@ class Gates:
         return bool(self._waits)
 
     def waiting(self, gate: Gate) -> list[tuple[Thread, int]]:
-        """The tasks that wait for a gate, each with the cycle since when."""
+        """The tasks that wait for a gate, each with the cycle at which its wait began."""
         return [(thread, self._since[thread]) for thread, (wanted, _) in self._waits.items() if wanted is gate]
 
     def spot(self, thread: Thread) -> Spot:
-        """Where a task waits for a gate."""
+        """The statement at which a task waits for a gate."""
         wait = self._waits.get(thread)
         return wait[1] if wait is not None else 0
 
     def entry(self, thread: Thread, gate: Gate) -> GateEntry | None:
-        """How a thread came to hold a gate."""
+        """Where a thread entered a gate that it has not left."""
         return next((e for e in reversed(self._entries.get(thread, [])) if e.gate is gate), None)
 
     def finish(self) -> None:
-        """What only the end of a run shows."""
+        """Report what shows only at the end of a run."""
         entered = {path for function in ENTER for path in self._names.passed(function)}
         for gate, spot in list(self._created.items()):
             place = self._spots.place(spot)
@@ -135,7 +135,7 @@ class Gates:
         self._exits()
 
     def _exits(self) -> None:
-        """Ways through the source that do not leave a gate, of gates that no run showed to be kept."""
+        """Report paths through the source that do not leave a gate, unless the run has reported this gate already."""
         kept = {finding.object for finding in self._findings.of("gate-not-left")}
         for f, (statement, path, entered) in exits(self._names.functions):
             name, at = path.rpartition(".")[2], statement.where
@@ -247,7 +247,7 @@ class Gates:
             )  # fmt: skip
 
     def _entered_again(self, thread: Thread, gate: Gate) -> None:
-        """A call comes to the same enter once more, in a loop."""
+        """One call reaches the same enter statement again, in a loop, without having left the gate."""
         name = self._names.of(gate)
         self._findings.report(
             "gate-not-left", f"{thread} enters {name} again in the next turn of a loop, and has not left it: the enter "
@@ -272,7 +272,10 @@ class Gates:
             )  # fmt: skip
 
     def _path(self, start: Gate, end: Gate, taken: list[Edge]) -> list[Edge] | None:
-        """Edges of other threads that lead from `start` to `end`, with no gate held by all that would exclude them."""
+        """Edges of different threads that lead from `start` to `end`; None if there are none.
+
+        No two of the edges share a held gate: a common gate would exclude the deadlock.
+        """
         for gate, edges in self._order.get(start, {}).items():
             for edge in edges:
                 if any(edge.thread is t.thread or edge.held & t.held for t in taken):
@@ -285,7 +288,7 @@ class Gates:
         return None
 
     def _cycle(self, thread: Thread) -> None:
-        """The task is about to wait: does the gate's owner, in the end, wait for this task?"""
+        """The task is about to wait.  Report a deadlock if the gate's owner, directly or not, waits for this task."""
         chain = [thread]
         while True:
             wait = self._waits.get(chain[-1])

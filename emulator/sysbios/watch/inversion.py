@@ -1,9 +1,11 @@
-"""A task waits for one of lower priority while a third in between runs: `no-inheritance`, `priority-inversion`.
+"""Finds priority inversion: `no-inheritance`, `priority-inversion`.
+
+A task waits for a gate or semaphore that a task of lower priority holds.  Meanwhile a task of medium priority runs.
 
 `GateMutexPri` raises the owner's priority when a higher task begins to wait.  It does not raise a task that the owner
-itself waits for, and leaving any gate that was entered earlier takes the raise back.  To an owner that sleeps or pends
-a raise is no help.  `GateMutex`, and a semaphore used as a mutex (created with 1, posted by the task that took it),
-raise nobody.
+itself waits for, and leaving any gate that was entered earlier takes the raise back.  A raise does not help an owner
+that sleeps or pends.  `GateMutex` raises nobody.  Neither does a semaphore used as a mutex (created with 1, posted by
+the task that took it).
 """
 
 from __future__ import annotations
@@ -27,17 +29,17 @@ from emulator.trace import Trace
 
 @dataclass(slots=True)
 class BlockedTask:
-    """A task that waits for what another holds."""
+    """The wait of a task for a gate or semaphore that another thread holds."""
 
     holder: Thread
     usage: list[int]
     since: int
     taken: Spot
-    #: Whoever the waiting task depends on.
+    #: The threads that must run before the wait can end.
     helpers: set[Thread] = field(default_factory=set)
-    #: Where a holder blocked while it was waited for.
+    #: Where one of them blocked during the wait.
     blocked: str = ""
-    #: A gate that a holder waited for: inheritance does not go that far.
+    #: A gate that one of them waited for itself: priority inheritance does not reach the owner of this gate.
     chained: str = ""
 
 
@@ -70,13 +72,13 @@ class Inversion:
         calls.after("Semaphore_pend", tell=self._pended)
 
     def listen(self, trace: Trace) -> None:
-        """Be told of tasks that wait for a gate, or block; behind `gates`."""
+        """Listen to tasks that wait for a gate, and to tasks that block; call it after `Gates.listen`."""
         trace.listen(self._gate_waits, "gate wait", each_tick=False)
         trace.listen(self._blocks, "block", each_tick=False)
 
     def _gate_waits(self, _cycles: int, _kind: str, _name: str) -> None:
         thread = self._threads.current
-        gate = self._gates.waits_for(thread)  # it has seen this event already
+        gate = self._gates.waits_for(thread)  # `gates` has handled this event already
         if gate is None or gate.owner is None:
             return
         holder = self._threads.of(gate.owner)
@@ -132,14 +134,14 @@ class Inversion:
             self._stuck(wait, holder)
 
     def _blocked(self, name: str) -> None:
-        """A task blocks: is it one that others wait for?"""
+        """A task blocks.  If other tasks wait for it, note what it waits for."""
         thread = self._threads.named(name)
         for waiting, (_, wait) in self._waits.items():
             if thread is not None and waiting is not thread and thread in wait.helpers:
                 self._stuck(wait, thread)
 
     def _stuck(self, wait: BlockedTask, helper: Thread) -> None:
-        """Whoever is waited for waits himself: for a gate, whose owner must run then, or for something else."""
+        """`helper`, which must run to end `wait`, waits itself: for a gate (its owner must run) or for other things."""
         found = self._waits.get(helper)
         if found is not None and not isinstance(found[0], Semaphore):
             wait.chained = self._names.of(found[0])
@@ -149,7 +151,7 @@ class Inversion:
             wait.blocked = self._spots.text(spot)
 
     def _judge(self, thread: Thread, name: str) -> None:
-        """The wait is over: who had the CPU meanwhile?"""
+        """The wait is over.  Report it if tasks of priorities in between had the CPU meanwhile."""
         found = self._waits.pop(thread, None)
         if found is None:
             return

@@ -1,4 +1,4 @@
-"""Flags that are cleared after their event has come: `event-lost`, in programs without the kernel.
+"""Flags that are cleared after their event has occurred: `event-lost`, in programs without the kernel.
 
 `main` starts something, its interrupt routine sets a flag, `main` clears the flag without having read it, and then
 waits for it.  Clearing a flag before the start is right, because it drops an old event; so is clearing it after a read.
@@ -19,7 +19,7 @@ from emulator.clock import us
 from emulator.sysbios.watch.spots import Spot, StatementSpots
 from emulator.sysbios.watch.threads import Routine, ThreadWatch
 
-#: Timer interrupts come again and again: a flag of one is cleared to wait for the next.
+#: Timer interrupts, which come periodically.  A program clears such a flag to wait for the next one.
 PERIODIC: Final = frozenset({13, 14, 38})
 
 
@@ -27,33 +27,33 @@ PERIODIC: Final = frozenset({13, 14, 38})
 class Flag:
     """A plain object that some statement sets to 0."""
 
-    #: When `main` looked at it last.
+    #: When `main` read it last (cycle; -1: never).
     seen: int = -1
-    #: The interrupt that has set it since, when it was started, and when it set it.
+    #: The interrupt that has set it since then; when its operation was started, and when it set the flag (cycles).
     number: int = 0
     started: int = -1
     set: int = -1
-    #: The statement that then cleared it.
+    #: The statement that cleared it after that.
     cleared: Spot = 0
 
 
 class LostEvents:
-    """Told of every access of an object, and of what `main` starts."""
+    """Listens to every access of an object, and to the operations that `main` starts."""
 
     def __init__(
         self, threads: ThreadWatch, spots: StatementSpots, findings: Findings, modules: Collection[Module]
     ) -> None:  # fmt: skip
         self._threads, self._spots, self._findings, self._modules = threads, spots, findings, modules
         self._clock = findings.clock
-        #: Interrupt -> when what ends in it was started last.
+        #: Interrupt -> when the operation that ends in it was started last.
         self._started: dict[int, int] = {}
         self._flags: dict[Object, Flag | None] = {}
-        #: Since when accesses are told, which begins with the first interrupt.
+        #: The cycle of the first access that was reported here.  Accesses are reported from the first interrupt on.
         self._since = -1
         self._clearing: dict[str, set[tuple[str, int]]] | None = None
 
     def start(self, number: int) -> None:
-        """Something begins that ends in interrupt `number`."""
+        """An operation begins that ends in interrupt `number`."""
         self._started[number] = self._clock.now
 
     def touch(self, obj: Object, write: bool) -> None:
@@ -82,7 +82,7 @@ class LostEvents:
             flag.seen, flag.set, flag.cleared = self._clock.now, -1, 0
 
     def _clears(self, obj: Object, spot: Spot = 0) -> bool:
-        """Whether some statement sets an object to 0; or the one at `spot`."""
+        """Whether some statement sets an object to 0; with `spot`, whether that statement does."""
         if self._clearing is None:
             self._clearing = {}
             for f in (f for module in self._modules for f in module.functions):

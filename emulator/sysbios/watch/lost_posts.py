@@ -1,7 +1,7 @@
 """Posts of a binary semaphore that are lost: `post-lost`.
 
 A binary semaphore keeps one post.  Posts beyond it are lost.  This is reported where each post matters: one statement
-posts repeatedly in one call, or the task does one thing for each pend, without a loop that would empty a queue.
+posts repeatedly in one call, and the task does one thing for each pend, without a loop that would empty a queue.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.spots import Call as RunningCall
 from emulator.sysbios.watch.spots import Spot, StatementSpots
 
-#: Bit of the mode: one release at most.
+#: The bit of the mode that makes a semaphore binary.
 _BINARY: Final = 1
-#: Posts that one statement has lost in one call.
+#: Report when one statement has lost this many posts in one call.
 _LOST: Final = 2
 
 
@@ -62,7 +62,7 @@ class LostPosts:
             )  # fmt: skip
 
     def _pends(self) -> Iterator[tuple[str | None, bool]]:
-        """The pends of the source: on which object, and whether another loop may take more than one thing behind it."""
+        """The pends of the source: the object that holds the semaphore, and whether a loop may take several things."""
         own = {f.path: f for module in self._linked.program.modules.values() for f in module.functions}
         for f in own.values():
             yield from _in(f.body, None, own)
@@ -83,7 +83,7 @@ def _in(body: list[Stmt], around: Stmt | None, own: dict[str, Function]) -> Iter
 
 
 def _loops(loop: Stmt, own: dict[str, Function]) -> bool:
-    """Whether a loop holds another one whose turns nobody counts, itself or in what it calls."""
+    """Whether a loop contains a `while` loop, in its own body or in a function that it calls."""
     seen: set[str] = set()
     waiting = [s for block in blocks(loop) for s in statements(block)]
     while waiting:

@@ -1,4 +1,4 @@
-"""The firmware's own names of kernel objects: the file-scope object that holds the handle."""
+"""Names of kernel objects in the firmware.  Each is the name of the file-scope object that holds the handle."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from emulator.c28x.link import Linked
 from emulator.c28x.tree import Call, Const, Convert, Function, FunctionRef, Load, LValue, Stmt, Variable
 from emulator.c28x.tree_queries import bare, within
 
-#: File-scope objects by their path; None: also ones that the source does not name.
+#: Paths of file-scope objects.  None stands for objects that the source does not name.
 Paths = set[str | None]
 
 
 class HandleNames:
-    """`of(handle)`: `Status_server` rather than `GateMutexPri`."""
+    """Finds the name of a handle: `of(handle)` returns `Status_server`, for example, and not `GateMutexPri`."""
 
     def __init__(self, linked: Linked) -> None:
         self._linked = linked
         self._known: dict[Any, str] = {}
 
     def of(self, handle: Any) -> str:
-        """The name of the object that holds `handle`, else the kernel's."""
+        """The name of the object that holds `handle`; without one, the kernel's own name."""
         known = self._known.get(handle)
         if known is not None:
             return known
@@ -41,7 +41,7 @@ class HandleNames:
         return [f for module in self._linked.program.modules.values() for f in module.functions if f.body]
 
     def passed(self, function: str) -> Paths:
-        """What any statement of the image passes to `function` first."""
+        """The first arguments that statements of the image pass to `function`."""
         return {path for f in self.functions for path in first_arguments(f.body, function)}
 
     @property
@@ -50,7 +50,7 @@ class HandleNames:
         return any(f.name == "main" for f in self.functions)
 
     def could(self, function: str, handle: Any) -> bool:
-        """Whether a statement of the image can call `function` for `handle`; True too where nobody can tell.
+        """Whether a statement of the image can call `function` for `handle`; also True where the source does not tell.
 
         A function whose address is taken can be called for anything.
         """
@@ -59,11 +59,14 @@ class HandleNames:
                 if isinstance(part, FunctionRef) and part.function.name == function:
                     return True
         passed, objects = self.passed(function), self.objects(handle)
-        # A handle that no file-scope object holds may have been in any of them.
+        # If no file-scope object holds the handle now, any of them may have held it before.
         return None in passed or bool(passed & objects) or bool(passed and not objects)
 
     def bits(self, function: str, handle: Any) -> int:
-        """The bits that statements of the image can pass to `function` behind `handle`; all where nobody can tell."""
+        """The bits that statements can pass to `function` as second argument, after `handle`.
+
+        All bits where the source does not tell.
+        """
         objects, bits = self.objects(handle), 0
         for f in self.functions:
             made = [call for call in calls(f.body) if call.function.name == function]
@@ -88,7 +91,9 @@ def calls(body: list[Stmt]) -> Iterator[Call]:
 
 
 def first_arguments(body: list[Stmt], function: str) -> Iterator[str | None]:
-    """What a body passes to `function` first: the file-scope object that holds the handle, None where it is not named.
+    """The first argument of each call of `function` in a body: the path of the file-scope object that holds the handle.
+
+    None where the source does not name one.
 
     An array of handles is one object.
     """

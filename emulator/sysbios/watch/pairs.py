@@ -1,9 +1,10 @@
 """Words that must be read or written together, found in the source of a program without the kernel.
 
-The source shows it even where no run does: a carry from minutes to hours is rare.  There are three forms.  An interrupt
-routine sets several words of one object, and another function computes with two of them at once.  A routine steps an
-index and uses it with other objects, and another function sets the index and one of these.  Both move one index of a
-ring.
+The source shows them even where a run does not: a carry from minutes to hours is rare.  There are three forms:
+
+- An interrupt routine sets several words of one object.  Another function computes with two of them at once.
+- A routine increments an index and uses it with other objects.  Another function sets the index and one of these.
+- A routine and another function move the same index of a ring buffer.
 """
 
 from __future__ import annotations
@@ -29,14 +30,14 @@ from emulator.c28x.tree import (
 )
 from emulator.c28x.tree_queries import bare, blocks, parts, roots, statements
 
-#: Operators whose result is of both operands.
+#: Operators that combine the values of both operands.
 _COMBINE: Final = ("+", "-", "*", "/", "%")
-#: An object and a word of it.
+#: The path of an object, and the offset of a word in it.
 _Word = tuple[str, int]
 
 
 class Pair(NamedTuple):
-    """Words of an object that some routines (by name) set, and that one function (file, name) takes together."""
+    """Words of an object that some routines (names) set, and that one function (file, name) uses together."""
 
     words: frozenset[int]
     routines: frozenset[str]
@@ -68,8 +69,9 @@ def pairs(modules: Iterable[Module]) -> dict[str, list[Pair]]:
 
 
 def continued(modules: Iterable[Module]) -> dict[str, set[tuple[str, str]]]:
-    """Counts and indices that a routine steps, and goes by: object path -> (routine, function) where the function
-    sets the object, and another one that the routine goes by, too.
+    """Counts and indices that a routine both changes and depends on: object path -> (routine, function).
+
+    The function sets the object, and it sets another object that the routine depends on.
     """
     own = {f.path: f for module in modules for f in module.functions}
     stepped: dict[str, dict[str, set[str]]] = {}
@@ -91,7 +93,10 @@ def continued(modules: Iterable[Module]) -> dict[str, set[tuple[str, str]]]:
 
 
 def turned_by_both(modules: Iterable[Module]) -> dict[str, set[str]]:
-    """Indices of rings that a routine (by name) moves, and that a function moves which no routine reaches: by path."""
+    """Indices of ring buffers that a routine moves and `main` moves too: path -> names of the routines.
+
+    `main` stands for every function that no routine calls.
+    """
     own = {f.path: f for module in modules for f in module.functions}
     by_routine: dict[str, set[str]] = {}
     inside: set[str] = set()
@@ -105,7 +110,7 @@ def turned_by_both(modules: Iterable[Module]) -> dict[str, set[str]]:
 
 
 def _turns(f: Function) -> Iterator[str]:
-    """The plain objects that a function steps round a ring: `i = (i + 1) % N`."""
+    """The plain objects that a function moves round a ring buffer: `i = (i + 1) % N`."""
     for s in statements(f.body):
         match s:
             case Assign(target=LValue(root=Variable(kind="global") as root), value=value) if root.ctype.leaves == 1:
@@ -119,7 +124,7 @@ def _turns(f: Function) -> Iterator[str]:
 
 
 def _steps(f: Function) -> Iterator[str]:
-    """The plain objects that a function adds something to."""
+    """The plain objects that a function sets to a value computed from the old one, as `n = n + 1`."""
     for s in statements(f.body):
         match s:
             case Assign(target=LValue(root=Variable(kind="global") as root), value=value) if root.ctype.leaves == 1:
@@ -128,7 +133,7 @@ def _steps(f: Function) -> Iterator[str]:
 
 
 def _used(f: Function) -> Iterator[str]:
-    """The plain objects that decide: in a test, or an index."""
+    """The plain objects that a function reads in a test or in an array index."""
     for s in statements(f.body):
         deciding: list[Any] = [s.test] if isinstance(s, If | While) else []
         deciding += [p for root in roots(s) for p in parts(root) if isinstance(p, Index)]
@@ -139,7 +144,7 @@ def _used(f: Function) -> Iterator[str]:
 
 
 def _routines(own: dict[str, Function]) -> Iterator[tuple[Function, list[Function]]]:
-    """The interrupt routines, each with the functions that it reaches."""
+    """The interrupt routines, each with itself and the functions that it calls, directly or not."""
     for routine in own.values():
         if routine.interrupt:
             yield routine, _reached(routine, own)
@@ -157,7 +162,7 @@ def _reached(f: Function, own: dict[str, Function]) -> list[Function]:
 
 
 def _word(e: Any) -> _Word | None:
-    """The word of an object of file scope that an expression reads, or is."""
+    """The word of a file-scope object that an expression reads, or that an lvalue names; None for any other."""
     lvalue = e.lvalue if isinstance(e, Load) else e
     match lvalue:
         case LValue(root=Variable(kind="global") as root, indices=[], words=words):
@@ -172,7 +177,10 @@ def _writes(f: Function) -> Iterator[_Word]:
 
 
 def _combined(f: Function, shared: set[str]) -> Iterator[frozenset[_Word]]:
-    """What the operations of a function compute with at once.  A loop whose test looks at an object again is silent."""
+    """The words that each operation of a function combines.
+
+    The body of a loop is left out if its test reads a shared object again: the loop checks what it has read.
+    """
     given: dict[Variable, list[_Word | None]] = {}
     for s in statements(f.body):
         match s:
@@ -201,7 +209,7 @@ def _leaves(e: Any, copies: dict[Variable, _Word]) -> Iterator[_Word]:
 
 
 def _once(body: list[Stmt], shared: set[str]) -> Iterator[Stmt]:
-    """The statements that no loop repeats which looks again at what is shared."""
+    """The statements that are not in a loop whose test reads a shared object."""
     for s in body:
         yield s
         if isinstance(s, While) and any(

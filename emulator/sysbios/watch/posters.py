@@ -1,4 +1,4 @@
-"""Who can post a semaphore: read from the calls in the source, because a thread that is stuck has not posted yet."""
+"""Which tasks can post a semaphore.  The calls in the source tell it: a thread that is stuck has not posted yet."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ from emulator.sysbios.watch.names import HandleNames, Paths, calls, first_argume
 
 
 class Posters:
-    """`of(semaphore)`: the tasks that alone can post it."""
+    """Finds the tasks that can post a semaphore, if nobody else can: `of(semaphore)`."""
 
     def __init__(self, kernel: Kernel, linked: Linked, names: HandleNames) -> None:
         self._kernel = kernel
         self._linked = linked
         self._names = names
-        #: What a function calls or takes the address of, what it calls, and what it posts: read when somebody asks.
+        #: Per function, read at the first question: the functions that it calls or whose address it takes; those that
+        #: it calls; the semaphores that it posts.
         self._mentioned: dict[str, set[str]] = {}
         self._called: dict[str, set[str]] = {}
         self._posted: dict[str, Paths] = {}
@@ -35,7 +36,7 @@ class Posters:
                 self._posted[f.path] = set(first_arguments(f.body, "Semaphore_post"))
 
     def of(self, semaphore: Semaphore) -> set[Task] | None:
-        """Tasks whose code posts `semaphore`; None if anybody else could: a Clock, Swi, Hwi, or nobody knows who."""
+        """Tasks whose code posts `semaphore`; None if a Clock, Swi, Hwi or unknown code could post it too."""
         self._read()
         objects: Paths = {None, *self._names.objects(semaphore)}
         left = {path for path, posted in self._posted.items() if posted & objects}
@@ -53,12 +54,12 @@ class Posters:
                 found.add(what)
                 left -= reached
         for path in self._posted:
-            if path.endswith(".main"):  # It does not come back; what it hands on begins by itself.
+            if path.endswith(".main"):  # `main` does not return.  A function whose address it passes is a thread's.
                 left -= _reached(self._called, path)
         return found if found and not left else None
 
     def _threads(self) -> Iterator[tuple[Any, Any]]:
-        """Everything that will run code of the firmware, and the function that it begins with."""
+        """All threads that run code of the firmware, each with the function that it begins with."""
         kernel = self._kernel
         for task in kernel.tasks.all:
             if task.mode != TERMINATED and task.priority != 0:
@@ -76,7 +77,7 @@ class Posters:
 
 
 def _reached(edges: Mapping[str, set[str]], path: str) -> set[str]:
-    """A function, and all that lies behind it."""
+    """A function, and all functions that `edges` lead to from it."""
     reached: set[str] = set()
     waiting = [path]
     while waiting:

@@ -1,15 +1,16 @@
 """Objects of the firmware that several threads use: `race`, `race-long`, `race-word`, `unmasked-long`, `wrong-gate`.
 
-On the C28x a 16-bit scalar, and an aligned 32-bit one by MOVL or MOV32, is loaded and stored by one instruction, so
-what can be torn is more than one scalar, or a statement that reads and writes one.  A plain integer or pointer is also
-how one thread tells another that something is ready: whoever reads it knows what its last writer had done before.
+The C28x loads and stores a 16-bit scalar with one instruction, and an aligned 32-bit one with MOVL or MOV32.  So a
+thread can be interrupted only between two scalars, or within a statement that reads and writes one.  With a plain
+integer or pointer, one thread can also tell another that data is ready: the reader then knows what the last writer had
+done before the write.
 
-Without the kernel the threads are `main` and the routines of the vector table, and what holds a routine off is INTM,
-IER, PIEIER or the enable of its peripheral.  There a single integer that nobody reads and writes in one statement is
-right as it is.
+Without the kernel the threads are `main` and the routines of the vector table.  INTM, IER, PIEIER or the enable of its
+peripheral holds a routine off.  In such a program a single integer is correct without protection, unless one statement
+reads and writes it.
 
-Not seen: accesses that do not come through an object (address 0, registers), and the order that a comparison of times
-or a peripheral's own interrupt enable gives.
+Two things are not seen: accesses that are not made through an object (address 0, registers), and the order that a
+comparison of times or a peripheral's own interrupt enable gives.
 """
 
 from __future__ import annotations
@@ -29,13 +30,13 @@ from emulator.sysbios.watch.spots import Function, Spot, StatementSpots
 from emulator.sysbios.watch.threads import HWI_LEVEL, Gate, Routine, Thread, ThreadWatch, at_clock, excluded, joined
 
 _RANK: Final = {"race-word": 1, "unmasked-long": 1, "race-long": 2, "race": 3}
-#: Locals of functions that have returned are forgotten whenever this many were seen.
+#: When this many locals are kept, those of functions that have returned are dropped.
 _LOCALS_KEPT: Final = 256
 _DETAILS: Final = 8
 
 
 class Shared:
-    """An object, its cells by word offset, and what is known of its protection."""
+    """An object that several threads may use: its cells by word offset, and how its uses were protected."""
 
     __slots__ = (
         "apart", "beside", "cells", "conflicting", "findings", "hands_over", "joint", "known", "object", "pairs",
@@ -46,22 +47,23 @@ class Shared:
         ctype = obj.declaration.ctype
         self.object = obj
         self.cells: dict[int, SharedObject] = {}
-        #: Words per element for an array of structures: its elements are apart.
+        #: Words per element of an array of structures, each of which is judged alone; 0 for all other objects.
         self.per_element = _stride(ctype)
         self.conflicting: dict[int, set[int]] = {}
-        #: Without the kernel: words that a run of a routine wrote together with others; the latest run, and its words.
+        #: Without the kernel: words that one run of a routine wrote together; the latest run, and the words it wrote.
         self.joint: set[int] = set()
         self.run: tuple[int, set[int]] = (0, set())
-        #: Of the text: words that belong together; which of them `main` has read unprotected, by the routine and pair.
+        #: From the source: words that belong together; by routine and pair, those that `main` has read unprotected.
         self.pairs: list[Pair] | None = None
         self.apart: dict[tuple[Thread, Pair], set[int]] = {}
-        #: Plain integers that such a run wrote too: one of them may say whether the words are whole.
+        #: Plain integers that such a run wrote too.  One of them may tell `main` whether the words are complete.
         self.beside: set[Object] = set()
         self.findings: dict[str, Finding] = {}
         self.rank = 0
-        #: Whether its integers may say that something else is ready: elements of an array are data.
+        #: Whether its integers may tell that other data is ready.  Elements of an array are data, so they do not.
         self.hands_over = not isinstance(ctype, ArrayType)
-        #: Gate -> the functions that use the object under it, with a statement; the threads that use it under a gate.
+        #: Gate -> the functions that use the object while they hold it, each with a statement; the threads that use
+        #: the object under any gate.
         self.under: dict[Gate, dict[Function, Spot]] = {}
         self.users: set[Thread] = set()
         #: Uses under gates that are known already.
@@ -69,7 +71,7 @@ class Shared:
         self.written = False
 
     def may_hand_over(self, offset: int) -> bool:
-        """Whether the scalar at word `offset` may say that something else is ready."""
+        """Whether the scalar at word `offset` may tell a reader that other data is ready."""
         leaf = self.object.leaf(offset) if self.hands_over else None
         return leaf is not None and not isinstance(leaf[1], FloatType)
 
@@ -84,14 +86,14 @@ def _has_array(ctype: CType) -> bool:
 
 
 class Races:
-    """Gets every access of an object that several threads can reach."""
+    """Checks every access of an object that several threads can reach."""
 
     def __init__(
         self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings, memory: Memory,
         modules: Collection[Module],
     ) -> None:  # fmt: skip
         self._modules = modules
-        #: What the text says of programs without the kernel, read when their first routine has come.
+        #: What the source of a program without the kernel shows; read after its first interrupt.
         self._pairs: dict[str, list[Pair]] | None = None
         self._continued: dict[str, set[tuple[str, str]]] = {}
         self._turned: dict[str, set[str]] = {}
@@ -103,7 +105,7 @@ class Races:
         self._clock = findings.clock
         self._position = findings.position
         self._objects: dict[Object, Shared] = {}
-        #: Without the kernel: what the latest run of a routine has written.
+        #: Without the kernel: the number of the latest run of a routine, and the objects that it has written.
         self._written: tuple[int, set[Shared]] = (0, set())
         self._locals: dict[Object, Shared] = {}
 
@@ -137,7 +139,7 @@ class Races:
             self._gates(shared, threads.gates(thread), thread, self._spots.here())
 
     def _shared_touch(self, shared: Shared, cell: SharedObject, offset: int, write: bool, thread: Thread) -> None:
-        """As `touch`, of a scalar that several threads use."""
+        """As `touch`, for a scalar that several threads use."""
         position = self._position
         spot = position.at or position.innermost()
         protection = self._threads.protection()
@@ -170,7 +172,10 @@ class Races:
             self._gates(shared, protection.gates, thread, spot)
 
     def _turned_by(self, routines: Collection[str], shared: Shared, spot: Spot) -> None:
-        """`main` moves an index of a ring that a routine moves too, though not in this run: when the ring is full."""
+        """`main` moves an index of a ring buffer.  The source shows that a routine moves it too, when the ring is full.
+
+        The run need not have shown that.  Report a race if nothing holds such a routine off.
+        """
         threads = self._threads
         for routine in threads.all if routines else ():
             if not isinstance(routine.what, Routine) or routine.what.name not in routines:
@@ -180,7 +185,7 @@ class Races:
                 return
 
     def _by_text(self, shared: Shared, spot: Spot, message: str) -> None:
-        """A race of which this run has seen the half that is `main`'s."""
+        """Report a race of which the run has shown `main`'s access, and the source the routine's."""
         shared.rank = _RANK["race"]
         place = self._spots.place(spot)
         assert place is not None
@@ -190,7 +195,10 @@ class Races:
         )  # fmt: skip
 
     def _taken_together(self, shared: Shared, offset: int) -> None:
-        """`main` reads a word; a routine sets it and others, though not in this run, and `main` takes them together."""
+        """`main` reads a word of a pair that the source shows: a routine sets several words, `main` uses them together.
+
+        Report a race if `main` has read two of them while nothing held the routine off.
+        """
         threads = self._threads
         assert shared.pairs is not None
         spot = self._spots.here()
@@ -215,7 +223,7 @@ class Races:
             return known
         shared = Shared(obj)
         if self._threads.routines:
-            if self._pairs is None:  # Most images never ask.
+            if self._pairs is None:  # Read late, because most images do not need it.
                 self._pairs, self._continued = pairs(self._modules), continued(self._modules)
                 self._turned = turned_by_both(self._modules)
             shared.pairs = self._pairs.get(obj.declaration.path)
@@ -248,8 +256,8 @@ class Races:
         lost = cut is not None
         bare, goes_on = bool(self._threads.routines), False
         if bare:
-            # What belongs together: words of a buffer; those of a structure of which a run of a routine writes several;
-            # those of a 32-bit scalar that somebody takes by halves.
+            # These words belong together: the words of a buffer; words of a structure that one run of a routine writes;
+            # the halves of a 32-bit scalar that some code accesses half by half.
             words = (set() if shared.beside else shared.joint) if shared.hands_over else conflicting
             several = len(conflicting & words) > 1
             several |= offset + 1 in shared.cells and shared.object.leaf(offset + 1) is None
@@ -263,27 +271,27 @@ class Races:
             if bare:
                 goes_on = rule == "race-word" and self._goes_on(shared, lower, higher)
                 if rule == "race-word" and not goes_on:
-                    return  # a flag, a counter, an index: how programs without a kernel do it
+                    return  # a flag, counter or index: programs without a kernel rightly do it so
                 rule = "race" if goes_on else "unmasked-long"
         if _RANK[rule] <= shared.rank:
             self._again(shared, other, access)
             return
         shared.rank = _RANK[rule]
         if bare and access.thread is not low:
-            # Told at the statement that must hold the interrupt off.
+            # Report it at the statement that must hold the interrupt off.
             access, other = other, access
         at = (access.spot if cut is None else cut) if bare else 0
         if not bare and p and not q:
             at = access.spot
         elif not bare and q and not p:
-            access, other, at = other, access, other.spot  # told where the gate is missing
+            access, other, at = other, access, other.spot  # reported where the gate is missing
         said = self._sentence(shared, rule, lost, low, high, access)
         if goes_on:
             said += ": it goes on with this object and with others, which are set one by one"
         self._report(shared, rule, said, other, at)
 
     def _goes_on(self, shared: Shared, lower: LatestAccess, higher: LatestAccess) -> bool:
-        """Whether `main` sets anew what a routine goes on with, a count or an index among other objects."""
+        """Whether `main` sets a count or index that a routine changes and depends on together with other objects."""
         what = higher.thread.what
         if not lower.write or lower.thread is not self._threads.main or not isinstance(what, Routine):
             return False
@@ -291,7 +299,7 @@ class Races:
         return (what.name, function) in self._continued.get(shared.object.declaration.path, ())
 
     def _joint(self, shared: Shared, offset: int) -> None:
-        """A run of a routine writes a word; with another one of the object, they belong together."""
+        """A run of a routine writes a word.  All words of one object that a run writes belong together."""
         threads = self._threads
         if threads.current is not threads.main and shared.hands_over:
             at, written = self._written
@@ -303,7 +311,7 @@ class Races:
                         one.beside.add(two.object)
             written.add(shared)
             if _has_array(shared.object.declaration.ctype):
-                return  # a ring: its indices say what of it is whole
+                return  # a ring buffer: its indices tell which part of it is complete
             run, words = shared.run
             if run != threads.runs:
                 shared.run = threads.runs, {offset}
@@ -314,7 +322,7 @@ class Races:
 
     @staticmethod
     def _several(shared: Shared, offset: int) -> bool:
-        """Whether more than this scalar of a structure is shared."""
+        """Whether several threads use, and some write, another scalar of the same structure too."""
         if not shared.hands_over and not shared.per_element:
             return False
         stride = shared.per_element or shared.object.words
@@ -325,7 +333,7 @@ class Races:
     def _sentence(
         self, shared: Shared, rule: str, lost: bool, low: Thread, high: Thread, access: LatestAccess | None
     ) -> str:
-        """`access` None: `low` reads what `high` writes."""
+        """The message of a finding.  If `access` is None, `low` reads what `high` writes."""
         if access is None:
             access = LatestAccess(low, False, low.protection, 0, 0, 0)
         verb = "writes" if access.write else "reads"
@@ -343,7 +351,7 @@ class Races:
         return said + "each access is atomic, but the value can change between two reads"
 
     def _report(self, shared: Shared, rule: str, message: str, other: LatestAccess, at: Spot) -> None:
-        """Report at the statement that runs, or at another one."""
+        """Report at the statement `at`, or at the running one if `at` is 0."""
         obj = shared.object
         declaration, details = str(obj.declaration), (self._told(other),)
         place = self._spots.place(at) if at else None
@@ -360,7 +368,7 @@ class Races:
             shared.findings[rule] = finding
 
     def _again(self, shared: Shared, *accesses: LatestAccess) -> None:
-        """The same object once more: counted, and the place kept if it is a new one."""
+        """The same race of an object has occurred again: count it, and keep the place if it is new."""
         for rule, finding in shared.findings.items():
             if _RANK.get(rule) == shared.rank:
                 finding.count += 1
@@ -379,13 +387,13 @@ class Races:
     # Gates
 
     def _wrong_gate(self, shared: Shared, other: LatestAccess, access: LatestAccess) -> None:
-        """Two gates, each of which keeps somebody off, but not each other."""
+        """Two threads use an object under different gates, which do not exclude each other."""
         a, b = (", ".join(sorted(map(self._names.of, x.protection.gates))) for x in (other, access))
         how = f"under {a} by {other.thread} and under {b} by {access.thread}"
         self._wrong(shared, how, self._told(other), access.spot)
 
     def _gates(self, shared: Shared, gates: frozenset[Gate], thread: Thread, spot: Spot) -> None:
-        """An object that several functions use under one gate is used under another by one."""
+        """Report an object that most functions use under one gate, and one function under another gate."""
         use = (spot, thread, gates)
         if not gates or not spot or use in shared.known:
             return

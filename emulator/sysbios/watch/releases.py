@@ -1,7 +1,7 @@
 """Releases of periodic tasks: `semaphore-pile-up`, `deadline`.
 
-A release is a post from a Clock function; the task that pends on the semaphore is what it releases.  A job lasts from
-the pend that takes the release to the next pend on the same semaphore.  The deadline is the period.
+A release is a post from a Clock function.  It releases the task that pends on the semaphore.  A job lasts from the pend
+that takes the release to the next pend on the same semaphore.  The deadline is the period.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.spots import Spot, StatementSpots
 from emulator.sysbios.watch.threads import Thread, ThreadWatch
 
-#: A burst that is not worked off for this long is a backlog.
+#: A burst of posts that is still not worked off after this time is a backlog.
 BACKLOG_CYCLES: Final = SYSCLK_HZ
-#: Posts of tasks, and their time, after which a semaphore on which nobody has ever pended is taken for forgotten
+#: If no task has ever pended on a semaphore after this many posts by tasks, and this time, it counts as forgotten
 #: (CHOICE: a pool that a task fills at its start is smaller, or faster).
 _FORGOTTEN: Final = 32
 _FORGOTTEN_CYCLES: Final = SYSCLK_HZ // 100
-#: A semaphore that nobody takes from keeps this many releases.
+#: At most this many releases are kept for one semaphore.
 _KEPT: Final = 10_000
 
 
 @dataclass(slots=True)
 class Release:
-    """One post by a Clock function, with the CPU time that each thread had used by then."""
+    """One post by a Clock function, with the CPU time (cycles) that each thread had used by then."""
 
     time: int
     spot: Spot
@@ -48,10 +48,10 @@ class SemaphoreState:
     period: int = 0
     consumer: Thread | None = None
     releases: deque[Release] = field(default_factory=deque)
-    #: The release whose job runs, and whether a later release has come since.
+    #: The release whose job runs; whether a later release has come before this job was done.
     job: Release | None = None
     late: bool = False
-    #: Since when the count has not been 0.
+    #: The cycle since when the count has not been 0.
     since: int | None = None
     piled: Finding | None = None
     most: int = 0
@@ -92,7 +92,7 @@ class Releases:
         self._sources[semaphore] = SemaphoreState(semaphore.count)
 
     def _posting(self, semaphore: Semaphore) -> None:
-        """Before the post: has the job of the last release ended?"""
+        """Before the post: report a miss if the job of the last release has not ended."""
         source = self._source(semaphore)
         timer = self._threads.current.what
         if not isinstance(timer, ClockObject) or not timer.period:
@@ -104,7 +104,7 @@ class Releases:
             source.releases.append(Release(self._clock.now, self._spots.here(), self._threads.usage()))
 
     def _posted(self, _result: None, semaphore: Semaphore) -> None:
-        """Behind the post: does the count grow?"""
+        """After the post: report a semaphore whose count keeps growing."""
         source = self._source(semaphore)
         count, now = semaphore.count, self._clock.now
         if count == 0 or semaphore.mode & 1:
@@ -124,7 +124,7 @@ class Releases:
         self._pile(semaphore, source, source.since)
 
     def _pending(self, semaphore: Semaphore, timeout: int) -> None:
-        """A task has come back: its job is done."""
+        """A task pends on the semaphore again: its job is done."""
         source = self._source(semaphore)
         thread = self._threads.current
         if not thread.is_task:
@@ -147,7 +147,7 @@ class Releases:
     # Findings
 
     def _ended(self, semaphore: Semaphore, thread: Thread | None) -> bool:
-        """Whether the task that alone took a semaphore has ended, which is told where its function begins."""
+        """Whether the task that takes a semaphore has ended.  Then report it where the task's function begins."""
         task = thread.what if thread is not None else None
         if not isinstance(task, Task) or task.mode != TERMINATED or task.deleted:
             return False
@@ -183,7 +183,7 @@ class Releases:
                 source.piled.details = (f"{running.name} has the CPU, in {self._spots.text(spot)}",)
 
     def _miss(self, semaphore: Semaphore, source: SemaphoreState, thread: Thread) -> None:
-        """The next release has come before the last one's job was done."""
+        """Report that the next release has come before the job of the last one was done."""
         if self._ended(semaphore, thread):
             return
         release = source.job or source.releases[0]
@@ -207,7 +207,7 @@ class Releases:
         )  # fmt: skip
 
     def _done(self, source: SemaphoreState) -> None:
-        """The job has ended: its response time, if it was late."""
+        """The job has ended.  If it was late, put its response time into the finding."""
         job, source.job = source.job, None
         if job is None or not source.late or source.missed is None or source.consumer is None:
             return
@@ -220,6 +220,6 @@ class Releases:
         source.late = bool(source.releases)
 
     def _meanwhile(self, thread: Thread, release: Release) -> tuple[str, ...]:
-        """Who had the CPU since a release."""
+        """The threads that had the CPU since a release, as sentences."""
         used = [(t, cycles) for t, cycles in self._threads.used_since(release.usage) if cycles > CYCLES_PER_US]
         return tuple(f"{t} ran for {us(cycles):.1f} us of it" for t, cycles in used[:4])

@@ -1,7 +1,7 @@
-"""Where the firmware stands: the statement that runs, the statement at which a suspended task waits.
+"""Where the firmware stands: the statement that runs, and the statement at which a suspended task waits.
 
-A spot is the number of a statement (`emulator.c28x.sites`), 0 if there is none: cheap to keep and to compare, a `Place`
-only when somebody reads it.
+A spot is the number of a statement (`emulator.c28x.sites`), 0 if there is none.  A number is cheap to keep and to
+compare.  It becomes a `Place` only when a finding needs it.
 """
 
 from __future__ import annotations
@@ -19,22 +19,22 @@ Function = tuple[str, str]
 
 
 class StatementSpots:
-    """Finds statements, and says what their numbers mean."""
+    """Finds the running statements, and translates their numbers."""
 
     def __init__(self, findings: Findings) -> None:
         self._position = findings.position
         self._places = findings.places
 
     def place(self, spot: Spot) -> Place | None:
-        """The statement, for a finding."""
+        """The place of a statement, for a finding; None for spot 0."""
         return self._places[spot] if spot else None
 
     def takes(self, spot: Spot) -> bool:
-        """Whether the statement clears what the one before has read."""
+        """Whether the statement clears an object that the statement before it has read."""
         return self._places[spot].kind == "takes"
 
     def text(self, spot: Spot) -> str:
-        """The statement, for a sentence."""
+        """The place of a statement as text, for a sentence."""
         return str(self._places[spot]) if spot else "no statement of the firmware"
 
     def function(self, spot: Spot) -> Function:
@@ -53,18 +53,18 @@ class StatementSpots:
         return position.calls if position.at else next((calls for _, calls in position.frames()), None)
 
     def running(self, call: Call) -> bool:
-        """Whether a call has not returned: it lies under the code that runs now."""
+        """Whether a call has not returned: it is on the call stack of the code that runs now."""
         return self._position.within(call)
 
     def of(self, task: Task, current: Task | None) -> Spot:
-        """Where `task` stands: below whatever has interrupted it, or suspended.  0 before its first statement."""
+        """The statement at which `task` was interrupted or suspended.  0 before its first statement."""
         position = self._position if task is current else task
         return interrupted(position.at, position.calls)[0]
 
     def sample(self) -> tuple[Spot, bool, Call | None] | None:
-        """What an interrupt that has just been taken interrupts: the statement, whether it only polls, its call.
+        """The statement that a just taken interrupt has interrupted, whether the statement only polls, and its call.
 
-        None if that is no firmware: the idle loop, or an interrupt that has not come to its first statement.
+        None if no firmware was interrupted: the idle loop, or an interrupt that has not reached its first statement.
         """
         calls = self._position.calls
         while calls is not None and len(calls) == 2:

@@ -1,7 +1,7 @@
 """Tasks that wait for ever: for each other through a gate and a semaphore (`deadlock`), or for nobody (`never-posted`).
 
-A task pends on a semaphore while it holds a gate, and whoever alone posts the semaphore waits for that gate.  A ring of
-gates alone is found by `gates.py`.
+In such a deadlock a task pends on a semaphore while it holds a gate, and the only task that posts the semaphore waits
+for that gate.  `gates.py` finds cycles of gates alone.
 
 A task that still waits without a timeout at the end of a run is `never-posted` if no statement of the program ends
 such a wait.  Part of a program, without its `main`, gets no such finding: the rest may post.
@@ -28,17 +28,17 @@ from emulator.sysbios.watch.spots import Spot, StatementSpots
 from emulator.sysbios.watch.threads import Gate, Thread, ThreadWatch
 from emulator.trace import Trace
 
-#: A function that waits without a timeout, and the one that ends it.
+#: A function that waits, and the function that ends such a wait.
 ENDS: Final = {
     "Semaphore_pend": "Semaphore_post", "Event_pend": "Event_post", "Mailbox_pend": "Mailbox_post",
     "Mailbox_post": "Mailbox_pend",
 }  # fmt: skip
-#: What posts a software interrupt, at once or behind some calls.
+#: The functions that post a software interrupt, at once or after several calls.
 POSTS_OF_SWI: Final = ("Swi_post", "Swi_or", "Swi_inc", "Swi_dec", "Swi_andn")
 
 
 class Standstill:
-    """Listens to pends, and looks around when a task blocks while another waits for a gate."""
+    """Listens to pends.  When a task blocks while another waits for a gate, it looks for tasks that never run again."""
 
     def __init__(
         self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings, gates: Gates,
@@ -51,11 +51,11 @@ class Standstill:
         self._gates = gates
         self._posters = posters
         self._pends: dict[Thread, tuple[Semaphore, Spot]] = {}
-        #: Waits for events and mailboxes: the function, the object, and where.
+        #: Waits for events and mailboxes: the function, the kernel object, and the statement.
         self._waits: dict[Thread, tuple[str, Any, Spot]] = {}
-        #: Of waits for events: the bits of which all, and of which any, must be posted.
+        #: Waits for events: the bits that must all be posted, and the bits of which one must be posted.
         self._wanted: dict[Thread, tuple[int, int]] = {}
-        #: Clocks that were not started when they were created.
+        #: Clocks that `Clock_create` did not start.
         self._idle: dict[ClockObject, Spot] = {}
         calls.before("Semaphore_pend", tell=self._pending)
         calls.after("Semaphore_pend", tell=self._pended)
@@ -69,7 +69,7 @@ class Standstill:
         calls.after("Swi_create", tell=self._swi_created)
 
     def listen(self, trace: Trace) -> None:
-        """Be told of tasks that block."""
+        """Listen to tasks that block."""
         trace.listen(self._blocks, "block", each_tick=False)
 
     def _blocks(self, _cycles: int, _kind: str, _name: str) -> None:
@@ -103,7 +103,7 @@ class Standstill:
             self._swis[swi] = self._spots.here()
 
     def finish(self) -> None:
-        """Tell of tasks that wait for what no statement brings, and of Clocks that none starts."""
+        """Report waits that no statement ends, Clocks that no statement starts and Swis that no statement posts."""
         if not self._names.whole:
             return
         pends = {thread: ("Semaphore_pend", *pend) for thread, pend in self._pends.items() if not pend[0].count}
@@ -130,7 +130,7 @@ class Standstill:
         for swi, spot in self._swis.items():
             place, posts = self._spots.place(spot), [post for post in POSTS_OF_SWI if self._names.could(post, swi)]
             why = "" if posts else "no statement posts it"
-            # Swi_andn posts when no bit of the trigger is left.
+            # Swi_andn posts the Swi when all bits of its trigger are 0.
             left = swi.initial_trigger & ~self._names.bits("Swi_andn", swi) if posts == ["Swi_andn"] else 0
             if left:
                 why = f"no Swi_andn takes bits {left:#x} off its trigger {swi.initial_trigger:#x}"
@@ -141,7 +141,7 @@ class Standstill:
                 )  # fmt: skip
 
     def _never(self, thread: Thread, event: Event, name: str, place: Place) -> None:
-        """Tell of bits of an event that no statement posts."""
+        """Report bits of an event that a task waits for and no statement posts."""
         posted = self._names.bits("Event_post", event)
         both, either = self._wanted.get(thread, (0, 0))
         if both & ~posted or (either and not both and not either & posted):
@@ -152,7 +152,10 @@ class Standstill:
             )  # fmt: skip
 
     def _look(self) -> None:
-        """Take away whoever can still be released, again and again: the others never run again."""
+        """Report tasks that never run again.
+
+        It starts with all waiting tasks, and removes those that can still be released until none is left to remove.
+        """
         stuck: dict[Task, Gate | Semaphore] = {}
         for thread in self._threads.all:
             gate, pend = self._gates.waits_for(thread), self._pends.get(thread)
@@ -171,7 +174,7 @@ class Standstill:
                 self._tell(self._threads.of(task), what, self._threads.of(what.owner))
 
     def _needs(self, what: Gate | Semaphore) -> set[Task]:
-        """The tasks of which one must run to end a wait; none: others can do it too."""
+        """The tasks of which one must run to end a wait; empty if something else can end it too."""
         if not isinstance(what, Semaphore):
             return set() if what.free or what.owner is None else {what.owner}
         return self._posters.of(what) or set()

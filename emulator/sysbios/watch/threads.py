@@ -4,9 +4,9 @@ A thread is a task, a Swi, a Hwi, or the function of a Clock object.  Each Clock
 a post by one of them orders nothing for the others.  Until BIOS_start there is `main`; in a program without
 the kernel, `main` and the routines of the vector table.
 
-A thread's vector clock (L. Lamport 1978, C. Fidge 1988) says how far it knows the others: a release (post, Swi_post,
-create, start) leaves the releaser's clock with the object, an acquire (pend, the start of the Swi or Hwi) takes it
-over.  What one thread did before it released is ordered before what the other does after it acquired.
+A thread's vector clock (L. Lamport 1978, C. Fidge 1988) says how far it knows the others.  A release (post, Swi_post,
+create, start) stores the clock of the releasing thread at the object.  An acquire (pend, the start of the Swi or Hwi)
+takes it over.  What one thread did before it released is ordered before what the other does after it acquired.
 """
 
 from __future__ import annotations
@@ -32,25 +32,25 @@ HWI_LEVEL: Final = 2 * PRIORITIES
 ALL_LINES: Final = 0x3FFF
 
 VectorClock = tuple[int, ...]
-#: What a task can own.
+#: A gate that a task can own.
 Gate = GateMutexPri | GateMutex
 _NO_GATES: Final[frozenset[Gate]] = frozenset()
 
 
 class ReadableRegister(Protocol):
-    """A register with the word that it holds."""
+    """A register whose `value` is the word that it holds."""
 
     value: int
 
 
-#: A bit of a register.
+#: A register, and the mask of a bit in it.
 Enable = tuple[ReadableRegister, int]
-#: What must be set for an interrupt to come through: its gate, and one of the enables at the peripheral.
+#: The bits that let an interrupt through: its PIEIER bit must be set, and one of the enables at the peripheral.
 Enables = tuple[Enable, tuple[Enable, ...]]
 
 
 class Protection(NamedTuple):
-    """What an access is protected by: gates held, the level up to which nothing can pre-empt, interrupts held off."""
+    """What protects an access: the gates held, the highest level that cannot pre-empt, the interrupts held off."""
 
     gates: frozenset[Gate]
     ceiling: int
@@ -89,18 +89,18 @@ class Thread:
         self.is_task = isinstance(what, Task)
         self.level = level
         self.index = index
-        #: Its own clock: grows at each release.  In `vc` it stands as it was when `known` was asked for last.
+        #: Its own clock, which grows at each release.  `vc` holds its value as of the last call of `known`.
         self.clock = 1
         self.vc = (*vc, *(0,) * (index - len(vc)), 1)
-        #: What protected it when somebody asked last.
+        #: What protected it at the last call of `ThreadWatch.protection`.
         self.protection = Protection(_NO_GATES, level, ALL_LINES, frozenset())
-        #: What it has taken over last from each object.
+        #: The clock that it has taken over last from each object.
         self.taken: dict[Any, VectorClock] = {}
         #: CPU cycles so far.
         self.cpu = 0
         #: Gates entered and not left, innermost last.
         self.entered: list[Gate] = []
-        #: When a gate was left last.
+        #: Gate -> the cycle at which it was left last.
         self.left: dict[Gate, int] = {}
 
     def __str__(self) -> str:
@@ -112,7 +112,7 @@ class Thread:
         return other is self or (other.index < len(vc) and vc[other.index] >= clock)
 
     def known(self) -> VectorClock:
-        """What it knows now, of itself too."""
+        """Its vector clock now, including its own component."""
         vc = self.vc
         if vc[self.index] != self.clock:
             vc = self.vc = at_clock(vc, self.index, self.clock)
@@ -120,12 +120,12 @@ class Thread:
 
 
 def at_clock(vc: VectorClock, index: int, clock: int) -> VectorClock:
-    """A clock with another component at `index`."""
+    """A copy of a vector clock with the component at `index` replaced by `clock`."""
     return (*vc[:index], clock, *vc[index + 1 :])
 
 
 def joined(a: VectorClock, b: VectorClock) -> VectorClock:
-    """The later of two clocks, component by component."""
+    """The maximum of two vector clocks, component by component."""
     return tuple(map(max, a, b) if len(a) == len(b) else map(max, zip_longest(a, b, fillvalue=0)))
 
 
@@ -145,21 +145,21 @@ class ThreadWatch:
         self._since = 0
         #: The clock that a semaphore, Swi, Hwi or Clock object carries.
         self._carried: dict[Any, VectorClock] = {}
-        #: Interrupts that Hwi_disableInterrupt holds off; the enables of those that a peripheral can hold off.
+        #: Interrupts that Hwi_disableInterrupt holds off; interrupt -> the enables by which a driver can hold it off.
         self.disabled: frozenset[int] = frozenset()
         self.enables: dict[int, Enables] = {}
         self._gated: tuple[tuple[int, ReadableRegister, int, tuple[Enable, ...]], ...] = ()
         self._handlers = 0
-        #: PIEIER and the bit of an interrupt behind the PIE.
+        #: Returns PIEIER and the bit of a PIE interrupt.
         self.line: Callable[[int], Enable] | None = None
-        #: By interrupt: the registers by which a program begins what ends in it.
+        #: Interrupt -> the registers by which a program starts the operations that end in it.
         self.begun: dict[int, list[Any]] = {}
-        #: Without the kernel: the interrupts that have come, and how often one has.
+        #: Without the kernel: the interrupts that have occurred, and how many routines have run.
         self.routines: set[int] = set()
         self.runs = 0
 
     def listen(self, trace: Trace) -> None:
-        """Be told of what decides who runs."""
+        """Listen to all events that decide which thread runs."""
         trace.listen(self._switched, "switch", each_tick=False)
         trace.listen(self._interrupt_begins, "hwi", each_tick=False)
         trace.listen(self._interrupt_ends, "hwi end", each_tick=False)
@@ -185,7 +185,7 @@ class ThreadWatch:
         self.current = self._nested.pop()
 
     def routine_begins(self, number: int, name: str) -> None:
-        """A routine of the vector table begins.  Beside the kernel it is no thread."""
+        """A routine of the vector table begins.  While the kernel runs, it does not count as a thread."""
         if not self.kernel.active:
             self.runs += 1
             if number not in self.routines:
@@ -200,7 +200,7 @@ class ThreadWatch:
             self.current = routine
 
     def routine_ends(self, _number: int, _name: str) -> None:
-        """It has ended."""
+        """A routine of the vector table has ended."""
         if not self.kernel.active:
             self.current = self._nested.pop()
 
@@ -213,7 +213,7 @@ class ThreadWatch:
         self.current = self._nested.pop()
 
     def _ticks_passed(self, count: int, interrupt_cycles: int, swi_cycles: int) -> None:
-        """The idle task was interrupted as often, and it alone."""
+        """`count` ticks have passed at once.  Each interrupted the idle task and nothing else."""
         kernel = self.kernel
         handler = kernel.hwis.table[TIMER_INTERRUPT]
         for what, cycles in ((handler, interrupt_cycles), (kernel.clocks.swi, swi_cycles)):
@@ -239,7 +239,7 @@ class ThreadWatch:
         self.current = thread
 
     def _follow(self, number: int, handler: Thread) -> None:
-        """Interrupt `number` comes behind what was done before the peripheral was started."""
+        """Order the handler of interrupt `number` after what was done before the peripheral was started."""
         for started in self.begun.get(number, ()):
             self.acquire(started, handler)
 
@@ -257,7 +257,10 @@ class ThreadWatch:
             thread.level = int(priority)
 
     def of(self, what: Any) -> Thread:
-        """The thread of a task, Swi, Hwi or Clock object; one that is new knows what its creator, or main, knew."""
+        """The thread of a task, Swi, Hwi, Clock object or routine.
+
+        A new thread knows what its creator knew (a task), or what `main` knew (all others).
+        """
         thread = self._of.get(what)
         if thread is None:
             creator = self.current if isinstance(what, Task) else self.main
@@ -278,26 +281,26 @@ class ThreadWatch:
         return thread
 
     def named(self, name: str) -> Thread | None:
-        """The task's thread."""
+        """The thread of the task of this name; None if there is none."""
         return self._tasks.get(name)
 
     @property
     def interrupted(self) -> Thread:
-        """What the innermost Swi or Hwi interrupts."""
+        """The thread that the innermost Swi or Hwi interrupts."""
         return self._nested[-1]
 
     # Order
 
     def release(self, what: Any) -> None:
-        """The running thread leaves what it knows with an object."""
+        """The running thread stores its vector clock at an object."""
         thread = self.current
         carried = self._carried.get(what)
         known = thread.known()
         self._carried[what] = known if carried is None else joined(carried, known)
-        thread.clock += 1  # What comes now is later than what anybody has been told of this thread.
+        thread.clock += 1  # What it does from now on is later than what the object carries.
 
     def acquire(self, what: Any, thread: Thread | None = None) -> None:
-        """The running thread (or `thread`) takes over what was left with an object."""
+        """The running thread (or `thread`) takes over the vector clock that is stored at an object."""
         carried = self._carried.get(what)
         if carried is not None:
             thread = thread or self.current
@@ -334,7 +337,7 @@ class ThreadWatch:
         gates = self.gates(thread) if thread.entered else _NO_GATES
         last = thread.protection
         if last[2] == lines and last[1] == ceiling and last[0] == gates and last[3] == off:
-            return last  # As it nearly always is: who compares two of them mostly finds that they are one.
+            return last  # The usual case.  The same object again makes comparing two protections fast.
         thread.protection = now = Protection(gates, ceiling, lines, off)
         return now
 
@@ -365,7 +368,7 @@ class ThreadWatch:
         return [thread.cpu for thread in self.all]
 
     def used_since(self, usage: list[int]) -> list[tuple[Thread, int]]:
-        """Who had the CPU since `usage` was taken, longest first."""
+        """The threads that had the CPU since `usage` was taken, each with its cycles, longest first."""
         then = usage + [0] * (len(self.all) - len(usage))
         used = [(t, now - before) for t, now, before in zip(self.all, self.usage(), then, strict=True)]
         return sorted(((t, n) for t, n in used if n > 0), key=lambda row: -row[1])
@@ -380,11 +383,11 @@ class ThreadWatch:
 
 
 def excluded(a: Thread, p: Protection, b: Thread, q: Protection) -> bool:
-    """Whether an access of `a` under `p` and one of `b` under `q` can never cut each other.
+    """Whether an access of `a` under `p` and one of `b` under `q` can never interrupt each other.
 
-    A common gate excludes them.  Otherwise only the lower one can be cut, so it is enough that the lower one holds the
-    higher one off: equal levels do not pre-empt each other; a Hwi is held off by its masked line or enable.  Two
-    handlers can nest either way round.
+    A common gate excludes them.  Otherwise only the thread of lower level can be interrupted, so it is enough that this
+    one holds the other off.  Equal levels do not pre-empt each other.  A masked line or a cleared enable holds a Hwi
+    off.  Two handlers can nest either way round.
     """
     if p.gates & q.gates:
         return True

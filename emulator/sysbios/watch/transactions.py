@@ -1,12 +1,12 @@
 """Peripherals that several tasks use: `transaction-cut`.
 
-A transaction is what must not be interleaved with another on the same part of a peripheral: a conversion from the
-trigger to the result, a word on SPI from transmit to receive register, all words of it while a slave is selected, the
-characters that a task writes to a UART.
+Two transactions on the same part of a peripheral must not be interleaved.  A transaction is a conversion from the
+trigger to the result, a word on SPI from the transmit to the receive register, all words on SPI while a slave is
+selected, or the characters that a task writes to a UART.
 Each part that a transaction occupies (a SOC, an ADC interrupt flag, a shift register) is a cell like any object in
-memory: two tasks that use it need a common gate.  A transaction that was open when another began is told in the
-finding.  Handlers take part only where they begin a transaction: that one clears the flag of a conversion which a task
-has started is how a driver with interrupts works.
+memory: two tasks that use it need a common gate.  If a transaction was open when another began, the finding says so.
+Handlers take part only where they begin a transaction.  A handler that clears the flag of a conversion which a task has
+started does no harm: drivers with interrupts work so.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from emulator.trace import Trace
 
 
 class TappedBlock(Protocol):
-    """A block of registers, each of which can be tapped (`emulator.registers.core.Block`)."""
+    """A block of registers whose accesses a listener can follow (`emulator.registers.core.Block`)."""
 
     name: str
     registers: dict[str, Any]
@@ -50,12 +50,12 @@ class Open:
     thread: Thread
     spot: Spot
     time: int
-    #: It goes on while its thread waits.
+    #: Whether it stays open while its thread blocks.
     lasts: bool = False
 
 
 class Transactions:
-    """Told when the running thread occupies or frees a part of a peripheral."""
+    """Keeps which thread occupies which part of a peripheral, and reports transactions that can be interleaved."""
 
     def __init__(self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings) -> None:
         self._threads = threads
@@ -65,21 +65,21 @@ class Transactions:
         self._clock = findings.clock
         self._cells: dict[str, SharedObject] = {}
         self._open: dict[str, Open] = {}
-        #: Of each register: words, and whose parts all of them are as long as nobody else has come (nothing to do).
+        #: Per register: word -> the thread that alone has used all parts of this word.  Such a write needs no check.
         self._quiet: list[dict[int, Thread]] = []
         self._found: dict[tuple[str, frozenset[Thread]], Finding] = {}
 
     def listen(self, trace: Trace) -> None:
-        """Be told of tasks that block."""
+        """Listen to tasks that block."""
         trace.listen(self._blocks, "block", each_tick=False)
 
     def _blocks(self, _cycles: int, _kind: str, name: str) -> None:
-        """A task that blocks has left its conversions and words to an interrupt."""
+        """A task blocks.  Its conversions and words are now its interrupt's, so they no longer count as open."""
         for part in [p for p, o in self._open.items() if o.thread.name == name and not o.lasts]:
             del self._open[part]
 
     def begin(self, block: str, part: str, *, opens: bool) -> None:
-        """The running thread occupies a part of a peripheral; `opens`: until `end`."""
+        """The running thread occupies a part of a peripheral.  `opens`: the transaction stays open until it ends."""
         thread = self._threads.current
         cell = self._cells.get(part)
         if thread is self._threads.main or (cell is not None and cell.owner is thread):
@@ -90,7 +90,7 @@ class Transactions:
             self._open[part] = Open(block, thread, spot, self._clock.now)
 
     def _use(self, block: str, part: str, thread: Thread, spot: Spot, protection: Protection) -> None:
-        """A thread has used a part, protected like this all the time."""
+        """A thread has used a part, and `protection` held for the whole time."""
         cell = self._cells.get(part)
         if cell is None:
             cell = self._cells[part] = SharedObject(thread)
@@ -130,7 +130,7 @@ class Transactions:
     # Peripherals
 
     def watch_adc(self, regs: TappedBlock, results: TappedBlock) -> None:
-        """A conversion: SOC and flag from the trigger until the result is read."""
+        """A conversion occupies a SOC and an interrupt flag from the trigger until the result is read."""
         socs = [f"{regs.name} SOC{soc}" for soc in range(16)]
         flags = [f"{regs.name} ADCINT{n}" for n in range(1, 5)]
         for soc, part in enumerate(socs):
@@ -139,13 +139,13 @@ class Transactions:
         self._on_bits(regs, "ADCINTFLGCLR", flags, opens=False, tasks_only=True)
 
     def watch_spi(self, regs: TappedBlock) -> None:
-        """A word: from SPITXBUF to SPIRXBUF."""
+        """A word occupies the shift register from the write of SPITXBUF to the read of SPIRXBUF."""
         part = f"{regs.name} shift register"
         self._on_write(regs, "SPITXBUF", lambda _word: self.begin(regs.name, part, opens=True))
         self._on_read(regs, "SPIRXBUF", part)
 
     def watch_select(self, block: str, chip_select: Select) -> None:
-        """All words while a slave is selected: what protects them must be held from before until after."""
+        """All words while a slave is selected are one transaction.  The protection must hold for all of them."""
         part = f"{block} with {chip_select.name} low"
         held: dict[Thread, Protection] = {}
 
@@ -170,14 +170,14 @@ class Transactions:
 
     @staticmethod
     def _throughout(opened: Open, begun: Protection, now: Protection) -> Protection:
-        """What has protected the thread all the time: a gate that was left meanwhile has not."""
+        """The protection that held from begin to end.  A gate that was left meanwhile does not count."""
         left = opened.thread.left
         gates = frozenset(g for g in begun.gates & now.gates if left.get(g, -1) < opened.time)
         ceiling = min(begun.ceiling, now.ceiling)
         return Protection(gates, ceiling, begun.lines & now.lines, begun.disabled & now.disabled)
 
     def watch_sci(self, regs: TappedBlock, sent: Callable[[], None]) -> None:
-        """Characters that a task writes; `sent()` is told of all of them."""
+        """Watch the characters that tasks write.  `sent()` is called for every character, whoever writes it."""
 
         def write(_word: int) -> None:
             if self._threads.current.is_task:
@@ -197,7 +197,7 @@ class Transactions:
         regs.registers[name].tap(seen, reads=True)
 
     def _on_bits(self, regs: TappedBlock, name: str, parts: list[str], *, opens: bool, tasks_only: bool) -> None:
-        """A write of the register occupies the parts whose bits are set."""
+        """A write to the register occupies the parts whose bits are set in the word."""
         threads, cells = self._threads, self._cells
         quiet: dict[int, Thread] = {}
         self._quiet.append(quiet)
@@ -220,7 +220,7 @@ class Transactions:
 
 
 def _bits(parts: list[str], word: int) -> list[str]:
-    """The parts whose bits are set: nearly always one."""
+    """The parts whose bits are set.  It is nearly always one."""
     word &= (1 << len(parts)) - 1
     if word and not word & word - 1:
         return [parts[word.bit_length() - 1]]

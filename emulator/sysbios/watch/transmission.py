@@ -1,9 +1,9 @@
-"""Buffers that an interrupt sends from: `buffer-rewritten`.
+"""Buffers that are written while an interrupt sends them: `buffer-rewritten`.
 
 The buffer is the object that a Hwi or Swi reads last before it writes the transmit register.  The transmission ends
-when all that was written has left, and nothing new was written for two characters' time.  Until then the words after
-the last one read are still to be sent.  A write to them is reported, unless the interrupt has signalled that it has
-read all.
+when the transmitter has sent all that was written and gets nothing new for the time of two characters.  Until then the
+words after the last one read are still to be sent.  A write to them is reported, unless the interrupt has signalled
+that it has read all.
 """
 
 from __future__ import annotations
@@ -17,27 +17,27 @@ from emulator.clock import us
 from emulator.sysbios.watch.spots import Spot, StatementSpots
 from emulator.sysbios.watch.threads import Thread, ThreadWatch
 
-#: Characters' time after which a silent interrupt has come to its end.
+#: After this many character times without a new character, the transmission has ended.
 GRACE: Final = 2
 
 
 @dataclass(slots=True)
 class Sending:
-    """A buffer on its way out."""
+    """A buffer that is being sent."""
 
     register: str
     thread: Thread
-    #: Word that was read last, the thread's clock then, and the statement.
+    #: The word that was read last, the thread's clock at that time, and the statement.
     offset: int
     clock: int
     spot: Spot
-    #: When everything written so far has left, and cycles a character.
+    #: The cycle when everything written so far has been sent, and the cycles of one character.
     until: int
     character: int
 
 
 class Transmission:
-    """Told of accesses and of writes to a transmit register."""
+    """Listens to accesses of objects, and to writes to a transmit register."""
 
     def __init__(self, threads: ThreadWatch, spots: StatementSpots, findings: Findings) -> None:
         self._threads = threads
@@ -45,9 +45,9 @@ class Transmission:
         self._findings = findings
         self._clock = findings.clock
         self._read: dict[Thread, tuple[Object, int, Spot]] = {}
-        #: Buffers on their way out.
+        #: Buffers that are being sent.
         self.sending: dict[Object, Sending] = {}
-        #: Per register, when its transmitter runs dry.
+        #: Register -> the cycle when its transmitter has sent everything.
         self._dry: dict[str, int] = {}
         self._found: dict[Object, Finding] = {}
 

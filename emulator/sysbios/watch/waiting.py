@@ -1,8 +1,8 @@
-"""Tasks that could run and do not: `starvation`, and the `busy-wait` that is often behind it.
+"""Tasks that are ready and do not run: `starvation`, and the `busy-wait` that often causes it.
 
-The running statement is sampled at every tick of the kernel.  One in DelayUs or in a polling loop is a busy wait.  So a
-busy wait is measured with the resolution of the tick, one millisecond by default.  In a Hwi or Swi, which the tick may
-not interrupt, it is taken exactly from the argument of DelayUs.
+The running statement is sampled at every tick of the kernel.  A statement in DelayUs or in a polling loop is a busy
+wait.  So a busy wait is measured with the resolution of the tick, one millisecond by default.  The tick may not
+interrupt a Hwi or Swi.  There the time is taken exactly from the argument of DelayUs.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ from emulator.sysbios.watch.spots import Call, Spot, StatementSpots
 from emulator.sysbios.watch.threads import Thread, ThreadWatch
 from emulator.trace import Trace
 
-#: Of a task without a period.
+#: A ready task without a period is starved after this time.
 STARVED_CYCLES: Final = 100 * CYCLES_PER_MS
-#: Shorter waits cannot be left to Task_sleep, whose unit is the tick.
+#: A busy wait is reported from this many ticks on.  Task_sleep counts ticks, so it cannot replace a shorter wait.
 BUSY_TICKS: Final = 2
-#: In a Hwi or Swi.
+#: In a Hwi or Swi, a busy wait is reported from this time on.
 BUSY_INTERRUPT_US: Final = 100
-#: Ticks that are remembered.
+#: The samples of this many ticks are kept.
 _SAMPLES: Final = 10_000
 _TICK: Final = "Clock_tick"
 
-#: Thread, statement, and what it does there: "poll", "delay", "".
+#: Thread, statement, and what it does there: "poll", "delay" or "" (it computes).
 Sample = tuple[Thread, Spot, str]
 
 
@@ -45,11 +45,11 @@ class Waiting:
 
 @dataclass(slots=True)
 class Busy:
-    """A statement that was found waiting at one tick after another."""
+    """A busy wait that several ticks in a row found at the same statement."""
 
     call: Call | None
     sample: Sample
-    #: Which call of DelayUs it is.
+    #: The number of the call of DelayUs, to tell one call from the next.
     delay: int
     since: int
     finding: Finding | None = None
@@ -72,14 +72,14 @@ class Patience:
         self._running: Thread | None = None
         self._samples: deque[tuple[int, Sample]] = deque(maxlen=_SAMPLES)
         self._busy: Busy | None = None
-        #: Microseconds that the threads wait in DelayUs, and how many calls there have been.
+        #: Thread -> microseconds that it waits in DelayUs now; the number of calls of DelayUs so far.
         self._delays: dict[Thread, float] = {}
         self._calls = 0
         calls.before("DelayUs", "DELAY_US", tell=self._delay)
         calls.after("DelayUs", "DELAY_US", tell=self._delayed)
 
     def listen(self, trace: Trace) -> None:
-        """Be told of the scheduler, and of the tick."""
+        """Listen to the scheduler and to the tick."""
         trace.listen(self._readied, "ready", each_tick=False)
         trace.listen(self._switched, "switch", each_tick=False)
         trace.listen(self._ticked, "hwi", each_tick=False)
@@ -91,7 +91,7 @@ class Patience:
             self._waiting[thread] = Waiting(cycles, self._threads.usage())
 
     def _idle(self, _ticks: int, _interrupt_cycles: int, _swi_cycles: int) -> None:
-        """Ticks that found no statement."""
+        """Ticks have passed in which only the idle task ran: no busy wait goes on."""
         self._busy = None
 
     def _ticked(self, cycles: int, _kind: str, name: str) -> None:
@@ -99,7 +99,7 @@ class Patience:
             self._tick(cycles)
 
     def finish(self) -> None:
-        """Tasks that wait still."""
+        """Judge the tasks that still wait for the CPU at the end of the run."""
         for thread, waiting in self._waiting.items():
             self._judge(thread, waiting, self._clock.now)
 
@@ -129,7 +129,7 @@ class Patience:
                 self._judge(waiting_thread, waiting, cycles)
 
     def _spent(self, cycles: int, sample: Sample, call: Call | None) -> None:
-        """One more tick at this statement?"""
+        """A tick has found this statement.  Report a busy wait that has lasted long enough and keeps a task waiting."""
         thread, spot, kind = sample
         busy = self._busy
         if busy is None or busy.call is not call or busy.sample != sample or busy.delay != self._calls:
@@ -198,7 +198,7 @@ class Patience:
             finding.message, finding.value, finding.details = message, us(waited), details
 
     def _blamed(self, thread: Thread, since: int) -> tuple[Sample, int] | None:
-        """The busy wait, or else the statement, at which the others were found most often."""
+        """The busy wait at which other threads were found most often; without one, the statement.  With its ticks."""
         counted: Counter[Sample] = Counter()
         for time, sample in reversed(self._samples):
             if time < since:

@@ -1,8 +1,8 @@
-"""How waits with a time-out end: `gate-across-wait`, `timeout-ignored`.
+"""How waits with a timeout end: `gate-across-wait`, `timeout-ignored`.
 
-`gate-across-wait`: a task that waits while it holds a gate makes all others wait that want the gate.  A driver may do
-so on purpose, for the interrupt that ends its transfer.  So it is reported only if another task waited at the gate, and
-the wait was long or was ended by time alone.
+`gate-across-wait`: a task that waits while it holds a gate delays all other tasks that want the gate.  A driver may do
+so on purpose, for the interrupt that ends its transfer.  So it is reported only if another task waited at the gate for
+long, and only time ended the wait: a timeout or Task_sleep.
 
 `timeout-ignored`: a pend on a mailbox that timed out leaves the message unchanged.
 """
@@ -26,12 +26,12 @@ from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.spots import Spot, StatementSpots
 from emulator.sysbios.watch.threads import Thread, ThreadWatch
 
-#: Others may stand at a gate for so long while its owner waits in vain, or sleeps: for an EEPROM that writes, a sonar
-#: that measures (CHOICE).
+#: A task may wait at a gate for so long while the owner's wait times out, or while the owner sleeps: an EEPROM needs
+#: time to write, a sonar needs time to measure (CHOICE).
 PATIENCE_CYCLES: Final = 20 * CYCLES_PER_MS
 SLEEP_CYCLES: Final = 100 * CYCLES_PER_MS
 FOREVER: Final = 0xFFFF
-#: Messages that did not come, one after the other.
+#: Report when this many pends in a row got no message.
 SILENCES: Final = 2
 
 
@@ -45,10 +45,10 @@ class Waits:
         self._threads, self._spots, self._names, self._findings = threads, spots, names, findings
         self._gates, self._clock, self._linked = gates, findings.clock, linked
         self._began: dict[Thread, int] = {}
-        #: What interrupts have posted, and what anybody else has.
+        #: The kernel objects that interrupts have posted, and those that other threads have posted.
         self._by_interrupt: set[Any] = set()
         self._by_others: set[Any] = set()
-        #: Statement -> messages in a row that did not come to it, behind one that did.
+        #: Statement -> how many of its pends in a row got no message, since the last that got one.
         self._silences: dict[Spot, int] = {}
         self._unlooked: set[tuple[str, int]] | None = None
         calls.before("Semaphore_post", "Event_post", "Mailbox_post", tell=self._posting)
@@ -77,7 +77,7 @@ class Waits:
         self._held(f"Task_sleep({ticks})", SLEEP_CYCLES)
 
     def _held(self, waits: str, patience_cycles: int) -> None:
-        """A wait that only time has ended is over: who stood at a gate of the task meanwhile?"""
+        """A wait has ended by time alone.  Report tasks that waited too long at a gate that the task held meanwhile."""
         thread = self._threads.current
         began = self._began.get(thread, self._clock.now)
         for gate in thread.entered if self._gates.anybody_waits else ():
@@ -93,7 +93,7 @@ class Waits:
                     )  # fmt: skip
 
     def _message(self, taken: int, mailbox: Mailbox, message: Any, timeout: int) -> None:
-        """A mailbox gave a message, or none in time."""
+        """A pend on a mailbox has returned, with a message or with none."""
         spot = self._spots.here()
         if taken:
             self._silences[spot] = 0
@@ -109,7 +109,7 @@ class Waits:
                 )  # fmt: skip
 
     def _not_looked_at(self) -> set[tuple[str, int]]:
-        """File and line of the pends on a mailbox whose result is left."""
+        """File and line of the pends on a mailbox whose result the program does not use."""
         if self._unlooked is None:
             modules = self._linked.program.modules.values()
             self._unlooked = {at for module in modules for f in module.functions for at in _left(f)}
