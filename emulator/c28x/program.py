@@ -1,9 +1,9 @@
-"""The modules of a firmware image: found, read by the reader of their language, laid over.
+"""The modules of a firmware image: how they are found, read, and overlaid with corrections.
 
-A module is read, never imported: its text is parsed, its imports are followed to other firmware modules and to headers
-(modules whose functions are `@extern`), and every name ends in a table of symbols.  Files are found by their paths, so
-that no `__init__.py` of anybody runs.  A reader is imported with the first file of its language: a program that is kept
-needs none.
+A module is read, never imported.  Its text is parsed; its imports lead to other firmware modules and to headers
+(modules whose functions are `@extern`); every name gets an entry in a table of symbols.  Files are found by their
+paths, so no `__init__.py` is executed.  A reader is imported with the first file of its language; a program from the
+cache needs none.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ if TYPE_CHECKING:
 
 
 class Program:
-    """All modules reachable from the ones asked for.
+    """The modules asked for, and all modules that they lead to.
 
-    `overlays` names, for a module, the module whose functions and objects replace those of the same name, as far as
-    they concern one of the corrections in `fixes` (see `readers/python/preprocessor.py`).
+    `overlays`: module -> the module whose functions and objects replace those of the same name, if they concern one of
+    the corrections in `fixes` (see `readers/python/preprocessor.py`).
 
-    For C files: `include` are folders of headers (`-I`), `defines` macros (`-D`), `abi` "coff" or "eabi"; `header`
-    gives the text of headers that a project makes itself.  `instead` names the C file that stands for a module.
-    `library` names the module that defines a function which a C file only declares.
+    For C files: `include` are folders of headers (`-I`), `defines` macros (`-D`), `abi` is "coff" or "eabi".  `header`
+    returns the text of a header that the project generates.  `instead`: module -> the C file that replaces it.
+    `library` returns the name of the module that defines a function which a C file only declares.
     """
 
     def __init__(
@@ -55,9 +55,9 @@ class Program:
             self.module(name)
 
     def module(self, name: str, beside: str = "") -> Module:
-        """The module called `name`, or in the file `name` (`*.py`, `*.c`), read on first use.
+        """The module called `name`, or the one in the file `name` (`*.py`, `*.c`).  It is read on first use.
 
-        As with `#include "..."`, the folder of the file `beside`, which asks for it, is looked in first.
+        The search begins in the folder of `beside`, the file that imports it, as with `#include "..."`.
         """
         file = _neighbour(name, beside)
         if file is not None and name.endswith(SUFFIXES):
@@ -79,7 +79,7 @@ class Program:
         return module
 
     def add(self, name: str, file: str, text: str) -> Module:
-        """Read a module from its text, by the reader of its file's ending.  Raises SourceError."""
+        """Read a module from its text; the ending of `file` selects the reader.  Raises SourceError."""
         if file.lower().endswith(".c"):
             module = self.modules[name] = self.c_files().read(name, file, text)
             return module
@@ -91,7 +91,7 @@ class Program:
         return module
 
     def c_files(self) -> CFiles:
-        """The C files of the image.  Raises NoParser where the extra `[c]` is not installed."""
+        """The C files of the image.  Raises NoParser if the extra `[c]` is not installed."""
         if self._c is None:
             from emulator.c28x.readers.c.source import CFiles, CSettings
 
@@ -113,9 +113,9 @@ class Program:
 
     @reading(0)
     def translate(self) -> list[Module]:
-        """The modules that define functions or objects, every body and initialiser read into its tree.
+        """Read every body and initialiser into its tree.  Returns the modules that define functions or objects.
 
-        Raises SourceError for what is outside the language.
+        Raises SourceError for a construct outside the language.
         """
         if self._c is not None:
             self.modules |= {module.name: module for module in self._c.link(list(self.modules.values()))}
@@ -137,7 +137,7 @@ class Program:
 
 
     def digests(self) -> dict[str, str]:
-        """Every file that was read, with its content's digest, and the folders in which C headers were sought."""
+        """The digest of every file that was read, and of the folders in which C headers were searched."""
         units = [unit for module in self.modules.values() for unit in (module, *module.units.values())]
         names = {unit.file for unit in units}
         if self._c is not None:
@@ -145,12 +145,12 @@ class Program:
         return {name: digest(name) for name in sorted(names) if not name.startswith("<")}
 
     def __getstate__(self) -> dict[str, Any]:
-        """What a translated program is: its modules."""
+        """The state of a translated program: only its modules."""
         return {"modules": self.modules}
 
 
 def digest(name: str) -> str:
-    """The content of a file, or the names in a folder, as a number; empty if there is none."""
+    """A digest of the content of a file, or of the names in a folder; empty if it cannot be read."""
     try:
         content = "\n".join(sorted(os.listdir(name))).encode() if os.path.isdir(name) else Path(name).read_bytes()
     except OSError:
@@ -158,16 +158,16 @@ def digest(name: str) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-#: Where Python's library lies.
+#: The folder of Python's standard library.
 _LIBRARY: Final = Path(os.__file__).resolve().parent
 #: Endings of files with a reader of their own.
 SUFFIXES: Final = (".py", ".c", ".C")
 
 
 def find_module(name: str) -> Path:
-    """The file of an importable module, found without importing anything.  Raises NoModule.
+    """The file of an importable module, found without an import.  Raises NoModule.
 
-    Python's own search would run the `__init__.py` of every package on the way.
+    The search of Python itself would execute the `__init__.py` of every package on the way.
     """
     top, *rest = name.split(".")
     for folder in folders(top):
@@ -185,7 +185,7 @@ def find_module(name: str) -> Path:
 
 
 def _of_firmware(name: str, file: Path) -> Path:
-    """The file of a module.  Raises NoModule for one of Python's own library."""
+    """`file`, the file of module `name`.  Raises NoModule for a module of Python's own library."""
     if name.split(".", 1)[0] in sys.stdlib_module_names and _LIBRARY in file.parents:
         raise NoModule(f"{name} is a module of Python's library: nothing of it runs on the chip")
     return file
@@ -197,14 +197,14 @@ def folders(package: str) -> list[Path]:
     if known is not None:
         return [Path(folder) for folder in getattr(known, "__path__", ())]
     try:
-        spec = importlib.util.find_spec(package)  # of a name without dots: runs no code of the package
+        spec = importlib.util.find_spec(package)  # a name without dots: this executes no code of the package
     except (ImportError, ValueError):
         spec = None
     return [Path(folder) for folder in (spec.submodule_search_locations or ())] if spec is not None else []
 
 
 def _source(file: Path) -> tuple[str, str]:
-    """File and text; C may be Latin-1, as Windows writes it.  Raises SourceError where Python is not UTF-8."""
+    """File name and text.  C may be Latin-1, as Windows writes it.  Raises SourceError for Python that is not UTF-8."""
     try:
         return str(file), file.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
@@ -216,7 +216,7 @@ def _source(file: Path) -> tuple[str, str]:
 
 
 def _neighbour(name: str, beside: str) -> Path | None:
-    """The file that `name` is, or that stands for it in the folder of `beside`; None if there is none."""
+    """The file called `name`, or the file of module `name` beside `beside`; None if there is none.  Raises NoModule."""
     if name.endswith(SUFFIXES):
         file = Path(name).resolve()
         if not file.is_file():

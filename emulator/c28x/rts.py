@@ -1,7 +1,7 @@
 """Prototypes of the run-time support library that firmware uses (`string.h`, `stdlib.h`, `stdio.h`, `math.h`).
 
-Sizes are in 16-bit words; `double` is float32.  What the functions do stands in `rts_functions.py`; of
-`malloc` and its kin in `emulator/sysbios/memory.py`.
+Sizes are in 16-bit words; `double` is float32.  `rts_functions.py` implements the functions;
+`emulator/sysbios/memory.py` implements `malloc` and related functions.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""The run-time support library: what the functions of `stdlib.h` in `rts.py` do, and what they cost.
+"""The run-time support library: the functions of `stdlib.h` that `rts.py` declares, and their cycles.
 
-Costs are CHOICE, in the magnitude of the library.  `math.h`, `string.h` and `stdio.h` stand in `rts_math.py`,
+Cycles are CHOICE, in the order of magnitude of the library.  `math.h`, `string.h` and `stdio.h` are in `rts_math.py`,
 `rts_strings.py` and `rts_printf.py`, the IQmath library in `rts_iqmath.py`.
 """
 
@@ -33,7 +33,7 @@ class Rts(Printing):
         return round_decimal(found.group(1))
 
     def atof(self, text: Pointer | None) -> float:
-        """A decimal number as float32, correctly rounded; what is no number gives 0."""
+        """A decimal number as float32, correctly rounded; 0 if the text is not a number."""
         characters = self._text(text, "atof")
         self._charge(60 + 40 * min(len(characters), 16))
         return self._number(characters)
@@ -69,9 +69,9 @@ class Rts(Printing):
 
 
 def round_decimal(text: str) -> float:
-    """The float32 nearest to a decimal string (one rounding: a double in between would round twice).
+    """The float32 nearest to a decimal string, in one rounding (by way of a double it would round twice).
 
-    CHOICE: a denormal result is kept, as bits; the FPU flushes it when it is computed with.
+    CHOICE: a denormal result is kept as bits; the FPU flushes it when the firmware computes with it.
     """
     value = float(text)
     if 0.0 < abs(value) < TINY:

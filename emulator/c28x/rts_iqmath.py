@@ -1,4 +1,4 @@
-"""The functions of the IQmath library by their names in C, `_IQ24div`, `_atoIQN`, and what the compiler has of it.
+"""The IQmath library by the C names of its functions (`_IQ24div`, `_atoIQN`), and the compiler's own IQ functions.
 
 Modelled
     Every function of the library in the formats 1 to 30 (1 to 29 where the library has no more), to the last bit
@@ -30,10 +30,10 @@ from emulator.c28x.memory import Pointer
 from emulator.c28x.passes.costs import CALL
 from emulator.c28x.rts_printf import Printing
 
-#: Formats of most functions, and of those whose results do not fit the last one.
+#: The formats of most functions, and of those whose results do not fit format 30.
 ALL: Final = range(1, 31)
 _NOT_30: Final = range(1, 30)
-#: Function of the library -> what computes it, its cycles with call and return, its formats.  `_IQ24div` is "div".
+#: Function of the library -> its implementation, its cycles with call and return, its formats.  `_IQ24div` is "div".
 _OF_FORMAT: Final[Mapping[str, tuple[Callable[..., int], int, range]]] = MappingProxyType({
     "rsmpy": (iq.saturated_product, 26, ALL), "mpyI32int": (iq.whole_part_of_product, 28, ALL),
     "mpyI32frac": (iq.fraction_of_product, 34, ALL), "int": (iq.whole_part, 15, ALL), "frac": (iq.fraction, 18, ALL),
@@ -49,19 +49,19 @@ _ROUNDED_PRODUCT: Final = 18
 _TO_FLOAT: Final = 22
 _TEXT: Final = 200
 _CHARACTER: Final = 40
-#: A function of a format.
+#: The name of a function of one format.
 _NAME: Final = re.compile(r"_IQ([1-9]\d?)([a-zA-Z]\w*)", re.ASCII)
-#: The other functions -> their methods.
+#: The other functions -> the methods that implement them.
 _OTHERS: Final = MappingProxyType({
     "__IQmpy": "_product", "__IQxmpy": "_shifted_product", "__IQsat": "_between", "__IQ": "_of_float",
     "_atoIQN": "_from_text", "__IQNtoa": "_to_text",
 })  # fmt: skip
-#: Functions of two numbers; the others have one.
+#: Functions with two arguments; the others have one.
 OF_TWO: Final = frozenset({"rmpy", "rsmpy", "mpyI32int", "mpyI32frac", "div", "mag", "atan2", "atan2PU"})
 
 
 def formats() -> dict[str, range]:
-    """Function of the library without its format -> the formats that there are, for all that give a number."""
+    """Name without its format -> its formats, for all functions of the library that return a number."""
     return {"rmpy": ALL, **{name: range_ for name, (_, _, range_) in _OF_FORMAT.items()}}
 
 
@@ -69,7 +69,7 @@ class IQmath(Printing):
     """The library's functions of one image."""
 
     def named(self, name: str) -> Callable[..., Any] | None:
-        """The function that C calls `name`; None for one that the library has not."""
+        """The function with the C name `name`; None if the library does not have it."""
         if name in _OTHERS:
             found: Callable[..., Any] = getattr(self, _OTHERS[name])
             return found
@@ -95,20 +95,20 @@ class IQmath(Printing):
         return bits_float(iq.to_float_bits(a, q))
 
     def _kept(self, call: str, value: int) -> int:
-        """What 32 bits keep of a product."""
+        """The lower 32 bits of a product; reported if it does not fit."""
         kept = iq.wrap32(value)
         if kept != value:
             message = f"{call} is {value}, which does not fit 32 bits: it becomes {kept}"
             self._runtime.findings.report("overflow", message, object=call.partition("(")[0], value=value)
         return kept
 
-    # What the compiler has
+    # Functions of the compiler
 
     def _product(self, a: int, b: int, q: int) -> int:
         return self._kept(f"__IQmpy({a}, {b}, {q})", a * b >> (q & 63))
 
     def _shifted_product(self, a: int, b: int, n: int) -> int:
-        """The upper 32 bits of the product, shifted by `n` to the left, or by -n to the right."""
+        """The upper 32 bits of the product, after a shift left by `n` (right by -n)."""
         by = 32 - n
         return self._kept(f"__IQxmpy({a}, {b}, {n})", a * b >> by if by >= 0 else a * b << -by)
 
@@ -126,7 +126,7 @@ class IQmath(Printing):
         return iq.from_text(characters, q)
 
     def _to_text(self, to: Pointer | None, form: Pointer | None, a: int, q: int) -> int:
-        """`%3.5f`: at most 3 characters before the point, and 5 from it on.  0; 1: too narrow; 2: not to be done."""
+        """`%3.5f`: at most 3 characters before the point, 5 from it on.  Returns 0; 1: too narrow; 2: not possible."""
         given = self._text(form, "__IQNtoa")
         error, text = iq.to_text(given, a, q)
         self._charge(min(_TEXT + _CHARACTER * len(text), 800))

@@ -1,7 +1,7 @@
 """`math.h` of the run-time support library, in float32.
 
-Correctly rounded (CHOICE: the library's own last bit is not published).  Costs are CHOICE, in the magnitude of the FPU
-library.  A NaN or an infinity that a function makes of finite arguments is reported where it is made.
+Results are correctly rounded (CHOICE: the library's own last bit is not published).  Cycles are CHOICE, in the order of
+magnitude of the FPU library.  A NaN or an infinity that a function returns for finite arguments is reported.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from emulator.c28x.runtime import Runtime
 
 
 class Mathematics:
-    """Functions of a real number."""
+    """Functions of real numbers."""
 
     def __init__(self, runtime: Runtime) -> None:
         self._runtime = runtime
@@ -23,7 +23,7 @@ class Mathematics:
         self._runtime.clock.charge(cycles)
 
     def _value(self, cycles: int, function: Callable[..., float], *arguments: float) -> float:
-        """`function` of the arguments, rounded; what has no value gives NaN, what is too large infinity."""
+        """`function` of the arguments, rounded.  NaN where it is undefined; infinity on overflow and at poles."""
         self._charge(cycles)
         try:
             result = f32(function(*arguments))

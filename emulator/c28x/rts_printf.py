@@ -36,11 +36,11 @@ class Printing(Strings):
     """Formatted output into a buffer."""
 
     def sprintf(self, buf: Pointer | None, form: Pointer | None, *arguments: tuple[Any, Any]) -> int:
-        """Print into `buf`, however long; returns the characters before the NUL."""
+        """Print into `buf`, without a limit.  Returns the number of characters before the NUL."""
         return self._into("sprintf", buf, None, form, Varargs(self._runtime, arguments))
 
     def snprintf(self, buf: Pointer | None, n: int, form: Pointer | None, *arguments: tuple[Any, Any]) -> int:
-        """Print at most `n` words with the NUL; returns the length that it would have had."""
+        """Print at most `n` words including the NUL.  Returns the length of the complete text."""
         return self._into("snprintf", buf, n, form, Varargs(self._runtime, arguments))
 
     def printf(self, form: Pointer | None, *arguments: tuple[Any, Any]) -> int:
@@ -50,20 +50,20 @@ class Printing(Strings):
         return self._shown("printf", text)
 
     def vprintf(self, form: Pointer | None, given: Pointer | None) -> int:
-        """`printf` of a `va_list`."""
+        """`printf` with a `va_list`."""
         self._charge(_CALL)
         return self._shown("vprintf", self._formatted("vprintf", self._text(form, "vprintf"), self._list(given)))
 
     def vsprintf(self, buf: Pointer | None, form: Pointer | None, given: Pointer | None) -> int:
-        """`sprintf` of a `va_list`."""
+        """`sprintf` with a `va_list`."""
         return self._into("vsprintf", buf, None, form, self._list(given))
 
     def vsnprintf(self, buf: Pointer | None, n: int, form: Pointer | None, given: Pointer | None) -> int:
-        """`snprintf` of a `va_list`."""
+        """`snprintf` with a `va_list`."""
         return self._into("vsnprintf", buf, n, form, self._list(given))
 
     def va_arg_at(self, given: Pointer | None, words: int) -> Pointer | None:
-        """Where the next argument of the list at `given` lies, and the list behind it (the macro `va_arg`)."""
+        """A pointer to the next argument of the list at `given`; moves the list past it (the macro `va_arg`)."""
         at: Pointer | None = given.read() if given is not None else None
         if at is None or given is None:
             return None
@@ -74,7 +74,7 @@ class Printing(Strings):
         return at
 
     def _list(self, given: Pointer | None) -> Varargs:
-        """What is left of a `va_list`."""
+        """The remaining arguments of a `va_list`."""
         block = given.obj if given is not None else None
         if given is None or not isinstance(block, ArgumentBlock):
             message = "the list was not begun by va_start, or its function has returned"
@@ -85,12 +85,12 @@ class Printing(Strings):
         return found
 
     def puts(self, text: Pointer | None) -> int:
-        """Print a line there; returns 0."""
+        """Print a line to the debugger's console; returns 0."""
         self._shown("puts", self._text(text, "puts") + "\n")
         return 0
 
     def putchar(self, character: int) -> int:
-        """Print a character there; returns it."""
+        """Print a character to the debugger's console; returns it."""
         self._shown("putchar", chr(character & 0xFFFF))
         return character
 
@@ -116,7 +116,7 @@ class Printing(Strings):
         return _SPECIFICATION.sub(converted, form)
 
     def _conversion(self, name: str, form: str, found: re.Match[str], va: Varargs) -> str:
-        """One conversion specification."""
+        """The text of one conversion specification."""
         kind, flags = found["kind"], set(found["flags"])
         if kind == "%":
             return "%"
@@ -155,7 +155,7 @@ class Printing(Strings):
 
     @staticmethod
     def _integer(kind: str, flags: set[str], precision: int | None, va: Varargs, *, long: bool) -> tuple[str, str]:
-        """Sign or prefix, and digits."""
+        """The sign or prefix of an integer, and its digits."""
         word = va.long() if long else va.word()
         signed = kind in "di"
         value = (signed32(word) if long else signed16(word)) if signed else word

@@ -1,6 +1,6 @@
 """`string.h` of the run-time support library: blocks and texts.
 
-Sizes are 16-bit words, one character a word.  Costs are CHOICE, in the magnitude of the library.
+Sizes are in 16-bit words; a character takes one word.  Cycles are CHOICE, in the order of magnitude of the library.
 Not modelled: `strtok`, `strspn` and their kin, `strerror`, locales.
 """
 
@@ -15,9 +15,9 @@ from emulator.c28x.heap_block import HeapBlock
 from emulator.c28x.memory import Pointer
 from emulator.c28x.rts_math import Mathematics
 
-#: A run of characters longer than this ends the scan of a string (a real one runs on through memory).
+#: A string scan stops after this many characters (on the chip it runs on through memory).
 _LONGEST: Final = 4096
-#: A block longer than this ends here: it has gone through all of RAM (CHOICE).
+#: A longer block is cut to this length: it has already covered all of RAM (CHOICE).
 _LARGEST: Final = 0x1C000
 
 
@@ -25,7 +25,7 @@ class Strings(Mathematics):
     """Blocks and texts of one image."""
 
     def _text(self, p: Pointer | None, reader: str, most: int = _LONGEST) -> str:
-        """Characters up to NUL, `most` at most, as `reader` scans them."""
+        """The characters that the function `reader` reads: up to the NUL, `most` at most."""
         if p is None:
             self._runtime.findings.report("null-dereference", f"{reader} was given NULL")
             return ""
@@ -53,7 +53,7 @@ class Strings(Mathematics):
         return to
 
     def memmove(self, to: Pointer | None, source: Pointer | None, n: int) -> Pointer | None:
-        """Copy `n` words, which may overlap."""
+        """Copy `n` words; the blocks may overlap."""
         if to is None or source is None:
             self._runtime.findings.report("null-dereference", "memmove was given NULL")
             return to
@@ -68,7 +68,7 @@ class Strings(Mathematics):
         return to
 
     def _examine(self, function: str, cycles: int, to: Pointer, source: Pointer, n: int) -> None:
-        """What a copy of `n` words costs, does wrong and touches."""
+        """Charge a copy of `n` words, check it, and tell the watcher of its accesses."""
         self._charge(cycles + 2 * n)
         self._check_size(function, "reads", source, n, to)
         self._check_size(function, "writes", to, n, source)
@@ -77,7 +77,7 @@ class Strings(Mathematics):
         self._runtime.touch_block(to, n, True)
 
     def _check_size(self, function: str, verb: str, p: Pointer, n: int, other: Pointer | None) -> None:
-        """Report a block that leaves its object, on either side."""
+        """Report a block that extends outside of its object, on either side."""
         obj = p.obj
         self._runtime.examine_block(p, function, "read" if verb == "reads" else "written")
         if obj is None or (p.offset >= 0 and p.offset + n <= obj.words):
@@ -94,7 +94,7 @@ class Strings(Mathematics):
         )  # fmt: skip
 
     def _check_written(self, function: str, source: Pointer, n: int) -> None:
-        """Report a block of which nothing was ever written (what is partly written is copied as it is)."""
+        """Report a block of which nothing was ever written.  A partly written block gives no finding."""
         obj = source.obj
         if obj is None or n == 0:
             return
@@ -122,7 +122,7 @@ class Strings(Mathematics):
         return length
 
     def strcmp(self, a: Pointer | None, b: Pointer | None) -> int:
-        """Less than, equal to, or greater than 0 as text a stands before, at or behind b."""
+        """A number less than, equal to, or greater than 0: text a comes before b, is equal, or comes after b."""
         first, second = self._text(a, "strcmp"), self._text(b, "strcmp")
         self._charge(8 + 6 * min(len(first), len(second)))
         return (first > second) - (first < second)
@@ -191,26 +191,26 @@ class Strings(Mathematics):
         return self._write("strncat", to, len(before), text + "\0")
 
     def strchr(self, text: Pointer | None, character: int) -> Pointer | None:
-        """Where `character` stands first (the NUL counts); NULL if nowhere."""
+        """The first place of `character` (the NUL counts as one); NULL if there is none."""
         characters = self._text(text, "strchr")
         self._charge(8 + 4 * len(characters))
         return _at(text, (characters + "\0").find(chr(character & 0xFFFF)))
 
     def strrchr(self, text: Pointer | None, character: int) -> Pointer | None:
-        """Where `character` stands last (the NUL counts); NULL if nowhere."""
+        """The last place of `character` (the NUL counts as one); NULL if there is none."""
         characters = self._text(text, "strrchr")
         self._charge(8 + 4 * len(characters))
         return _at(text, (characters + "\0").rfind(chr(character & 0xFFFF)))
 
     def strstr(self, text: Pointer | None, part: Pointer | None) -> Pointer | None:
-        """Where `part` begins in a text; NULL if it does not."""
+        """The first place of `part` in a text; NULL if there is none."""
         characters, wanted = self._text(text, "strstr"), self._text(part, "strstr")
         self._charge(10 + 6 * len(characters))
         return _at(text, characters.find(wanted))
 
 
 def characters_left(p: Pointer) -> float:
-    """The words from a pointer to the end of the member that it points into, if that is an array of characters."""
+    """The words from a pointer to the end of the array of characters, a member, that it points into; else infinity."""
     obj, offset = p.obj, p.offset
     if obj is None or isinstance(obj, HeapBlock) or not 0 <= offset < obj.words:
         return inf
@@ -231,14 +231,14 @@ def characters_left(p: Pointer) -> float:
 
 
 def _path(p: Pointer) -> str:
-    """What a pointer points to, as C names it."""
+    """The C name of the target of a pointer."""
     assert p.obj is not None
     declaration = p.obj.declaration
     return declaration.path + part_name(declaration.ctype, p.offset)
 
 
 def _at(text: Pointer | None, index: int) -> Pointer | None:
-    """The character `index` of a text; NULL for -1."""
+    """A pointer to character `index` of a text; NULL for -1."""
     return None if text is None or index < 0 else text.at(index)
 
 

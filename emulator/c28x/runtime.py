@@ -1,8 +1,8 @@
-"""What translated firmware calls when a plain Python operation is not enough.
+"""The functions that translated firmware calls when a plain Python operation is not enough.
 
-The generated code takes the fast path inline; it comes here for what must be watched or cannot be proven: a value that
-was never written, an index outside, a pointer access, an overflow, a conversion.  It hands over the number of its
-place.  One `Runtime` belongs to one linked image.
+Generated code has the fast path inline.  It calls this module for operations that must be watched or cannot be proven
+right: a value that was never written, an index outside, a pointer access, an overflow, a conversion.  It passes the
+number of its place.  One `Runtime` belongs to one linked image.
 """
 
 from __future__ import annotations
@@ -40,14 +40,14 @@ from emulator.c28x.tree import NOWHERE, Declaration, Where
 from emulator.c28x.varargs import ArgumentBlock
 from emulator.clock import CYCLES_PER_US, Clock
 
-#: A loop that only computes takes milliseconds; this is for those that never end.
+#: The time limit of a loop that only computes.  Such a loop takes milliseconds; the limit catches those that never end.
 LOOP_LIMIT_S: Final = 0.2
-#: So many stamps that are waited for are kept of one comparison.
+#: How many awaited stamps are remembered for one comparison.
 _STAMPS: Final = 64
-#: CHOICE: a float that is passed for an integer and never reaches this was not meant as one.
+#: CHOICE: a float passed for an integer parameter that never reaches this value was not meant as an integer.
 _FEW: Final = 10
 FILLS: Final = ("zero", "ones", "nan", "random:SEED", "stack", "trap")
-#: The words at the beginning of a frame that hold the return address.
+#: The words at the start of a frame that hold the return address.
 RETURN_ADDRESS_WORDS: Final = 2
 
 
@@ -64,11 +64,11 @@ class EndlessPoll(Exception):
 
 
 class Idling(EndlessPoll):
-    """A function idles in a loop that is written without an end, and its caller waits for it: no fault of the loop."""
+    """A function idles in an endless loop while its caller waits for its return: this is not a defect of the loop."""
 
 
 class Spot(Site):
-    """One check while an image runs: what stands there, its number, and what was found so far."""
+    """One check of a running image: its site, its number, and what it has found so far."""
 
     __slots__ = (
         "ahead", "empty_at", "generation", "greatest", "initial", "last", "number", "planted", "seen", "turned", "zero",
@@ -79,22 +79,22 @@ class Spot(Site):
         self.number = number
         self.seen: Finding | None = None
         self.generation = -1
-        #: The greatest float that was passed for an integer here.
+        #: The largest float that was passed for an integer here.
         self.greatest = 0.0
-        #: Stamps that were compared here last, and whether one of them has wrapped; how far ahead each was.
+        #: The stamps compared here last; whether one of them has wrapped; awaited stamp -> how far it was ahead.
         self.last = (0, 0)
         self.turned = False
         self.ahead: dict[int, int] = {}
-        #: What a word that is 0 gives, and the address found last where nothing is and never will be.
+        #: The value of words that are 0; the last address found at which there is no memory at all.
         self.zero = zero_of(site.ctype)
         self.empty_at = -1
-        #: Tests: the value this object starts from, shared by all sites of the object; cells outside it.
+        #: Tests: the initial value of this object, shared by all its sites; values of cells outside of it.
         self.initial: dict[str, Any] = {}
         self.planted: dict[int, Any] = {}
 
 
 class Spots(dict[int, Spot]):
-    """The checks of one image by number, each made when it is needed first."""
+    """The checks of one image by number, each created at its first use."""
 
     def __init__(self, runtime: Runtime) -> None:
         super().__init__()
@@ -111,14 +111,14 @@ class Spots(dict[int, Spot]):
 
 
 def _wrap(site: Spot, index: int) -> list[str]:
-    """That an unsigned subscript has gone below 0."""
+    """The detail that an unsigned subscript has wrapped below 0, as a list; empty if it has not."""
     if not site.wraps or index <= 0x7FFF:
         return []
     return [f"the unsigned {site.wraps} went below 0 and wrapped: {index - 0x10000} became {index}"]
 
 
 class StackPointer(Protocol):
-    """What generated code needs of the core: where the stack is, and whether protected registers may be written."""
+    """The part of the core that generated code uses: the stack, and whether protected registers can be written."""
 
     sp: int
     stack_limit: int
@@ -126,7 +126,7 @@ class StackPointer(Protocol):
 
 
 def parse_fill(fill: str) -> tuple[str, int]:
-    """A fill policy by name.  Raises ValueError for an unknown one."""
+    """A fill policy as (name, seed).  Raises ValueError for an unknown policy."""
     name, colon, seed = fill.partition(":")
     if name == "random" and (not colon or seed.lstrip("-").isdecimal()):
         return name, int(seed or 0)
@@ -136,29 +136,29 @@ def parse_fill(fill: str) -> tuple[str, int]:
 
 
 class _BlockWord:
-    """The word of memory at a pointer into a register block where there is no register."""
+    """A word of memory that is accessed through a pointer to a register block, but is no register."""
 
     def __init__(self, runtime: Runtime, p: Pointer, words: int, ctype: IntType, site: Spot) -> None:
         self._runtime, self._p, self._words, self._ctype, self._site = runtime, p, words, ctype, site
 
     def read(self) -> int:
-        """The word."""
+        """Read the word."""
         self._runtime.examine(self._p, self._words, self._site, "read", self._ctype)
         value: int = self._runtime.memory.load_through(self._p, self._words, self._ctype)
         return value
 
     def write(self, word: int, lanes: int) -> None:
-        """Store it whole."""
+        """Write the whole word."""
         self._runtime.examine(self._p, self._words, self._site, "written", self._ctype)
         self._runtime.memory.store_through(self._p, self._words, self._ctype, word)
 
     def modify(self, keep: int, bits: int, lanes: int) -> None:
-        """Store some bits of it."""
+        """Write some of its bits."""
         self.write(self.read() & keep | bits, lanes)
 
 
 def _nothing(*_arguments: Any) -> int:
-    """What stands for a function of the ROM."""
+    """Replaces a function of the ROM."""
     return 0
 
 
@@ -171,10 +171,11 @@ class Runtime:
         register_at: Callable[[int], Any] = lambda address: None, in_vain: Callable[[str], bool] = lambda name: False,
         driven: Callable[[], bool] = lambda: False,
     ) -> None:  # fmt: skip
-        """`register_at` gives the register at an address to code that has a pointer to its block.
+        """`register_at(address)` returns the register at an address, for accesses by a pointer to its block.
 
-        `in_vain(name)` is told which object has been waited for in vain, and says whether the wait ends now; `driven()`
-        is whether the host runs the firmware in slices of time, so that nobody waits for its `main` to return.
+        `in_vain(name)` is called when a wait for an object was in vain; it returns whether the wait ends now.
+        `driven()` returns whether the host runs the firmware in slices of time, so that nobody waits for the end of its
+        `main`.
         """
         if divide not in DIVIDERS:
             raise ValueError(f"unknown divider {divide!r}: one of {', '.join(DIVIDERS)}")
@@ -182,40 +183,40 @@ class Runtime:
             raise ValueError(f"unknown float to int policy {float_to_int!r}: one of {', '.join(FLOAT_TO_INT)}")
         self.clock, self.cpu, self.findings, self.memory = clock, cpu, findings, memory
         self.fill, self.seed = parse_fill(fill)
-        #: Objects that hold what another policy says, by path: {"us.Read_Distance.result": parse_fill("ones")}.
+        #: Fill policies of single objects, by path: {"us.Read_Distance.result": parse_fill("ones")}.
         self.fill_of: dict[str, tuple[str, int]] = {}
         self.divide = DIVIDERS[divide]
         self.to_int = FLOAT_TO_INT[float_to_int]
-        #: How long a loop may compute without calling anything, in cycles.
+        #: How long a loop may compute without a call, in cycles.
         self.loop_limit = int(LOOP_LIMIT_S * 1_000_000 * CYCLES_PER_US)
         self.poll_limit = int(poll_limit_s * 1_000_000 * CYCLES_PER_US)
         self._watcher: Callable[[Object, int, bool], None] | None = None
         self.spots = Spots(self)
-        #: Tests: the value that a never-written object starts from, and cells outside of arrays, by the object's path.
+        #: Tests, by the path of an object: the value of a never-written object; values of cells outside of an array.
         self.initials: dict[str, dict[str, Any]] = {}
         self.planted: dict[str, dict[int, Any]] = {}
-        #: The types of functions, and what a call through a pointer runs: by function and number of the call.
+        #: The types of functions; (function, number of the call) -> what a call through a pointer runs.
         self.signatures: dict[Any, FunctionType] = {}
         self.called_as: dict[tuple[Any, int], Any] = {}
         self._register_at, self._in_vain, self._driven = register_at, in_vain, driven
-        #: Places of library functions that read or write through a pointer.
+        #: Checks of library functions that read or write through a pointer.
         self.readers: dict[Any, Spot] = {}
-        #: Who has gone through a null pointer so far, and the findings that tell of it.
+        #: The users of null pointers so far, their call paths, and the findings about them.
         self.null_users: set[str] = set()
         self.null_ways: set[tuple[Spot, Any]] = set()
         self.null_findings: list[Finding] = []
         self.null_generation = -1
-        #: Where a NaN or an infinity has been seen to arrive.
+        #: Where a NaN or an infinity has arrived so far.
         self.not_finite_at: set[str] = set()
         self.not_finite_generation = -1
-        #: Switches of which it has been reported that a value has no case -> the generation of that finding.
+        #: Switches with a finding that a value has no case -> the generation of that finding.
         self.caseless: dict[Where, int] = {}
         memory.take_policy_from(self)
 
     # Reports
 
     def counted(self, site: Spot, rule: str = "") -> bool:
-        """Whether `rule` (or anything) has been reported at `site`; if so, this pass counts."""
+        """Whether `rule` (or any rule) has been reported at `site`; if so, count this occurrence."""
         seen = site.seen
         if seen is None or site.generation != self.findings.generation or (rule and seen.rule != rule):
             return False
@@ -223,7 +224,7 @@ class Runtime:
         return True
 
     def hit(self, site: Spot, rule: str, message: str, value: Any = None, details: tuple[str, ...] = ()) -> None:
-        """Report at `site`; later passes of the same site only count."""
+        """Report at `site`; later occurrences at the same site only count."""
         if self.counted(site, rule):
             return
         shown = value if isinstance(value, int | float) else None
@@ -234,17 +235,17 @@ class Runtime:
         site.generation = self.findings.generation
 
     def not_finite(self, value: float, site: Spot, where: str) -> None:
-        """NaN or infinity has come to `where`: the first time there is reported."""
+        """A NaN or an infinity has arrived at `where`: report it the first time."""
         if self.not_finite_generation != self.findings.generation:
             self.not_finite_at, self.not_finite_generation = set(), self.findings.generation
         if where not in self.not_finite_at:
             self.not_finite_at.add(where)
             self.hit(site, "nan-output", f"{value!r} reaches {where}", value)
 
-    # What a never-written object holds
+    # Values of objects that were never written
 
     def fill_word(self, addr: int) -> int:
-        """A never-written word of plain RAM under the fill policy."""
+        """The value of a never-written word of plain RAM, by the fill policy."""
         if self.fill == "ones":
             return 0xFFFF
         if self.fill == "nan":
@@ -254,9 +255,9 @@ class Runtime:
         return 0
 
     def fill_value(self, ctype: CType, key: str, addr: int | None = None) -> Any:
-        """A never-written scalar of type `ctype`; `key` is its object's path and `+word`.
+        """The value of a never-written scalar of type `ctype`; `key` is the path of its object and `+word`.
 
-        `addr` is where it lies, for the policy `stack`.
+        `addr` is its address, for the policy `stack`.
         """
         fill, seed = self.fill_of.get(key.partition("+")[0], (self.fill, self.seed))
         if fill == "zero" or not isinstance(ctype, IntType | FloatType):
@@ -271,11 +272,11 @@ class Runtime:
         return from_words((bits & 0xFFFF, bits >> 16), ctype, self.memory)
 
     def fill_scalar(self, obj: Object, offset: int, ctype: CType) -> Any:
-        """What the never-written scalar at word `offset` of an object holds."""
+        """The value of the never-written scalar at word `offset` of an object."""
         return self.fill_value(ctype, f"{obj.declaration.path}+{offset}", obj.base + offset)
 
     def uninit(self, number: int, word: int = 0, addr: int | None = None) -> Any:
-        """A read of an object that nobody has written; `word` is the place within it."""
+        """Read an object that was never written: report it and return its fill; `word` is the word within it."""
         site = self.spots[number]
         seen = site.seen
         known = seen is not None and site.generation == self.findings.generation
@@ -288,9 +289,9 @@ class Runtime:
         if declaration is not None and isinstance(declaration.ctype, ArrayType | StructType):
             part = part_name(declaration.ctype, word)
         message = f"{site.name}{part} is read before anything was written to it"
-        # One defect, one finding: where a switch has no case for a value, `no-case` has told so at the switch, which is
-        # what one has to mend.  That nothing was written then is its consequence.  A value that `no-case` keeps silent
-        # about (one that says "none") is told here.
+        # One defect, one finding: if a switch has no case for a value, `no-case` was reported at the switch, where it
+        # must be corrected; that nothing was written is only the consequence.  For a value that `no-case` does not
+        # report (one that means "none"), the finding is made here.
         told = any(self.caseless.get(where) == self.findings.generation for where in site.caseless)
         if "value" in site.initial:
             value = site.initial["value"]
@@ -306,7 +307,7 @@ class Runtime:
         return value
 
     def stale(self, number: int, old: Any, word: int = 0, addr: int | None = None) -> Any:
-        """A read of a local whose block has been entered again: its words are still those of the turn before."""
+        """Read a local whose block has been entered again: its words still hold the value of the previous turn."""
         value = self.uninit(number, word, addr)
         return value if old is None else old
 
@@ -349,7 +350,7 @@ class Runtime:
         self.hit(site, "index", f"{name}{subscripts} is {done}: {of}; this {does} {where}", index, tuple(details))
 
     def neighbour(self, site: Spot, words: int, addr: int) -> str:
-        """What lies `words` from the beginning of the array at `site`, or at `addr`."""
+        """What is `words` from the start of the array at `site`, or at `addr`, as text."""
         if site.frame is None:
             return self.memory.neighbour(addr)
         function, place = site.frame.function, site.frame_start + words
@@ -382,7 +383,7 @@ class Runtime:
             data[leaf] = value
 
     def _deep(self, site: Spot, indices: tuple[int, ...], base: int, done: str, does: str) -> tuple[int, int | None]:
-        """The word that the subscripts designate, and the scalar there if it is within the object."""
+        """The word that the subscripts designate, and the number of the scalar there (None: outside of the object)."""
         assert site.declaration is not None
         ctype = site.declaration.ctype
         offset = site.word + sum(i * stride for i, (_, stride) in zip(indices, site.dimensions, strict=True))
@@ -406,7 +407,7 @@ class Runtime:
     # Pointers
 
     def member_index(self, index: int, number: int) -> int:
-        """The subscript of an array of `site.bound` that is a member of what a pointer designates."""
+        """Check and return the subscript of an array of `site.bound`, a member behind a pointer."""
         site = self.spots[number]
         behind = index == site.bound and site.kind == "address"
         if not 0 <= index < site.bound and not behind and not self.counted(site):
@@ -471,7 +472,7 @@ class Runtime:
         self._store(p, words, value, site)
 
     def _store(self, p: Pointer, words: int, value: Any, site: Spot) -> None:
-        """A write that is not a plain scalar of the object that `p` was made from."""
+        """Write something else than a plain scalar of the object that `p` was made from."""
         self.examine(p, words, site, "written")
         if p.obj is not None and not 0 <= p.offset + words < p.obj.words:
             self.strayed_store(site.ctype, p.addr + words, value)
@@ -479,7 +480,7 @@ class Runtime:
             self.memory.store_through(p, words, site.ctype, value)
 
     def strayed_load(self, ctype: CType, addr: int) -> Any:
-        """What an access reads that has left its object; what a register says to that is a consequence, not told."""
+        """The value that an access outside of its object reads.  Findings of a register about it are muted."""
         muted, self.findings.muted = self.findings.muted, True
         try:
             return self.memory.load(ctype, addr)
@@ -487,7 +488,7 @@ class Runtime:
             self.findings.muted = muted
 
     def strayed_store(self, ctype: CType, addr: int, value: Any) -> None:
-        """What an access writes that has left its object."""
+        """Write for an access outside of its object.  Findings of a register about it are muted."""
         muted, self.findings.muted = self.findings.muted, True
         try:
             self.memory.store(ctype, addr, value)
@@ -497,7 +498,7 @@ class Runtime:
     def examine(
         self, p: Pointer, words: int, site: Spot, verb: str, ctype: CType | None = None
     ) -> None:  # fmt: skip
-        """Report an access through a pointer that does not stay where it should."""
+        """Report an access through a pointer that is null, dangling, outside, read-only or odd."""
         ctype = ctype or site.ctype
         obj, addr = p.obj, p.addr + words
         if obj is None:
@@ -515,7 +516,7 @@ class Runtime:
             if not self.counted(site, "pointer-outside"):
                 self._report_outside(site, p, words, verb)
         elif isinstance(obj, HeapBlock) and p.offset + words + ctype.words > obj.words:
-            if not self.counted(site, "pointer-outside"):  # begins within a block and ends outside
+            if not self.counted(site, "pointer-outside"):  # it begins within a block and ends outside
                 self._report_outside(site, p, obj.words - p.offset, verb)
         elif obj.readonly and verb == "written":
             message = f"{site.name} points to the constant {obj.declaration.path}: the write is lost"
@@ -524,14 +525,14 @@ class Runtime:
             self.hit(site, "odd-access", f"{site.name}: a 32-bit access at odd address {addr:#x} uses {addr & ~1:#x}")
 
     def _report_freed(self, site: Spot, block: HeapBlock, addr: int, verb: str) -> None:
-        """A block of a heap is used after it was given back."""
+        """Report the use of a heap block after it was freed."""
         lies = self.memory.neighbour(addr)
         path = block.declaration.path
         message = f"{site.name} points to {path} ({block.words} words), given back {block.freed}, and is {verb} through"
         self.hit(site, "use-after-free", message, None, (f"what is {verb} instead: {lies}",))
 
     def examine_block(self, p: Pointer, function: str, verb: str) -> None:
-        """Report a library function that reads or writes many words of an object that has ended."""
+        """Report a library function that reads or writes a block of an object that no longer exists."""
         if p.obj is None or not p.obj.ended:
             return
         key = (function, verb, p.obj)
@@ -541,11 +542,11 @@ class Runtime:
         self.examine(p, 0, site, verb)
 
     def _report_null(self, site: Spot, addr: int, verb: str) -> None:
-        """A null pointer is used; every finding of this kind tells of all who share the cell so far."""
+        """Report the use of a null pointer.  Every such finding lists all users of that cell so far."""
         calls = self.findings.position.calls
         way = (site, calls and calls[0])
         if way in self.null_ways and self.null_generation == self.findings.generation and self.counted(site):
-            return  # this place has been told, called from there
+            return  # this place was already reported for this caller
         self.null_ways.add(way)
         held = f"address {addr:#x} is M0 RAM, which holds {self.memory.load(site.ctype, addr)!r} as {site.ctype} now"
         self.hit(site, "null-dereference", f"{site.name} is NULL and is {verb} through: {held}", None, (held,))
@@ -567,7 +568,7 @@ class Runtime:
                 finding.details = (finding.details[0], f"null pointers that share this cell so far: {users}")
 
     def _report_outside(self, site: Spot, p: Pointer, words: int, verb: str) -> None:
-        """A pointer is used beyond the object that it was made from."""
+        """Report the use of a pointer outside of the object that it was made from."""
         obj = p.obj
         assert obj is not None
         where = self.memory.neighbour(p.addr + words)
@@ -585,7 +586,7 @@ class Runtime:
         )  # fmt: skip
 
     def read_through(self, p: Pointer, index: int, ctype: CType, reader: str) -> Any:
-        """Element `index` behind `p` for a library function `reader`; what was never written is reported."""
+        """Element `index` at `p`, for the library function `reader`.  A value that was never written is reported."""
         words = index * max(1, ctype.words)
         obj = p.obj
         if obj is not None:
@@ -617,7 +618,7 @@ class Runtime:
         self._store(p, 0, value, self._library_site(p, p.target, "a library function"))
 
     def copy_struct(self, target: Pointer, source: Pointer, words: int, number: int) -> None:
-        """`*target = *source` for whole structures; what was never written stays so."""
+        """`*target = *source` for whole structures.  Scalars that were never written stay so."""
         site = self.spots[number]
         for p, verb in ((source, "read"), (target, "written")):
             if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + words > p.obj.words:
@@ -630,7 +631,7 @@ class Runtime:
         self.memory.copy(target, source, words)
 
     def load_struct(self, p: Pointer, ctype: StructType, number: int) -> list[Any]:
-        """The scalars of `*p`, a structure; what was never written stays so."""
+        """The scalars of `*p`, a structure.  Scalars that were never written stay so."""
         if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + ctype.words > p.obj.words:
             self.examine(p, 0, self.spots[number], "read")
         if self._watcher is not None:
@@ -640,7 +641,7 @@ class Runtime:
         return copy.data
 
     def store_struct(self, p: Pointer, values: list[Any], number: int) -> None:
-        """`*p` becomes a structure of these scalars."""
+        """Store these scalars as the structure `*p`."""
         ctype = p.target
         if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + ctype.words > p.obj.words:
             self.examine(p, 0, self.spots[number], "written")
@@ -650,14 +651,14 @@ class Runtime:
         self.memory.copy(p, Pointer(self.memory, source, 0, ctype), ctype.words)
 
     def load_bits(self, p: Pointer, words: int, lo: int, width: int, signed: bool, number: int) -> int:
-        """A bit-field of the word (or pair of words) `words` behind `p`."""
+        """Read a bit-field of the word (or pair of words) at `p + words`."""
         wide = ULONG if lo + width > 16 else UINT
         site = self.spots[number]
         value = self._load_slow(p, words, site, wide) >> lo & (1 << width) - 1
         return int(value - (1 << width) if signed and value >> width - 1 else value)
 
     def store_bits(self, p: Pointer, words: int, value: int, lo: int, width: int, number: int) -> None:
-        """Write a bit-field; the others of its word stay as they are."""
+        """Write a bit-field; the other bits of its word do not change."""
         wide = ULONG if lo + width > 16 else UINT
         mask = (1 << width) - 1 << lo
         self.examine(p, words, self.spots[number], "written", wide)
@@ -665,7 +666,7 @@ class Runtime:
         self.memory.store_through(p, words, wide, known & ~mask | value << lo & mask)
 
     def load_octet(self, p: Pointer, octet: int, number: int) -> int:
-        """An octet of the words behind `p`; of a byte peripheral, which has an address for each, that one."""
+        """Read an octet of the words at `p`.  A byte peripheral has one address per octet."""
         if p.obj is None and self.memory.byte_registers:
             byte = self.memory.load_byte(p.addr + (octet >> 1) + (octet & 1))
             if byte is not None:
@@ -673,21 +674,21 @@ class Runtime:
         return self.load_bits(p, octet >> 1, 8 * (octet & 1), 8, False, number)
 
     def store_octet(self, p: Pointer, octet: int, value: int, number: int) -> None:
-        """Write an octet; the other one of its word stays as it is."""
+        """Write an octet; the other octet of its word does not change."""
         addr = p.addr + (octet >> 1) + (octet & 1)
         if p.obj is None and self.memory.byte_registers and self.memory.store_byte(addr, value):
             return
         self.store_bits(p, octet >> 1, value & 0xFF, 8 * (octet & 1), 8, number)
 
     def register(self, p: Pointer, words: int, bits: int, number: int) -> Any:
-        """The register `words` behind the beginning of the block that `p` points to."""
+        """The register at word `words` of the block that `p` points to."""
         found = self._register_at(p.addr + words)
         if found is None:
             found = _BlockWord(self, p, words, ULONG if bits == 32 else UINT, self.spots[number])
         return found
 
     def callable(self, function: Any, number: int) -> Any:
-        """A function pointer about to be called.  NULL or never written: the CPU would run whatever stands there."""
+        """The function to call for a pointer.  Reports a pointer to no function, such as NULL, and raises IllegalCall."""
         known = self.called_as.get((function, number))
         if known is not None:
             return known
@@ -703,7 +704,7 @@ class Runtime:
         raise IllegalCall(message)
 
     def _called(self, function: Any, site: Spot) -> Any:
-        """A function as the caller takes it, which may be for one of another type."""
+        """A function, adapted to the type through which it is called."""
         known, wanted = self.signatures.get(function), site.ctype
         assert isinstance(wanted, FunctionType)
         if known is None or known.variadic or (known.parameters, known.result) == (wanted.parameters, wanted.result):
@@ -718,15 +719,15 @@ class Runtime:
         return made
 
     def address(self, p: Pointer, words: int, target: CType) -> Pointer:
-        """A pointer `words` behind `p`, to another type."""
+        """The pointer `p + words` with the target type `target`."""
         return Pointer(self.memory, p.obj, p.offset + words, target)
 
     def code(self, value: Any) -> int:
-        """A pointer to a function, or whatever a `void *` holds, as a number."""
+        """A pointer to a function, or the value of a `void *`, as a number."""
         return value.addr if isinstance(value, Pointer) else self.memory.code_address(value)
 
     def function_at(self, value: Any) -> Any:
-        """A number or a pointer as a pointer to a function."""
+        """A number or a pointer, converted to a pointer to a function."""
         if not isinstance(value, int | Pointer):
             return value
         address = value if isinstance(value, int) else value.addr
@@ -745,32 +746,32 @@ class Runtime:
         return Pointer(self.memory, None, addr & 0xFFFFFFFF, target.target)
 
     def enter(self, declaration: Declaration, data: list[Any], base: int) -> Pointer:
-        """A local of the running function whose address is taken."""
+        """Make a pointer to a local of the running function; its address is taken."""
         obj = Object(declaration, base, data)
         self.memory.live_locals.append(obj)
         return Pointer(self.memory, obj, 0, pointed(declaration.ctype))
 
     def retire(self, p: Pointer) -> None:
-        """The function that owns a local returns: pointers to it dangle from now on."""
+        """The function of a local returns: pointers to the local dangle from now on."""
         obj = p.obj
         assert obj is not None
         self.memory.live_locals.remove(obj)
         obj.end()
 
     def given(self, *arguments: tuple[CType, Any]) -> Pointer:
-        """What a call pushes for a variadic function behind its named parameters: (type, value) of each."""
+        """Push the extra arguments of a call of a variadic function: (type, value) of each."""
         block = ArgumentBlock(self.memory, self.cpu.sp + 1 & ~1, arguments)
         self.memory.place_block(block)
         return Pointer(self.memory, block, 0, CHAR)
 
     def taken(self, result: Any, given: Pointer) -> Any:
-        """That call has returned: what was pushed is gone."""
+        """The call has returned: remove its extra arguments."""
         assert given.obj is not None
         given.obj.end()
         return result
 
     def unwind(self, sp: int) -> None:
-        """An exception has ended the functions above `sp` on the running stack, without their epilogues."""
+        """Clean up after an exception that has ended the functions above `sp` on the stack without their epilogues."""
         live = self.memory.live_locals
         ended = [obj for obj in live if sp <= obj.base < self.cpu.sp]
         live[:] = [obj for obj in live if obj not in ended]
@@ -778,22 +779,22 @@ class Runtime:
             obj.end()
         self.cpu.sp = sp
 
-    # Accesses, for those who watch them (images linked with `watch` only)
+    # Accesses for a watcher (only in images linked with `watch`)
 
     def watch_with(self, watcher: Callable[[Object, int, bool], None]) -> None:
-        """`watcher(object, word, write)` is told of every access from now on: the word within it, whether written."""
+        """From now on, call `watcher(object, word, write)` at every access; `word` is the word within the object."""
         self._watcher = watcher
 
     def touch(self, obj: Object, offset_words: int, write: bool) -> None:
-        """The running function reads or writes the scalar at word `offset_words` of `obj`.
+        """The running function is about to read or write the scalar at word `offset_words` of `obj`.
 
-        A firmware object or a local whose address was taken; called just before the access, at its statement.
+        `obj` is a file-scope object, or a local whose address was taken.
         """
         if self._watcher is not None:
             self._watcher(obj, offset_words, write)
 
     def touch_block(self, p: Pointer, words: int, write: bool) -> None:
-        """`words` words at `p` are read or written at once (a structure, `memcpy`): every scalar that begins there."""
+        """`touch` for every scalar that begins in the `words` words at `p` (a structure, `memcpy`)."""
         obj = p.obj
         if obj is None or self._watcher is None:
             return
@@ -802,13 +803,13 @@ class Runtime:
                 self._watcher(obj, offset, write)
 
     def watched_load(self, p: Pointer, words: int, number: int) -> Any:
-        """`load`, told to the watcher."""
+        """`load`, with a call of the watcher."""
         if p.obj is not None:
             self.touch(p.obj, p.offset + words, False)
         return self.load(p, words, number)
 
     def watched_store(self, p: Pointer, words: int, value: Any, number: int) -> None:
-        """`store`, told to the watcher."""
+        """`store`, with a call of the watcher."""
         site = self.spots[number]
         obj = p.obj
         if obj is not None:
@@ -818,7 +819,7 @@ class Runtime:
         self.store(p, words, value, number)
 
     def watched_copy(self, target: Pointer, source: Pointer, words: int, number: int) -> None:
-        """`copy_struct`, told to the watcher."""
+        """`copy_struct`, with calls of the watcher."""
         self.touch_block(source, words, False)
         self.touch_block(target, words, True)
         self.copy_struct(target, source, words, number)
@@ -826,13 +827,13 @@ class Runtime:
     # Arithmetic
 
     def overflow(self, value: int, number: int) -> int:
-        """A signed result outside its type: reported, and wrapped as the hardware does (OVM = 0)."""
+        """A signed result that does not fit its type: report it, and wrap it as the hardware does (OVM = 0)."""
         site = self.spots[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         wrapped = ctype.wrap(value)
         if site.kind == "shift" and not site.widened and 0 <= value <= 2 * ctype.high + 1:
-            return wrapped  # a bit shifted into the sign bit, as every mask for bit 15 is; no bit is lost
+            return wrapped  # a bit was shifted into the sign bit, as in every mask for bit 15; no bit is lost
         message = f"{site.name} is {value}, which does not fit a {ctype.bits}-bit {ctype}: it becomes {wrapped}"
         details: tuple[str, ...] = ()
         if site.widened:
@@ -847,9 +848,9 @@ class Runtime:
         return wrapped
 
     def wrapped(self, value: int, number: int) -> int:
-        """An unsigned result that wrapped where that is not what is meant: `value` is the mathematical one.
+        """An unsigned result that wrapped where no wrap is intended; `value` is the mathematical result.
 
-        A difference of two variables that wraps to a small number is how elapsed counts are taken, and is silent.
+        A difference of two variables that wraps to a small number gives no finding: elapsed counts are computed so.
         """
         site = self.spots[number]
         ctype = site.ctype
@@ -858,7 +859,7 @@ class Runtime:
         if site.difference and value < -(ctype.high // 2 + 1):
             return result
         if site.kind == "stamps" and value >= -0x8000:
-            return result  # less than half of what 16 bits count: a number that went down
+            return result  # less than half of the range of 16 bits: the number has decreased
         became = f"the unsigned {site.name} is {value}, which wraps to {result}"
         match site.rule:
             case "widened-late":
@@ -873,7 +874,7 @@ class Runtime:
         return result
 
     def stamps(self, a: int, op: str, b: int, number: int) -> bool:
-        """Two stamps of a free-running counter are compared as they stand: told once the counter has wrapped."""
+        """Compare two stamps of a free-running counter directly; report it once the counter has wrapped."""
         spot = self.spots[number]
         ctype = spot.ctype
         assert isinstance(ctype, IntType)
@@ -883,7 +884,7 @@ class Runtime:
             a, b = b, a
         apart = (a - b + half) % (2 * half) - half
         if spot.kind != "order":
-            # By the stamp that is waited for: whether it was still to come when it was last looked at.
+            # By awaited stamp: whether it was still in the future at the previous test.
             before = spot.ahead.get(b)
             if before is not None and before < 0 < apart < half // 2:
                 message = f"{spot.name}: they were equal {apart} counts ago, between two tests"
@@ -905,13 +906,13 @@ class Runtime:
         site = self.spots[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
-        if value < ctype.low // 8:  # less may be a stamp that an interrupt has just renewed
+        if value < ctype.low // 8:  # a smaller difference may be a stamp that an interrupt has just renewed
             message = f"{site.name} is {value % (2 * ctype.high + 2)} counts, which a signed {ctype} takes for {value}"
             self.hit(site, "stamp-compare", message, value)
         return value
 
     def narrowed(self, value: int, number: int) -> int:
-        """A long that becomes an int without a cast, and does not fit."""
+        """A `long` that is converted to an `int` without a cast and does not fit."""
         site = self.spots[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
@@ -921,14 +922,14 @@ class Runtime:
         return kept
 
     def quantity(self, value: int, number: int) -> int:
-        """A number does not fit the field of a register that it is for."""
+        """A number that does not fit the register field to which it is written."""
         site = self.spots[number]
         message = f"{site.text} holds 0 to {site.bound}: {site.name} is {value}, and arrives as {value & site.bound}"
         self.hit(site, "register-value", message, value)
         return value
 
     def sign_lost(self, value: int, number: int) -> int:
-        """A negative number is taken as an unsigned one."""
+        """A negative number that is converted to unsigned."""
         site = self.spots[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
@@ -950,7 +951,7 @@ class Runtime:
             self.caseless[site.where] = self.findings.generation
 
     def octet(self, value: int, number: int) -> int:
-        """A value that an octet could not hold becomes a character, which has 16 bits here."""
+        """A value that does not fit an octet is converted to a character, which has 16 bits here."""
         site = self.spots[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
@@ -965,7 +966,7 @@ class Runtime:
         return kept
 
     def quotient(self, a: int, b: int, number: int) -> int:
-        """An integer quotient that is converted to float: what is lost was lost before."""
+        """An integer quotient that is converted to float, or scaled, only after its remainder was lost."""
         site = self.spots[number]
         result = self.divide_ints(a, b, number)
         if b and a % b:
@@ -974,24 +975,24 @@ class Runtime:
             self.hit(site, "remainder-lost", message, a)
         return result
 
-    # Floats, in images that are watched
+    # Floats (the first two only in watched images)
 
     def float_result(self, a: float, b: float, result: float, number: int) -> float:
-        """A NaN or an infinity as the result of a float operation: the first is reported where it is made."""
+        """A NaN or an infinity as the result of an operation on finite floats: report it where it arises."""
         if isfinite(a) and isfinite(b):
             site = self.spots[number]
             self.hit(site, "nan", f"{site.name} gives {result!r} for {a!r} and {b!r}", result)
         return result
 
     def float_out(self, value: float, number: int) -> float:
-        """A float on its way to a file-scope object or to a function outside the firmware."""
+        """A float that goes to a file-scope object or to an external function: report a NaN or an infinity."""
         site = self.spots[number]
         if not isfinite(value):
             self.not_finite(value, site, site.name)
         return value
 
     def float_to_int(self, value: float, number: int) -> int:
-        """Truncation toward zero; outside the type's range the policy decides, and it is reported."""
+        """Truncate toward zero.  Outside of the range of the type, report it; the policy decides the result."""
         site = self.spots[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
@@ -1004,14 +1005,14 @@ class Runtime:
         return result
 
     def float_argument(self, value: float, number: int) -> int:
-        """A float that is passed for an integer: the greatest one shows what `finish` tells."""
+        """A float that is passed for an integer parameter.  The largest one is kept for `finish`."""
         spot = self.spots[number]
         if abs(value) > abs(spot.greatest):
             spot.greatest = value
         return self.float_to_int(value, number)
 
     def finish(self) -> None:
-        """What only the end of a run shows: of the greatest float passed for an integer a tenth is cut, or more."""
+        """At the end of a run, report calls where the largest float passed for an integer lost more than a tenth."""
         for number, spot in list(self.spots.items()):
             value = spot.greatest
             if 1 <= abs(value) < _FEW and abs(value - int(value)) > abs(value) / _FEW:
@@ -1029,7 +1030,7 @@ class Runtime:
         return self.divide(a, b)
 
     def divide_ints(self, a: int, b: int, number: int) -> int:
-        """Integer division; by zero it does not trap (CHOICE: all ones, as the SUBCU loop leaves)."""
+        """Integer division.  By zero it does not trap (CHOICE: all ones, the result of the SUBCU loop)."""
         site = self.spots[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
@@ -1040,7 +1041,7 @@ class Runtime:
         return quotient if quotient <= ctype.high else self.overflow(quotient, number)
 
     def modulo_ints(self, a: int, b: int, number: int) -> int:
-        """Remainder; by zero it is the dividend (CHOICE)."""
+        """Remainder.  By zero it is the dividend (CHOICE)."""
         site = self.spots[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
@@ -1050,10 +1051,10 @@ class Runtime:
         return ctype.wrap(modulo_int(a, b))
 
     def shift(self, op: str, a: int, count: int, number: int) -> int:
-        """A shift by a variable count.  Outside 0..width-1 it is undefined: reported, and gives 0.
+        """A shift by a variable count.  A count outside 0..width-1 is undefined: report it; the result is 0.
 
-        CHOICE: 0 is what the golden vectors of Read_Channel ask for (`1 << 16`).  The chip's instructions would take
-        the lowest bits of the count, T(3:0) or T(4:0) (SPRU430 table 2-11), where the compiler leaves it to them.
+        CHOICE: the golden vectors of Read_Channel require 0 (`1 << 16`).  If the compiler uses the shift instructions,
+        they take the lowest bits of the count, T(3:0) or T(4:0) (SPRU430 table 2-11).
         """
         site = self.spots[number]
         ctype = site.ctype
@@ -1071,7 +1072,7 @@ class Runtime:
     # Time
 
     def poll(self, number: int, until: int) -> int:
-        """A poll has run out of events, or of patience: raises, or reports and gives the next time to look again."""
+        """A poll has no more events, or lasts too long: raise, or report it and return the next time limit."""
         site = self.spots[number]
         clock = self.clock
         if self._in_vain(site.name):
@@ -1085,16 +1086,16 @@ class Runtime:
         return clock.now + self.poll_limit
 
     def idle(self, number: int) -> None:
-        """A loop without an end and without a body has run out of events: raises Idling."""
+        """An endless loop without a body has no more events to wait for: raises Idling."""
         place = self.findings.places[number]
         raise Idling(f"{place} idles for ever, and no event is left that could interrupt it")
 
     def endless(self, number: int) -> None:
-        """A loop that calls nothing and asks no register has computed for too long.
+        """A loop that calls nothing and reads no register has computed for too long.
 
-        A task goes on, as on the chip: the others have their time.  So does a loop without an end of a `main` that the
-        host runs in slices of time: it is what the program does between its interrupts.  Elsewhere outside of tasks
-        nothing would ever come back: raises EndlessPoll.
+        A task continues, as on the chip, because other tasks still run.  An endless loop of a `main` that the host runs
+        in slices of time also continues: the program runs it between its interrupts.  Elsewhere outside of tasks, the
+        call would never return: raises EndlessPoll.
         """
         site = self.spots[number]
         context = self.findings.context()
@@ -1110,7 +1111,7 @@ class Runtime:
             raise EndlessPoll(message)
 
     def stack_check(self, number: int) -> None:
-        """The stack pointer has passed what the current stack can give to functions."""
+        """Report a stack pointer beyond the part of the current stack that functions may use."""
         place = self.findings.places[number]
         self.findings.report(
             "stack-overflow",

@@ -1,9 +1,8 @@
-"""Where the firmware is and what can be reported there: the table of its places, and the shadow call stack.
+"""Where the firmware is, and what can be reported there: the table of places, and the shadow call stack.
 
-Every place that can report has a number, and so has every statement that anybody else can notice.  Generated code
-stores that number in `Position.at` before the statement runs, and a function that has such statements keeps its
-caller's place while it runs.  So whoever wants to know where the firmware stands (a finding, a watch, a debugger) looks
-here, whether the code is interpreted or compiled.
+Every check has a number, and so has every statement that others can notice.  Generated code stores that number in
+`Position.at` before the statement runs.  A function with such statements saves the place of its caller while it runs.
+Findings, watches and debuggers read the place of the firmware here, whether the code is interpreted or compiled.
 """
 
 from __future__ import annotations
@@ -15,14 +14,14 @@ from typing import Any, Final, NamedTuple
 from emulator.c28x.ctypes import CType
 from emulator.c28x.tree import Declaration, Where
 
-#: For a reader, in the place of a function's name.
+#: The text shown in place of a function name.
 FILE_SCOPE: Final = "file scope"
 
 
 class Place(NamedTuple):
     """A statement of the firmware: its file, line, column (0: not known) and function.
 
-    `line` counts in `file`.  `c_file` is the C file that a Python file mirrors, for a C file its own name.
+    `line` is a line of `file`.  `c_file` is the C file that a Python file mirrors; for a C file, its own name.
     """
 
     file: str
@@ -30,8 +29,8 @@ class Place(NamedTuple):
     function: str
     c_file: str
     column: int = 0
-    #: What the statement is besides a statement: "poll" for a loop that only polls, "idle" for one without an end,
-    #: "takes" where it clears what the statement before has read (pass `taken`).
+    #: The kind of a special statement: "poll" for a loop that only polls, "idle" for an empty loop without an end,
+    #: "takes" for a statement that clears what the statement before has read (pass `taken`).
     kind: str = ""
 
     def __str__(self) -> str:
@@ -39,41 +38,41 @@ class Place(NamedTuple):
 
     @property
     def numbers(self) -> str:
-        """Line and column: `139:9`; `139` if the column is not known, or in Python, where a line is one statement."""
+        """Line and column: `139:9`; `139` if the column is not known, and in Python (one statement per line)."""
         return f"{self.line}:{self.column}" if self.column and not self.file.endswith(".py") else str(self.line)
 
 
 @dataclass(slots=True, eq=False)
 class Site:
-    """One check of the generated code: its place, the object meant and its type, and what only some rules need."""
+    """One check of the generated code: its place, its object and type, and data that only some rules need."""
 
     where: Where
     ctype: CType
     name: str
     declaration: Declaration | None = None
-    #: The length of the array that is subscripted.
+    #: The length of the subscripted array.
     bound: int = 0
-    #: The access as it stands in the source.
+    #: The source text of the access.
     text: str = ""
-    #: Element of an array: (length, stride in words) of each subscript, the word within the innermost element.
-    #: A switch: the last constant of its enumeration (`bound`) and the first (`word`).
+    #: An array element: (length, stride in words) of each subscript; `word` is the word within the innermost element.
+    #: A switch: `bound` is the last constant of its enumeration, `word` the first.
     dimensions: tuple[tuple[int, int], ...] = ()
     word: int = 0
-    #: Element of a local: the frame of its function, and the word there at which the array begins.
+    #: An element of a local: the frame of its function, and the word of the frame at which the array begins.
     frame: StackFrame | None = None
     frame_start: int = 0
-    #: The unsigned subscript, if it can have wrapped.
+    #: The text of an unsigned subscript that may have wrapped.
     wraps: str = ""
-    #: Arithmetic: the wider type that the result is converted to; the rule that a wrap breaks.
+    #: Arithmetic: the wider type that the result is converted to; the rule that a wrap violates.
     widened: str = ""
     rule: str = ""
-    #: "shift" or "sign": what a result out of range is about; "idle": a loop that is written without an end.
+    #: "shift" or "sign": the cause of a result out of range; "idle": a loop that is written without an end.
     kind: str = ""
-    #: An unsigned difference of two variables.
+    #: The result is an unsigned difference of two variables.
     difference: bool = False
-    #: A switch: constants of its enumeration without a case, each with its name.
+    #: A switch: the constants of its enumeration without a case, with their names.
     constants: tuple[tuple[int, str], ...] = ()
-    #: A read of what nobody has written: the switches that lack a case if it happens.
+    #: A read of a value never written: the switches that have no case for the value if it happens.
     caseless: frozenset[Where] = frozenset()
 
 
@@ -85,9 +84,9 @@ class StackFrame:
     objects: tuple[tuple[int, Declaration], ...]
 
 
-#: What called the running function: (its place, what called that one), None at the bottom of a stack.  The tuple is
-#: made anew for each call, so that it is also the identity of the call.  A third member says that the step is no call:
-#: an interrupt came, or what runs from one (`INTERRUPT`).
+#: The callers of the running function: (place of the call, callers of the caller); None at the bottom of a stack.  Each
+#: call makes a new tuple, so the tuple is also the identity of the call.  A third member (`INTERRUPT`) marks a step
+#: that is not a call: an interrupt, or something that runs from one.
 Calls = tuple[Any, ...]
 INTERRUPT: Final = "interrupt"
 
@@ -95,10 +94,10 @@ INTERRUPT: Final = "interrupt"
 class Position:
     """Where one CPU is in its firmware.
 
-    `at` is the number of the statement that executes (0: none), `calls` what called its function.
-    A kernel keeps both for each thread; an interrupt, which runs on the stack of another, adds a step `INTERRUPT`.
-    `who` runs: a task's name, `Idle`, `Swi:...`, `Hwi:...`, `main`, or `Isr:...` for an interrupt routine beside the
-    kernel.  Whoever hands the CPU on says so here.
+    `at` is the number of the statement that executes (0: none); `calls` are the callers of its function.
+    A kernel saves both for each thread.  An interrupt runs on the stack of another thread and adds a step `INTERRUPT`.
+    `who` is the running thread: a task's name, `Idle`, `Swi:...`, `Hwi:...`, `main`, or `Isr:...` for an interrupt
+    routine that the kernel does not manage.  The code that switches threads sets it.
     """
 
     __slots__ = ("at", "calls", "hold", "who")
@@ -107,11 +106,11 @@ class Position:
         self.at = 0
         self.calls: Calls | None = None
         self.who = "main"
-        #: Told the locals before each statement of a function, in an image linked with `CompileOptions.steps`.
+        #: Called with the locals before each statement, in an image linked with `CompileOptions.steps`.
         self.hold: Callable[[Mapping[str, Any]], None] | None = None
 
     def innermost(self) -> int:
-        """The statement that executes, else the innermost one that waits for what executes; 0: there is none."""
+        """The statement that executes; if none does, the innermost one that was interrupted or has called; 0: none."""
         if self.at:
             return self.at
         for at, _ in frames(0, self.calls):
@@ -119,7 +118,7 @@ class Position:
         return 0
 
     def within(self, call: Calls) -> bool:
-        """Whether `call`, the identity of a call, has not returned: it lies under what runs now."""
+        """Whether a call has not returned yet; `call` is its identity."""
         calls = self.calls
         while calls is not None:
             if calls is call:
@@ -128,12 +127,12 @@ class Position:
         return False
 
     def frames(self) -> Iterator[tuple[int, Calls | None]]:
-        """(place, identity of the call) of every function that runs, the innermost first; interrupts are left out."""
+        """(place, identity of the call) of every active function, the innermost first, without interrupt steps."""
         return frames(self.at, self.calls)
 
 
 def frames(at: int, calls: Calls | None) -> Iterator[tuple[int, Calls | None]]:
-    """As `Position.frames`, of a position that was kept."""
+    """As `Position.frames`, for a saved position."""
     while True:
         if at:
             yield at, calls
@@ -143,7 +142,7 @@ def frames(at: int, calls: Calls | None) -> Iterator[tuple[int, Calls | None]]:
 
 
 def interrupted(at: int, calls: Calls | None) -> tuple[int, Calls | None]:
-    """Of a position the part below its outermost interrupt: where the thread itself stands."""
+    """The part of a position below its outermost interrupt: where the interrupted thread itself is."""
     step = calls
     while step is not None:
         if len(step) > 2:
@@ -153,7 +152,7 @@ def interrupted(at: int, calls: Calls | None) -> tuple[int, Calls | None]:
 
 
 class Places:
-    """The places of one board's firmware by number, and the checks that stand there; 0 is no place."""
+    """The places of one board's firmware by number, and their checks; 0 is not a place."""
 
     __slots__ = ("_places", "_sites")
 
@@ -168,14 +167,14 @@ class Places:
         return self._places[number]
 
     def site(self, number: int) -> Site:
-        """The check that stands at `number`.  Raises KeyError if none does."""
+        """The check with this number.  Raises KeyError if there is none."""
         site = self._sites[number]
         if site is None:
             raise KeyError(number)
         return site
 
     def add(self, places: Iterable[tuple[Place, Site | None]]) -> int:
-        """Number further places, each with its check if it is one; gives the number of the first."""
+        """Number more places, each with its check, if any.  Returns the number of the first."""
         first = len(self._places)
         for place, site in places:
             self._places.append(place)

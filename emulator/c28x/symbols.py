@@ -1,4 +1,4 @@
-"""What the names of a firmware module mean, once its declarations have been read: data only."""
+"""The meanings of names in a firmware module, after its declarations have been read: data only."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any, Final
 from emulator.c28x.ctypes import CType
 from emulator.c28x.tree import Expr, Function, Variable, Where
 
-#: From here on two names are taken for one, mistyped (0 to 1, `difflib`); and how many are looked at, the last ones.
+#: From this similarity on, a name counts as mistyped (0 to 1, `difflib`); how many known names are compared (the last).
 _ALIKE: Final = 0.75
 _LOOKED_AT: Final = 3000
 
@@ -21,7 +21,7 @@ class NoModule(ValueError):
 
 
 class SourceError(ValueError):
-    """Firmware source outside the language: file, line, column (0: not known), construct, and what would be right."""
+    """An error in firmware source: file, line, column (0: not known), the construct, and what would be right."""
 
     def __init__(self, file: str, line: int, message: str, column: int = 0) -> None:
         super().__init__(f"{file}:{line}:{f'{column}:' if column else ''} {message}")
@@ -31,21 +31,21 @@ class SourceError(ValueError):
 
     @classmethod
     def at(cls, where: Where, message: str) -> SourceError:
-        """The error at a place; what a macro wrote has two."""
+        """The error at a place; text from a macro has two places."""
         if where.macro is not None:
             message = f"{message} (written by the macro at {where.macro})"
         return cls(where.file, where.line, message, where.column)
 
 
 def nearest(name: str, names: Iterable[str]) -> str:
-    """The end of an error about an unknown name: the known one that it looks like; "" if there is none."""
+    """The end of an error about an unknown name: a similar known name; "" if there is none."""
     found = get_close_matches(name[:80], [n[:80] for n in names][-_LOOKED_AT:], 1, _ALIKE)
     return f": is it {found[0]}?" if found else ""
 
 
 @dataclass(frozen=True)
 class Remark:
-    """What a reader noticed without refusing it: a static finding under `rule`, about `name`."""
+    """A remark of a reader about accepted source: a static finding of `rule`, about `name`."""
 
     where: Where
     rule: str
@@ -56,10 +56,10 @@ class Remark:
 
 @dataclass(frozen=True)
 class Define:
-    """A `#define` with a value: its replacement is an expression, evaluated where it is used."""
+    """A `#define` with a value.  Its replacement is an expression, built anew at each use."""
 
     name: str
-    #: The typed expression, in the scope of a builder (`build.Builder`), used at a place.
+    #: (builder, place of use) -> the typed expression, in the scope of that builder (`build.Builder`).
     expression: Callable[[Any, Where], Expr]
     #: The replacement as C text; None if C has no such constant.
     written: Callable[[], str | None]
@@ -83,11 +83,11 @@ class EnumType:
 
 @dataclass(frozen=True)
 class RegisterBlock:
-    """A register block as a header names it; `layout` is the block class's own table."""
+    """A register block as a header names it.  `layout` is the table of its block class."""
 
     name: str
     layout: dict[str, Any]
-    #: The type of the block: the name of its class, and the tag of its structure in C.
+    #: The type of the block: the name of its class (`type_name`), and its structure tag in C (`struct`).
     type_name: str = ""
     struct: str = ""
 
@@ -101,13 +101,13 @@ class CoreRegister:
 
 @dataclass(frozen=True)
 class Unmodelled:
-    """A register block of the chip that is not modelled: its registers are known by name, and say so when touched."""
+    """A register block of the chip that is not modelled.  Any register name is accepted; an access is reported."""
 
     name: str
 
     @property
     def message(self) -> str:
-        """What there is to say."""
+        """The text of such a report."""
         return f"{self.name} is a peripheral of this chip that is not modelled"
 
 
@@ -115,7 +115,7 @@ Symbol = Define | EnumType | Enumerator | CType | Variable | Function | Register
 
 
 def _lasts(symbol: Symbol) -> bool:
-    """Whether a translated program has what a name means: not a constant, nor what is only declared."""
+    """Whether a translated program keeps a symbol: not a constant, nor something that is only declared."""
     match symbol:
         case Function(extern=extern):
             return not extern
@@ -129,7 +129,7 @@ def _lasts(symbol: Symbol) -> bool:
 class Module:
     """One source file: its symbols by name, imported ones included.
 
-    The reader leaves functions to call for bodies and initialisers, because they may use what other files declare.
+    Bodies and initialisers are read later, by functions that the reader stores here: they may use other files.
     """
 
     name: str
@@ -137,26 +137,26 @@ class Module:
     text: str
     c_file: str
     symbols: dict[str, Symbol] = field(default_factory=dict)
-    #: The names that it declares itself, in order.
+    #: The names that this file declares itself, in order.
     own: list[str] = field(default_factory=list)
     variables: list[Variable] = field(default_factory=list)
     functions: list[Function] = field(default_factory=list)
-    #: What reads the body of a function into its tree.
+    #: Function -> reads its body into its tree.
     bodies: dict[Function, Callable[[], None]] = field(default_factory=dict)
-    #: What reads the initialiser of a file-scope object: a value per scalar.
+    #: File-scope object -> reads its initialiser: one value per scalar.
     initialisers: dict[Variable, Callable[[], list[Expr]]] = field(default_factory=dict)
     remarks: list[Remark] = field(default_factory=list)
-    #: Objects that a `#pragma DATA_SECTION` of C places.
+    #: Objects that a `#pragma DATA_SECTION` places in a section.
     placed: set[str] = field(default_factory=set)
-    #: Functions and objects that an overlay replaces or adds -> the overlay, whose file and lines they have.
+    #: Functions and objects that an overlay replaces or adds -> the overlay, in whose file they are.
     units: dict[str, Module] = field(default_factory=dict)
-    #: Those that an overlay adds.
+    #: The names that an overlay adds.
     added: set[str] = field(default_factory=set)
-    #: Read only because it defines what C files declare: nobody means all of it.
+    #: It was read only because it defines something that C files declare; the rest of it may be unused.
     brought: bool = False
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is left of it once it has been translated: objects, functions and types, not what only reading needs."""
+        """The state of a translated module: objects, functions and types, without what only the reader needs."""
         lasting = {name: symbol for name, symbol in self.symbols.items() if _lasts(symbol)}
         read: dict[str, Any] = {"own": [], "bodies": {}, "initialisers": {}, "remarks": [], "text": ""}
         return {**self.__dict__, "symbols": lasting, **read}
@@ -167,5 +167,5 @@ class Module:
 
     @cached_property
     def short(self) -> str:
-        """The last part of the dotted name, as in the C file's name."""
+        """The last part of the dotted name; the C file has the same name."""
         return self.name.rsplit(".", 1)[-1]

@@ -3,8 +3,8 @@
 Every expression node has a `ctype`.  An lvalue that designates memory is an `LValue`: a root (a variable, or a pointer
 expression) and the way from there to one scalar, in leaves (for the fast path) and in words (for the address).
 
-A builder makes the nodes; the passes (`passes/`) leave on them what they find out, in the fields that say so; the
-emitter only reads.  Two trees are equal when they mean the same, wherever they stand.
+A builder makes the nodes.  The passes (`passes/`) store their results on them, in fields marked `Pass ...`.  The
+emitter only reads them.  Two trees are equal if they mean the same; their places in the source do not matter.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 class Where(NamedTuple):
     """A place in a source file.  Lines and columns count from 1; column 0 is not known.
 
-    What a macro wrote stands where the macro is used; `macro` is its place within the macro's definition.
+    The place of text from a macro is where the macro is used; `macro` is its place within the macro's definition.
     """
 
     file: str
@@ -35,9 +35,9 @@ class Where(NamedTuple):
         return f"{place} (macro at {self.macro})" if self.macro else place
 
 
-#: The place of what stands in no file.
+#: The place of a node that is in no file.
 NOWHERE: Final = Where("", 0)
-#: The least and the largest value of an integer.
+#: The smallest and the largest value of an integer.
 Interval = tuple[int, int]
 
 
@@ -57,23 +57,23 @@ class Guard:
 class Unwritten:
     """How an object can be read before anything was written to it."""
 
-    #: On every way that comes here.
+    #: It is unwritten on every way that leads here.
     surely: bool = False
-    #: Though every enumeration holds one of its constants.  Of objects in memory that is not found out.
+    #: It is unwritten even if every enumeration holds one of its constants.  (Not determined for objects in memory.)
     expected: bool = False
-    #: The switch whose cases all write it, and that has no default.
+    #: The switch without default whose cases all write it.
     switch: Where | None = None
-    #: If it is not expected: the switches over all constants of an enumeration whose cases all write it.
+    #: If not `expected`: the switches over all constants of an enumeration whose cases all write it.
     complete: frozenset[Where] = frozenset()
 
 
-#: Marks the fields that passes fill: they are no part of the program.
+#: Marks the fields that passes fill: they are not part of the program.
 FOUND: Final = {"found by": "a pass"}
 
 
 @dataclass(frozen=True)
 class Declaration:
-    """Where and as what an object was declared."""
+    """The declaration of an object: its name, type and place."""
 
     name: str
     ctype: CType
@@ -85,7 +85,7 @@ class Declaration:
 
     @property
     def where(self) -> Where:
-        """Its place."""
+        """The place of the declaration."""
         return Where(self.file, self.line, self.column)
 
     @property
@@ -111,22 +111,22 @@ class Variable:
     in_memory: bool = False
     #: Its address leaves the function's own code (a pointer to it is made).
     escapes: bool = False
-    #: What a file-scope object starts from, a value per scalar; None: it has no initialiser.
+    #: The initial value of each scalar of a file-scope object; None: it has no initialiser.
     initial: list[Expr] | None = None
     #: Declared `volatile`, or `const`.
     volatile: bool = False
     constant: bool = False
     #: A parameter, or an object at file scope, declared as an enumeration: the values of its constants.
     constants: tuple[int, ...] = ()
-    #: A parameter declared as an array: the elements that its declaration names (0: it names none).
+    #: A parameter declared as an array: the length in its declaration (0: none).
     length: int = 0
-    #: A local that is declared within an inner block.
+    #: A local that an inner block declares.
     nested: bool = False
     #: Its name in generated code, where another local of the function has the same C name.
     alias: str = ""
     #: Of a file-scope object that only names an address: the address.
     address: int | None = field(default=None, kw_only=True, repr=False)
-    #: Pass `frame`: its word in the function's frame.
+    #: Pass `frame`: its offset in the function's frame, in words.
     frame_offset: int = 0
     #: Pass `flow`: some read of this plain local may come before every write.
     unwritten: bool = False
@@ -153,27 +153,27 @@ class Function:
     line: int
     c_file: str
     extern: bool = False
-    #: Of a variadic function of the firmware: the pointer to what it is given behind its parameters.
+    #: A variadic function of the firmware: the pointer to its extra arguments.
     given: Variable | None = field(default=None, kw_only=True, repr=False, compare=False)
     #: Declared `interrupt`.
     interrupt: bool = False
-    #: Known in its own file only.
+    #: Declared `static`: visible only in its own file.
     static: bool = False
-    #: Where its body stands; of an extern in C, where it is first used.
+    #: The place of its body; of an extern in C, of its first use.
     where: Where = field(default=NOWHERE, repr=False, compare=False)
-    #: Of an extern in C: why nothing defines it, where that is known.
+    #: An extern in C: why nothing defines it, if that is known.
     missing: str = field(default="", kw_only=True, repr=False, compare=False)
     locals: list[Variable] = field(default_factory=list)
     body: list[Stmt] = field(default_factory=list)
     calls: set[str] = field(default_factory=set)
-    #: Pass `flow`: its end is reached without a return, and also if every enumeration holds one of its constants; pass
-    #: `guards`: a value is owed there.
+    #: Pass `flow`: its end is reached without a return (`ends`), even if every enumeration holds one of its constants
+    #: (`expected_end`); pass `guards`: a value is missing there (`owing`).
     ends: bool = field(default=True, kw_only=True, repr=False, compare=False, metadata=FOUND)
     expected_end: bool = field(default=True, kw_only=True, repr=False, compare=False, metadata=FOUND)
     #: If that end is not expected: the switches over all constants of an enumeration whose cases all return.
     left_by: frozenset[Where] = field(default=frozenset(), kw_only=True, repr=False, compare=False, metadata=FOUND)
     owing: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
-    #: Pass `frame`: words of the stack that it takes, and the objects there that others can point at.
+    #: Pass `frame`: the size of its frame in words, and the objects in it that a pointer can reach.
     frame_words: int = field(default=0, kw_only=True, repr=False, compare=False, metadata=FOUND)
     live: list[Variable] = field(default_factory=list, repr=False)
 
@@ -192,13 +192,13 @@ class Expr:
 
     ctype: CType
     where: Where = field(default=NOWHERE, kw_only=True, repr=False, compare=False)
-    #: Pass `intervals`: the least and the largest value of an integer; None of anything else.
+    #: Pass `intervals`: the smallest and the largest value of an integer; None for other types.
     bounds: Interval | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
-    #: Pass `guards`: what is watched where this value is made; None: nothing can go wrong.
+    #: Pass `guards`: the check of this value; None: nothing can go wrong.
     guard: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
-    #: Pass `guards`: the mathematical value is wanted, without the wraps of its + - *.
+    #: Pass `guards`: its mathematical value is needed, without wraps of + - *.
     unwrapped: bool = field(default=False, kw_only=True, repr=False, compare=False, metadata=FOUND)
-    #: Pass `guards`: this number leaves the firmware's own arithmetic here: a float to others, an integer to a field.
+    #: Pass `guards`: the check of a float that others will see, or of an integer that goes to a register field.
     leaving: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
@@ -207,11 +207,11 @@ class Const(Expr):
     """A number known at translation."""
 
     value: int | float
-    #: What it was folded from.
+    #: The expression that it was folded from.
     source: Expr | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
-    #: The operator that gave it, if it was one ("sizeof", "sizeof pointer").
+    #: The operator that it results from, if any ("sizeof", "sizeof pointer").
     text: str = field(default="", compare=False)
-    #: Of `sizeof`: the type whose size it is.
+    #: A result of `sizeof`: the type whose size it is.
     measured: CType | None = field(default=None, kw_only=True, repr=False, compare=False)
 
 
@@ -222,7 +222,7 @@ class Null(Expr):
 
 @dataclass
 class String(Expr):
-    """A string literal: pointer to its first character."""
+    """A string literal: a pointer to its first character."""
 
     text: str
 
@@ -235,7 +235,7 @@ class Index:
     bound: int | None
     leaves: int
     words: int
-    #: Pass `guards`: the test of an array member behind a pointer.
+    #: Pass `guards`: the check against the length of an array member behind a pointer.
     guard: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
@@ -261,22 +261,22 @@ class LValue:
     words: int = 0
     indices: list[Index] = field(default_factory=list)
     where: Where = field(default=NOWHERE, repr=False, compare=False)
-    #: As it stands in the source, for reports.
+    #: Its source text, for reports.
     text: str = field(default="", repr=False, compare=False)
-    #: The bits of it that are meant: a bit-field.
+    #: The bits of a bit-field; None: the whole object.
     bits: Bits | None = None
     #: A member on the way is declared `volatile`.
     volatile: bool = field(default=False, repr=False, compare=False)
     #: Pass `flow`: how it can be read before anything was written to it; None: it cannot.
     unwritten: Unwritten | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
-    #: Pass `guards`: the tests of a value never written, and of an access that leaves the object or goes by a pointer.
+    #: Pass `guards`: the check for a value never written, and that of an access outside the object or by a pointer.
     fresh: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
     outside: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
 @dataclass(frozen=True)
 class Field:
-    """A bit field: its place, and the bits of the access that the compiler makes for it."""
+    """A bit field of a register: its bits, and the bits of the access that the compiler generates for it."""
 
     name: str
     lo: int
@@ -294,14 +294,14 @@ class RegisterRef:
     field: Field | None
     bits: int
     ctype: CType
-    #: Whether every bit reads 0, so that a read-modify-write needs no read.
+    #: Whether every bit of the register reads 0, so that a read-modify-write needs no read.
     reads_zero: bool = False
-    #: Whether the field reads as it was written, and nothing else in the register is different from that.
+    #: Whether the field, and every other bit of the register, reads as it was written.
     plain: bool = False
-    #: Whether a write does nothing but clear bits of another register, as long as nobody looks on.
+    #: Whether a write only clears bits of another register, as long as no watcher is attached.
     clears: bool = False
     where: Where = dataclasses.field(default=NOWHERE, repr=False, compare=False)
-    #: Of a block that is not modelled: nobody knows where it stands.
+    #: It belongs to a block that is not modelled: its address is not known.
     unmodelled: bool = False
 
 
@@ -309,7 +309,7 @@ class RegisterRef:
 class RegisterAt:
     """A register, or a field of one, of the block that `block` points to: `p->TBCTL.bit.CTRMODE`.
 
-    `words` is the register's distance from the beginning of the block.
+    `words` is the offset of the register from the start of the block, in words.
     """
 
     block: Expr
@@ -319,13 +319,13 @@ class RegisterAt:
     bits: int
     ctype: CType
     where: Where = dataclasses.field(default=NOWHERE, repr=False, compare=False)
-    #: Pass `guards`: the pointer may point to something else.
+    #: Pass `guards`: the check that the pointer points to such a block.
     guard: Guard | None = dataclasses.field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
 @dataclass
 class Load(Expr):
-    """The value of an lvalue; of a structure, a copy of its scalars."""
+    """The value of an lvalue; for a structure, a copy of its scalars."""
 
     lvalue: LValue
 
@@ -347,7 +347,7 @@ class RegisterAddress(Expr):
 
 @dataclass
 class AddressOf(Expr):
-    """A pointer to an lvalue; also what an array decays to."""
+    """A pointer to an lvalue; an array decays to one."""
 
     lvalue: LValue
 
@@ -362,7 +362,7 @@ class Unary(Expr):
 
 @dataclass
 class Binary(Expr):
-    """Arithmetic on operands already converted to `ctype` (shift counts keep their own type)."""
+    """Arithmetic; the operands are already converted to `ctype` (shift counts keep their own type)."""
 
     op: str
     left: Expr
@@ -390,7 +390,7 @@ class PointerDifference(Expr):
 
 @dataclass
 class Compare(Expr):
-    """A comparison; operands have one type."""
+    """A comparison; both operands have the same type."""
 
     op: str
     left: Expr
@@ -476,11 +476,11 @@ class Stmt:
 
 @dataclass
 class Assign(Stmt):
-    """`target = value`, value converted to the target's type."""
+    """`target = value`; the value is already converted to the type of the target."""
 
     target: LValue | RegisterRef | RegisterAt
     value: Expr
-    #: Pass `taken`: it clears what the statement before has read, to keep it.
+    #: Pass `taken`: it clears the object that the statement before has copied.
     takes: bool = field(default=False, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
@@ -511,16 +511,16 @@ class If(Stmt):
 
 @dataclass
 class While(Stmt):
-    """`while`; with `step` a `for` at large; a `do` looks at its test `first` when the body has run.
+    """`while`; with `step`, a general `for`; a `do` (not `first`) evaluates its test after the body.
 
-    `step` runs whenever the test comes next again, after `continue` too.
+    `step` runs before each later evaluation of the test, after `continue` too.
     """
 
     test: Expr
     body: list[Stmt]
     step: list[Stmt] = field(default_factory=list)
     first: bool = True
-    #: Pass `guards`: it only polls, or nobody else has a part in its end.
+    #: Pass `guards`: the check of a loop that only polls, or that only its own statements can end.
     endless: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
@@ -533,36 +533,36 @@ class For(Stmt):
     stop: Expr
     step: int
     body: list[Stmt]
-    #: Pass `intervals`: Python's own loop does what C's does; its values, where they are known.
+    #: Pass `intervals`: a Python `for` does the same as the C loop (`plain`); its values, if they are known (`trips`).
     plain: bool = field(default=False, kw_only=True, repr=False, compare=False, metadata=FOUND)
     trips: range | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
-    #: Pass `intervals`: otherwise, the test at the head of each turn; pass `guards`: the test of its step.
+    #: Pass `intervals`: if not `plain`, the test before each turn; pass `guards`: the check of its step (`guard`).
     test: Compare | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
-    #: Pass `flow`: a turn can come to its end.
+    #: Pass `flow`: the end of a turn can be reached.
     turns: bool = field(default=True, kw_only=True, repr=False, compare=False, metadata=FOUND)
     guard: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
-    #: Pass `guards`: nobody else has a part in its end.
+    #: Pass `guards`: the check of a loop that only its own statements can end.
     endless: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
     @property
     def counter(self) -> Variable:
-        """What `variable` designates."""
+        """The variable that counts."""
         assert isinstance(self.variable.root, Variable)
         return self.variable.root
 
 
 @dataclass
 class Switch(Stmt):
-    """A choice by an integer: cases of constants, in order; None is the default.
+    """A `switch`: cases of constants, in order; None is the default.
 
     A body ends the switch unless its last statement is `FallThrough`; `LeaveSwitch` ends it from within.
     """
 
     subject: Expr
     cases: list[tuple[list[int] | None, list[Stmt]]]
-    #: Where all cases name constants of one enumeration: the others of it, with their names.
+    #: If all cases name constants of one enumeration: its other constants, with their names.
     left: dict[int, str] | None = None
-    #: Pass `guards`: the way past a switch without default that nobody can have meant.
+    #: Pass `guards`: the check for a value without a case, which nobody can have meant.
     guard: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
     @property
@@ -573,7 +573,7 @@ class Switch(Stmt):
 
 @dataclass
 class Return(Stmt):
-    """`return`, value converted to the result type."""
+    """`return`; the value is already converted to the result type."""
 
     value: Expr | None
 
@@ -595,15 +595,15 @@ class LeaveSwitch(Stmt):
 
 @dataclass
 class FallThrough(Stmt):
-    """The end of a case that goes on with the next one."""
+    """The end of a case that falls through to the next one."""
 
-    #: The source says so, by a word of its own or a comment.
+    #: The source states it, by a keyword or a comment.
     said: bool = field(default=True, kw_only=True, compare=False)
 
 
 @dataclass
 class Declare(Stmt):
-    """A local takes its initial value here, or (None) begins without one."""
+    """A local is declared here, with an initial value or (None) without one."""
 
     variable: Variable
     value: Expr | list[Any] | None

@@ -1,4 +1,4 @@
-"""Queries on the typed tree: what it touches, calls and changes, and whether it can reach its end."""
+"""Queries on the typed tree: what code accesses, calls and changes, and whether it can reach its end."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ from emulator.c28x.tree import (
     While,
 )  # fmt: skip
 
-#: `EALLOW` and `EDIS` set and clear a bit of ST1 (CPU, instruction set): no call, and nobody else sees them.
+#: `EALLOW` and `EDIS` set and clear a bit of ST1 (CPU, instruction set): they are no calls, and nobody else sees them.
 INSTRUCTIONS: Final = {"EALLOW": "_cpu.eallow = True", "EDIS": "_cpu.eallow = False"}
 OBSERVABLE: Final = (RegisterLoad, Call, CallPointer)
 
@@ -62,7 +62,7 @@ _UNARY: Final = 7
 
 
 def source_text(e: Expr) -> str:
-    """An expression as its source says it, for a report; conversions that C makes by itself are left out."""
+    """The source text of an expression, for a report, without its conversions."""
     match e:
         case Load(lvalue=lvalue) | AddressOf(lvalue=lvalue):
             return lvalue.text or "expression"
@@ -102,14 +102,14 @@ def source_text(e: Expr) -> str:
 
 
 def register_text(ref: RegisterRef | RegisterAt) -> str:
-    """A register or field as the source names it."""
+    """The source text of a register or field."""
     if isinstance(ref, RegisterRef):
         return f"{ref.block}.{ref.register}" + (f".bit.{ref.field.name}" if ref.field else "")
     return f"{source_text(ref.block)}->{ref.name}" + (f".bit.{ref.field.name}" if ref.field else "")
 
 
 def _operand(e: Expr, binds: int = 0) -> str:
-    """An operand, in parentheses where it is an operation of its own that binds less than `binds`."""
+    """The text of an operand, in parentheses if its own operator binds less strongly than `binds`."""
     inner = e
     while isinstance(inner, Convert):
         inner = inner.operand
@@ -119,7 +119,7 @@ def _operand(e: Expr, binds: int = 0) -> str:
 
 
 def children(e: Any) -> list[Any]:
-    """The expressions and lvalues directly below `e`."""
+    """The expressions, lvalues and subscripts directly below `e`."""
     found: list[Any] = []
     for name in _INNER.get(type(e), ()):
         value = getattr(e, name)
@@ -128,7 +128,7 @@ def children(e: Any) -> list[Any]:
 
 
 def parts(e: Any) -> list[Any]:
-    """Every expression and lvalue below `e`, itself first."""
+    """Every expression, lvalue and subscript in `e`; `e` itself is the first."""
     found: list[Any] = []
     _gather(e, found)
     return found
@@ -150,18 +150,18 @@ _NODES: Final = (Expr, LValue, Index, RegisterAt)
 
 
 def _found(kind: type[Any]) -> set[str]:
-    """The fields of a node that passes fill."""
+    """The names of the fields of a node that passes fill."""
     return {f.name for f in fields(kind) if f.metadata == FOUND}
 
 
 def _holds(hint: Any) -> bool:
-    """Whether something of this type can be or have in a list what `parts` lists."""
+    """Whether a field of this type can hold a node that `parts` lists, or a list of such nodes."""
     if inner := get_args(hint):
         return any(map(_holds, inner))
     return isinstance(hint, type) and issubclass(hint, _NODES)
 
 
-#: Kind of node -> its fields that can hold expressions or lvalues; a constant's is only where it came from.
+#: Kind of node -> its fields that can hold expressions or lvalues.  `Const` is left out: its field is only its origin.
 _INNER: Final = {
     kind: tuple(name for name, hint in get_type_hints(kind).items() if name not in _found(kind) and _holds(hint))
     for kind in vars(tree).values()
@@ -169,7 +169,7 @@ _INNER: Final = {
 }
 
 
-#: What `parts` lists.
+#: The kinds of nodes that `parts` lists.
 _KINDS: Final = frozenset(
     kind for kind in vars(tree).values() if isinstance(kind, type) and issubclass(kind, _NODES)
 )  # fmt: skip
@@ -182,7 +182,7 @@ _OWN: Final = {
 }
 
 
-#: What `roots` lists.
+#: The kinds of nodes that `roots` lists.
 _ROOTS: Final = frozenset(
     kind
     for kind in vars(tree).values()
@@ -191,7 +191,7 @@ _ROOTS: Final = frozenset(
 
 
 def whole_target(lvalue: LValue) -> bool:
-    """Whether an lvalue is a whole object, or just what its pointer points to: its address is at hand then."""
+    """Whether an lvalue is a whole object, or exactly the target of a pointer: then its address is already known."""
     root = lvalue.root
     if lvalue.indices or lvalue.words:
         return False
@@ -201,7 +201,7 @@ def whole_target(lvalue: LValue) -> bool:
 
 
 def observable(e: Any) -> bool:
-    """Whether evaluating `e` touches anything that another task, an interrupt or a peripheral can see."""
+    """Whether evaluating `e` accesses anything that another task, an interrupt or a peripheral can see."""
     for part in parts(e):
         if isinstance(part, (*OBSERVABLE, RegisterAt)):
             return True
@@ -211,7 +211,7 @@ def observable(e: Any) -> bool:
 
 
 def executes(s: Stmt) -> bool:
-    """Whether a statement does anything where it begins: a declaration without a value does not, nor does `do`."""
+    """Whether a statement executes anything at its start.  A declaration without a value does not, nor does `do`."""
     match s:
         case Declare(value=None) | FallThrough() | While(first=False):
             return False
@@ -219,7 +219,7 @@ def executes(s: Stmt) -> bool:
 
 
 def polls(loop: While) -> bool:
-    """Whether a loop does nothing but look at its condition."""
+    """Whether a loop only evaluates its condition, without a call."""
     return not loop.body and not loop.step and not calls(loop.test)
 
 
@@ -230,7 +230,7 @@ def without_end(loop: While) -> bool:
 
 
 def last_loop(function: Function) -> While | None:
-    """The loop without a test that a function ends with, which a `main` never leaves; None if it ends otherwise."""
+    """The endless loop at the end of a function (a `main` never leaves it); None if there is no such loop."""
     last = function.body[-1] if function.body else None
     if isinstance(last, Return) and len(function.body) > 1:
         last = function.body[-2]
@@ -238,12 +238,12 @@ def last_loop(function: Function) -> While | None:
 
 
 def renewed(variable: Variable) -> bool:
-    """Whether a local begins anew, without a value, each time that its inner block is entered."""
+    """Whether a local has no value again each time its inner block is entered."""
     return variable.kind == "local" and variable.nested and not variable.in_memory and not variable.initialised
 
 
 def passing(s: Stmt) -> bool:
-    """Whether a statement without inner blocks touches objects only: no register, no function, no pointer."""
+    """Whether a statement accesses only named objects: no register, no call, no pointer, no inner block."""
     if not isinstance(s, Assign | Declare | Return):
         return False
     for root in roots(s):
@@ -261,7 +261,7 @@ def calls(e: Any) -> bool:
 
 
 def statements(body: Iterable[Stmt]) -> Iterator[Stmt]:
-    """Every statement, those of inner blocks included."""
+    """Every statement, including those of inner blocks."""
     for s in body:
         yield s
         for inner in blocks(s):
@@ -283,12 +283,12 @@ def blocks(s: Stmt) -> list[list[Stmt]]:
 
 
 def different(values: Iterable[Any]) -> list[Any]:
-    """The nodes of a list, each once: the zeros behind a short list of initial values are one node."""
+    """The nodes of a list, each once: the zeros after a short list of initial values are all the same node."""
     return list({id(value): value for value in values}.values())
 
 
 def roots(s: Stmt) -> list[Any]:
-    """The expressions and lvalues of a statement itself, each once; inner blocks are left out."""
+    """The expressions and lvalues of a statement itself, each once, without its inner blocks."""
     found: list[Any] = []
     for name in _OWN[type(s)]:
         value = getattr(s, name)
@@ -328,12 +328,12 @@ def within(body: Iterable[Stmt]) -> Iterator[Any]:
 
 
 def variables(nodes: Iterable[Any]) -> set[Variable]:
-    """The variables that lvalues among `nodes` begin at."""
+    """The variables that are roots of lvalues among `nodes`."""
     return {p.root for p in nodes if isinstance(p, LValue) and isinstance(p.root, Variable)}
 
 
 def compared(functions: Iterable[Function]) -> set[Variable]:
-    """The variables that a comparison by order or a subscript mentions."""
+    """The variables that occur in a comparison or a subscript."""
     found: set[Variable] = set()
     for function in functions:
         for p in within(function.body):
@@ -343,7 +343,7 @@ def compared(functions: Iterable[Function]) -> set[Variable]:
 
 
 def limited(functions: Iterable[Function]) -> set[Variable]:
-    """The unsigned variables with an upper limit: what is more than that becomes it."""
+    """The unsigned variables that the source limits: a larger value is replaced by the limit."""
     found: set[Variable] = set()
     for function in functions:
         for s in statements(function.body):
@@ -363,7 +363,7 @@ def limited(functions: Iterable[Function]) -> set[Variable]:
 
 
 def _as_it_is(e: Expr) -> Expr:
-    """An integer without the conversions that keep its value, as long as it is not negative."""
+    """An integer without the conversions around it that keep every value that is not negative."""
     match e:
         case Convert(ctype=IntType(signed=True, bits=to), operand=Expr(ctype=IntType(bits=bits))) if to <= bits:
             return e
@@ -373,13 +373,13 @@ def _as_it_is(e: Expr) -> Expr:
 
 
 def _same(a: Expr, b: Expr) -> bool:
-    """Whether two expressions are the same number, whatever their types."""
+    """Whether two expressions are the same number; their types may differ."""
     a, b = bare(a), bare(b)
     return a == b or (isinstance(a, Const) and isinstance(b, Const) and a.value == b.value)
 
 
 def averaged(body: list[Stmt]) -> set[Variable]:
-    """The variables whose value is divided, or converted to a wider type."""
+    """The variables whose value is divided, or converted to a float or to a wider integer."""
     found: set[Variable] = set()
     for p in within(body):
         match p:
@@ -396,7 +396,7 @@ def averaged(body: list[Stmt]) -> set[Variable]:
 
 
 def leaves(body: list[Stmt]) -> bool:
-    """Whether statements never reach what stands behind them."""
+    """Whether control never reaches the end of the statements."""
     match body[-1] if body else None:
         case Return() | Break() | Continue() | LeaveSwitch():
             return True
@@ -413,7 +413,7 @@ def bare(e: Expr) -> Expr:
 
 
 def counts(loop: Stmt) -> bool:
-    """Whether every turn of a loop steps the plain local that its test compares: it ends, if late."""
+    """Whether every turn of a loop steps the plain local that its test compares: then it ends sooner or later."""
     match loop:
         case While(test=Compare(op="<" | ">" | "<=" | ">=" | "!=" as op, left=left, right=right), body=body):
             if op == ">=" and isinstance(right, Const) and right.value == 0:
@@ -437,12 +437,12 @@ def counts(loop: Stmt) -> bool:
 
 
 def computes_alone(loop: Stmt) -> bool:
-    """Whether a loop calls nothing and asks no register, so that nobody else has a part in its end."""
+    """Whether only its own statements can end a loop: it calls nothing, reads no register, and does not just count."""
     return not counts(loop) and not any(isinstance(p, OBSERVABLE) for p in within([loop]))
 
 
 def visible_to_others(body: list[Stmt]) -> bool:
-    """Whether any statement touches what others can see."""
+    """Whether a statement may access something that others can see; every `for` and `switch` counts as one."""
     for s in body:
         match s:
             case Assign(target=target, value=value):

@@ -1,8 +1,8 @@
-"""The words that a variadic C function finds behind its named parameters.
+"""The extra arguments of a variadic C function, as words on the stack.
 
-Arguments lie on the stack in 16-bit words, low word first, 32-bit ones on even words.  A format that reads another
-width than was passed therefore skews everything after it, as on the chip.  CHOICE: the first argument lies on an even
-word; words behind the last one read 0.
+Arguments are on the stack in 16-bit words, low word first; 32-bit arguments begin on even words.  If a format reads
+another width than was passed, all later arguments are shifted, as on the chip.  CHOICE: the first argument is on an
+even word; words after the last argument read 0.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class Reporter(Protocol):
 
     @property
     def findings(self) -> Findings:
-        """Those of the board."""
+        """The findings of the board."""
 
 
 class Varargs:
@@ -62,7 +62,7 @@ class Varargs:
         return self._words[self._at - 1]
 
     def begin(self, words: int) -> None:
-        """Read on from there: a list that `va_arg` has moved on."""
+        """Continue at this word: `va_arg` has already read the words before it."""
         self._at = words
 
     def word(self) -> int:
@@ -70,7 +70,7 @@ class Varargs:
         return self._word()
 
     def long(self) -> int:
-        """`va_arg(va, long)`: the next two words on an even place, unsigned."""
+        """`va_arg(va, long)`: the next two words, from an even word on, unsigned."""
         self._at += self._at & 1
         low = self._word()
         return low | self._word() << 16
@@ -81,7 +81,7 @@ class Varargs:
         return value
 
     def pointer(self) -> tuple[Any, int]:
-        """`va_arg(va, void *)`: the pointer passed in that place (None for NULL or for none), and its address."""
+        """`va_arg(va, void *)`: the pointer passed there (None for NULL, or if it was no pointer), and its address."""
         self._at += self._at & 1
         value = self._objects.get(self._at)
         address = self.long()
@@ -93,7 +93,7 @@ class Varargs:
 
 
 class ArgumentBlock(HeapBlock):
-    """The same words as an object, for a variadic function of the firmware: its `va_list` points there."""
+    """The same words as an object in memory: the `va_list` of a variadic function of the firmware points to it."""
 
     __slots__ = ("arguments",)
 
@@ -111,10 +111,10 @@ class ArgumentBlock(HeapBlock):
 
 
 def signed16(word: int) -> int:
-    """A word as the C's int."""
+    """A word as a signed `int`."""
     return (word + 0x8000 & 0xFFFF) - 0x8000
 
 
 def signed32(value: int) -> int:
-    """Two words as the C's long."""
+    """Two words as a signed `long`."""
     return (value + 0x80000000 & 0xFFFFFFFF) - 0x80000000
