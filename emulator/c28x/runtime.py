@@ -688,7 +688,7 @@ class Runtime:
         return found
 
     def callable(self, function: Any, number: int) -> Any:
-        """The function to call for a pointer.  Reports a pointer to no function, such as NULL, and raises IllegalCall."""
+        """The function that a pointer points to.  If it points to no function: report it and raise IllegalCall."""
         known = self.called_as.get((function, number))
         if known is not None:
             return known

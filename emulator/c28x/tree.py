@@ -196,7 +196,7 @@ class Expr:
     bounds: Interval | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
     #: Pass `guards`: the check of this value; None: nothing can go wrong.
     guard: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
-    #: Pass `guards`: its mathematical value is needed, without wraps of + - *.
+    #: Pass `guards`: its mathematical value is needed, without wraps of + - * <<.
     unwrapped: bool = field(default=False, kw_only=True, repr=False, compare=False, metadata=FOUND)
     #: Pass `guards`: the check of a float that others will see, or of an integer that goes to a register field.
     leaving: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)

@@ -1,1 +1,1 @@
-"""Passes over a function's tree before code is generated; each leaves its results on the nodes."""
+"""Passes over the tree of a function, before code is generated.  Each pass stores its results on the nodes."""

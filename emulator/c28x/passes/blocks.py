@@ -1,7 +1,7 @@
-"""Static check of library calls: are block lengths and argument types those that the function needs?
+"""Static check of library calls: do the block lengths and argument types fit the function?
 
-It looks only at the call: a length that exceeds the member, the size of a pointer in place of what it points to, a
-float for a function of integers.  A block that is a whole object is checked when it is copied.
+It examines only the call: a length beyond the end of a member, the size of a pointer instead of the size of its target,
+a float for a function of integers.  A block that is a whole object is checked at run time, when it is copied.
 """
 
 from __future__ import annotations
@@ -13,16 +13,16 @@ from emulator.c28x.ctypes import ArrayType, FloatType, IntType, PointerType
 from emulator.c28x.tree import AddressOf, Call, Const, Convert, Expr, LValue, Variable
 from emulator.c28x.tree_queries import bare, calls, source_text
 
-#: Function -> how many of its arguments are blocks; the last one is their length in words.
+#: Function -> how many of its arguments are blocks; its last argument is their length in words.
 _BLOCKS: Final = {"memset": 1, "memcpy": 2, "memmove": 2, "memcmp": 2}
-#: Function -> its text, and which of its arguments is the most that it takes.
+#: Function -> the indices of its text and of the largest number of words that it takes.
 _TEXTS: Final = {"strncpy": (0, 2), "strncat": (0, 2), "strncmp": (0, 2), "snprintf": (0, 1)}
 _COPIES: Final = ("memcpy", "memmove", "strcpy", "strncpy")
 _MAGNITUDES: Final = ("abs", "labs", "llabs")
 
 
 def check_blocks(e: Call, say: Callable[[str, str, str], None]) -> None:
-    """Report what the arguments of a call do not fit: `say(rule, message, object)`."""
+    """Report arguments of a call that do not fit the function: `say(rule, message, object)`."""
     name, arguments = e.function.name, e.arguments
     if not e.function.extern or not arguments:
         return
@@ -61,12 +61,12 @@ def check_blocks(e: Call, say: Callable[[str, str, str], None]) -> None:
 
 
 def _of_pointers(e: Expr) -> bool:
-    """Whether a block may hold pointers."""
+    """Whether a block can contain pointers."""
     return not isinstance(e.ctype, PointerType) or isinstance(e.ctype.target, PointerType)
 
 
 def _left(e: Expr) -> int | None:
-    """The words from where an argument points to the end of the array member that it lies in; None: not known."""
+    """The words from the target of an argument to the end of the array member that contains it; None: not known."""
     match e:
         case AddressOf(lvalue=LValue(ctype=ArrayType() as member, root=root, words=words, indices=indices)):
             whole = not words and isinstance(root, Variable) and root.ctype == member

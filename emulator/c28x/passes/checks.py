@@ -1,7 +1,7 @@
-"""Static checks on the typed tree of a whole image: what can be said of firmware without running it.
+"""Static checks on the typed tree of a whole image: findings without running the firmware.
 
-They run when `CompileOptions.static` is set.  Each finding carries the line of the statement.  The checks are silent
-where a driver is right: the detectors that run with the firmware decide what needs more than one function.
+They run if `CompileOptions.static` is set.  Each finding has the line of the statement.  A correct driver gets no
+finding: what the trees alone do not decide is left to the detectors that run with the firmware.
 """
 
 from __future__ import annotations
@@ -29,11 +29,10 @@ def check(
     modules: Iterable[Module], objects: Mapping[Variable, list[Any] | None], stamps: Stamps,
     entries: frozenset[str] = frozenset(),
 ) -> list[StaticFinding]:
-    """What the trees of `modules` show.
+    """The static findings in the trees of `modules`.
 
-    `objects` are the file-scope objects with the values they start from (None: no initialiser); `stamps` are those of
-    these modules, whose `suspicions` have been asked for; `entries` are functions
-    (`module.name`) that the board itself enters.
+    `objects` are the file-scope objects with their initial values (None: no initialiser).  `stamps` are the stamps of
+    these modules, after a call of `suspicions`.  `entries` are functions (`module.name`) that the board itself calls.
     """
     modules = list(modules)
     initialisers = {variable: start or [] for variable, start in objects.items()}

@@ -1,6 +1,6 @@
-"""Static check of differences: an object less its own copy is always 0, a quotient of the two always 1.
+"""Static check of differences: an object minus its own copy is always 0, and their quotient always 1.
 
-`last = now; speed = now - last;` stores before it subtracts.  Copies are followed from statement to statement of a
+`last = now; speed = now - last;` stores before it subtracts.  The check follows copies through the statements of a
 block, and into the branches of an `if`.
 """
 
@@ -25,9 +25,9 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import OBSERVABLE, bare, blocks, parts, roots, source_text
 
-#: Operator -> what it gives of an object and its copy.
+#: Operator -> its result for an object and its copy.
 _RESULT: Final = {"-": 0, "/": 1, "^": 0}
-#: The two ends of a copy.
+#: Pairs of a copy and its original.
 _Copies = list[tuple[LValue, LValue]]
 
 
@@ -57,7 +57,7 @@ def _are_copies(e: Binary, copies: _Copies) -> bool:
 
 
 def _behind(s: Assign | Declare | Evaluate, copies: _Copies) -> _Copies:
-    """The copies that there are behind a statement."""
+    """The copies that are valid after a statement."""
     called = any(isinstance(part, OBSERVABLE) for root in roots(s) for part in parts(root))
     written: Variable | Expr | None = None
     target: LValue | None = None
@@ -79,11 +79,11 @@ def _behind(s: Assign | Declare | Evaluate, copies: _Copies) -> _Copies:
 
 
 def _plain(lvalue: LValue) -> bool:
-    """Whether an object is one scalar with a name, which only statements change."""
+    """Whether an lvalue is one named scalar that only statements change."""
     root = lvalue.root
     return isinstance(root, Variable) and not lvalue.indices and not volatile(lvalue) and lvalue.ctype.leaves == 1
 
 
 def _reached(lvalue: LValue) -> bool:
-    """Whether a function that is called may change an object."""
+    """Whether a called function could change an object."""
     return isinstance(lvalue.root, Variable) and (lvalue.root.kind == "global" or lvalue.root.in_memory)

@@ -1,9 +1,9 @@
-"""Pass `costs`: what the operations of the tree cost in CPU cycles.
+"""Pass `costs`: the CPU cycles of the operations in the tree.
 
-Magnitudes are those of unoptimised C28x code with FPU32 (load 1-2, float add or multiply 2 plus a delay slot, a
-peripheral access two wait states, call and return with their saves).  CHOICE: one factor a function, given with the
-firmware, brings whole tasks to the times measured on the robot (TFG figures 37 and 39).
-What a float division costs is said by `float_division.py`.
+The costs are in the order of magnitude of unoptimised C28x code with FPU32 (a load 1-2 cycles, a float addition or
+multiplication 2 plus a delay slot, a peripheral access two wait states, call and return with their saves).  CHOICE: one
+factor per function, given with the firmware, scales whole tasks to the times measured on the robot (TFG figures 37 and
+39).  `float_division.py` has the cost of a float division.
 """
 
 from __future__ import annotations
@@ -63,11 +63,11 @@ COMPARE: Final = 3
 BRANCH: Final = 4
 CALL: Final = 16
 LOOP: Final = 4
-#: What a turn of a counting loop costs besides its body.
+#: The cycles of a turn of a counting loop, without its body.
 TURN: Final = LOOP + COMPARE + INT_OP
 
-#: Functions that are instructions and no call -> theirs (SPRU514, "Intrinsics"): a product is MOVL, IMPYL, QMPYL and
-#: LSL64, a limit MINL and MAXL.
+#: Functions that compile to instructions without a call -> their cycles (SPRU514, "Intrinsics"): a product is MOVL,
+#: IMPYL, QMPYL and LSL64, a limit is MINL and MAXL.
 INLINE: Final = {"__IQmpy": 4, "__IQxmpy": 4, "__IQsat": 2}
 
 #: Operators of the tree on ints (of 16 bits) -> cycles.
@@ -75,8 +75,8 @@ INT: Final = {
     "+": INT_OP, "-": INT_OP, "*": INT_MUL, "/": INT_DIV, "%": INT_DIV, "<<": 2, ">>": 2, "&": 1, "|": 1, "^": 1,
 }  # fmt: skip
 
-#: A time of code that was not calibrated may be this many times longer or shorter.  Computed, by leaving out each task
-#: in turn and predicting it, and by what was never fitted: `python -m tests.calibration --write`.
+#: The time of code without calibration may be wrong by this factor, in both directions.  It was computed by leaving out
+#: each task in turn and predicting it, and from tasks that were never fitted: `python -m tests.calibration --write`.
 UNCALIBRATED_FACTOR: Final = 3.0
 
 
@@ -87,7 +87,7 @@ class Costs:
         self.division = division
 
     def leave(self, function: Function) -> None:
-        """Leave on every statement what its own expressions cost; of a loop, one look at its test."""
+        """Store on every statement the cycles of its own expressions; on a loop, those of one test."""
         for s in statements(function.body):
             s.cycles = self._statement(s)
 
@@ -118,13 +118,13 @@ class Costs:
             case For(test=Compare() as test):
                 return self.condition(test) + LOOP
             case Switch(subject=Const(), cases=[(None, _)]):
-                return 0  # nothing is chosen
+                return 0  # there is no choice at run time
             case Switch(subject=subject, cases=cases):
                 return self.cycles(subject) + BRANCH * max(1, len(cases))
         return 0
 
     def cycles(self, e: Any) -> int:
-        """What the value of an expression costs."""
+        """The cycles of an expression."""
         match e:
             case Load(lvalue=lvalue):
                 plain = isinstance(lvalue.root, Variable) and lvalue.root.plain
@@ -165,7 +165,7 @@ class Costs:
         return FLOAT_OP if multiplies else self.division.cycles
 
     def condition(self, e: Expr) -> int:
-        """What it costs to branch on an expression."""
+        """The cycles of a branch on an expression."""
         match e:
             case Compare(left=left, right=right):
                 return COMPARE + self.cycles(left) + self.cycles(right)
@@ -176,7 +176,7 @@ class Costs:
         return COMPARE + self.cycles(e)
 
     def way(self, lvalue: LValue) -> int:
-        """What it costs to come to an object: its subscripts, its pointer."""
+        """The cycles of reaching an object: its subscripts, its pointer."""
         indices = sum(self.cycles(index.expr) for index in lvalue.indices)
         if isinstance(lvalue.root, Variable):
             return INDEX * len(lvalue.indices) + indices

@@ -1,6 +1,6 @@
-"""Counting loops: bounds of the locals that are stepped in them, and the values of their counters after them.
+"""Counting loops: bounds of the locals that step in them, and the values of their counters after the loops.
 
-Only plain locals, and loops from one constant to another one.  `values` holds conditions against it.
+Only plain locals, and loops from one constant to another.  Pass `values` checks conditions with these bounds.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ from emulator.c28x.tree_queries import assigned, assigned_variables, bare, block
 
 
 def known_locals(function: Function, *, counted: bool) -> dict[Variable, tuple[int, int]]:
-    """Bounds of locals that get nothing but constants and are stepped, if at all, in one direction.
+    """Bounds of locals that are only set to constants, and only stepped in one direction, if at all.
 
-    `counted`: how often loops turn bounds them, too.
+    `counted`: the numbers of turns of loops are used as well.
     """
     steps = Counted(function).steps if counted else {}
     given: dict[Variable, list[int]] = {}
@@ -75,10 +75,10 @@ def known_locals(function: Function, *, counted: bool) -> dict[Variable, tuple[i
 
 
 class Counted:
-    """Bounds of a function's locals that begin at constants and are stepped in loops.
+    """How far steps in loops move the locals of a function.
 
-    A step within loops is taken as often as these turn, out to the statement that gives the local a constant before
-    they begin.  A loop that is not known to count ends the look: then nothing is known.
+    A step in loops counts once for each turn of these loops, outwards to the loop before which the local is set to a
+    constant.  If one of these loops has no known number of turns, nothing is known of the local.
     """
 
     def __init__(self, function: Function) -> None:
@@ -86,14 +86,14 @@ class Counted:
         self._single: dict[Variable, int] = {}
         self._loops: dict[Variable, int] = {}
         self._block(function.body, [])
-        #: By the local: how far all its steps together bring it away.
+        #: Local -> the sum of all its steps.
         self.steps = {
             variable: self._single.get(variable, 0) + self._loops.get(variable, 0)
             for variable in {*self._single, *self._loops} - self._unknown
         }
 
     def _block(self, body: list[Stmt], around: list[tuple[int | None, frozenset[Variable]]]) -> None:
-        """`around`, the loops from the outermost one: how often each turns, the locals that are set before it."""
+        """`around`: for each enclosing loop, from the outermost, its number of turns and the locals set before it."""
         begun: frozenset[Variable] = frozenset()
         for s in body:
             match s:
@@ -124,7 +124,7 @@ class Counted:
                         self._block(inner, [*around, (1, begun)])
 
     def _step(self, variable: Variable, by: int, around: list[tuple[int | None, frozenset[Variable]]]) -> None:
-        """A step of a local within loops."""
+        """Count a step of a local within loops."""
         times = 1
         for often, begun in reversed(around):
             if often is None:
@@ -137,7 +137,7 @@ class Counted:
 
 
 def turning(body: list[Stmt], around: frozenset[Variable]) -> dict[int, frozenset[Variable]]:
-    """By the statement: the counters of the loops around it."""
+    """Identity of each statement -> the counters of the loops around it."""
     found: dict[int, frozenset[Variable]] = {}
     for s in body:
         if around:
@@ -148,7 +148,7 @@ def turning(body: list[Stmt], around: frozenset[Variable]) -> dict[int, frozense
 
 
 def turns(start: int, stop: int, step: int) -> int:
-    """How often a loop turns that counts from `start` up to `stop`, or down to it."""
+    """The number of turns of a loop that counts from `start` up, or down, to `stop`."""
     return len(range(start, stop, step))
 
 
@@ -157,7 +157,7 @@ def _assigns(body: list[Stmt], variable: Variable) -> bool:
 
 
 def _goes_up(s: Stmt) -> bool | None:
-    """Whether a statement adds a positive constant to a local (False: takes one away); None: neither."""
+    """True if a statement adds a positive constant to a local, False if it subtracts one; None: neither."""
     match s:
         case Assign(target=LValue(root=Variable() as root), value=value):
             match bare(value):
@@ -169,12 +169,12 @@ def _goes_up(s: Stmt) -> bool | None:
 
 
 class Ends:
-    """The values of loop counters after the end of their loops, until something changes them."""
+    """The values of loop counters after their loops, until a statement changes them."""
 
     def __init__(self, body: list[Stmt]) -> None:
-        #: By the statement behind such a loop: the counters, and what they are there.
+        #: Identity of a statement behind such a loop -> the counters, with their values there.
         self.behind: dict[int, dict[Variable, int]] = {}
-        #: By the statement: the counter that it holds against 0 where the test of the loop before has gone past 0.
+        #: Identity of an `if` that compares a counter with 0 after a loop that has counted past 0 -> the counter.
         self.too_late: dict[int, Variable] = {}
         self._block(body, {})
 
@@ -183,7 +183,7 @@ class Ends:
         for s in body:
             changed = assigned_variables([s])
             kept = {v: end for v, end in known.items() if v not in changed}
-            # The test of a loop sees what its turns have changed, that of a choice does not.
+            # The test of a loop sees the changes of its turns; the test of an `if` does not see those of its branches.
             self.behind[id(s)] = kept if isinstance(s, For | While) else known
             for inner in blocks(s):
                 self._block(inner, kept)
@@ -195,7 +195,7 @@ class Ends:
 
 
 def _end_of(s: Stmt) -> dict[Variable, int]:
-    """What a loop that nothing leaves makes of its counter."""
+    """The value of the counter after a loop that nothing leaves early; empty if it is not known."""
     match s:
         case For(start=Const(value=int(start)), stop=Const(value=int(stop)), step=step, body=body):
             counter = s.counter
@@ -212,9 +212,9 @@ def _end_of(s: Stmt) -> dict[Variable, int]:
 
 
 def _counts_past(s: Stmt) -> Variable | None:
-    """The local that `while (n-- > 0)`, or `while (n--)`, counts: it is below 0 when the test ends the loop.
+    """The local that `while (n-- > 0)`, or `while (n--)`, counts: it has passed 0 when the test ends the loop.
 
-    The step of the test is what the body begins with; nothing else changes the local.
+    In the tree, the body begins with the step of the test.  Nothing else changes the local.
     """
     match s:
         case While(
@@ -237,7 +237,7 @@ def _counts_past(s: Stmt) -> Variable | None:
 
 
 def _against_zero(e: Expr, counter: Variable) -> bool:
-    """Whether a condition is that a local is 0, or that it is not."""
+    """Whether a condition tests whether a local is 0, or whether it is not."""
     match bare(e):
         case Not(operand=operand):
             return _against_zero(operand, counter)
@@ -249,7 +249,7 @@ def _against_zero(e: Expr, counter: Variable) -> bool:
 
 
 def _breaks(body: list[Stmt]) -> bool:
-    """Whether a statement of a loop's body leaves that loop; a switch is left by another statement."""
+    """Whether the body of a loop contains a `break` of that loop; that of a switch is another node."""
     return any(
         isinstance(s, Break) or (not isinstance(s, For | While) and any(map(_breaks, blocks(s)))) for s in body
     )

@@ -1,16 +1,16 @@
-"""Pass `flow`: what is certainly written at each point of a function, and which statements anything leads to.
+"""Pass `flow`: which objects are certainly written at each point of a function, and which statements are reachable.
 
-One walk forwards carries a `FlowState` along every way.  It leaves on the nodes: `LValue.unwritten`, `Stmt.reached`,
-`For.turns`, `Function.ends`.  The writer of code makes its tests of what that says (pass `guards`); `report` says what
-it shows without running: locals read before they are written, missing returns, statements that nothing leads to.
+One forward walk carries a `FlowState` along every path.  It stores on the nodes: `LValue.unwritten`, `Stmt.reached`,
+`For.turns`, `Function.ends`.  Pass `guards` makes the run-time checks from these.  `FlowReport` makes static findings:
+locals read before they are written, missing returns, unreachable statements.
 
-What is written is a set of variables and of elements.  An element is known by its subscript as far as that is made of
-constants and plain locals; a new value of such a local makes what was known by it meaningless.  Conditions of plain
-locals are remembered: "if `found` is not zero, `place` has been written" survives where ways meet, so that a flag that
-guards a value is understood; and a loop whose condition holds at first by constants runs at least once.
+The written objects are a set of variables and elements.  An element is identified by its subscripts, if they consist of
+constants and plain locals; a new value of such a local makes the element unknown.  Conditions on plain locals are
+remembered: "if `found` is not zero, `place` has been written" survives where paths join, so that a flag that guards a
+value is understood.  A loop whose condition first holds by constants runs at least once.
 
-A switch that names every constant of an enumeration has no way past its cases that the source means, but the variable
-may hold something else.  Such a way is *unexpected*: reports leave it out, the tests of the running code do not.
+If a switch names every constant of an enumeration, the source intends no path past its cases, but the variable may hold
+another value.  Such a path is *unexpected*: static findings ignore it, run-time checks do not.
 """
 
 from __future__ import annotations
@@ -56,9 +56,9 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import assigned_variables, blocks, children, parts, roots, statements
 
-#: After so many turns what is known at a loop's head is given up.
+#: After so many turns, the walk gives up what it knows at the head of a loop.
 _TURNS: Final = 8
-#: CHOICE: so many conditions that imply something are kept, the newest: a function of thousands is read in moments.
+#: CHOICE: only so many conditions are kept, the newest ones, so that a function with thousands is analysed quickly.
 _CONDITIONS: Final = 100
 
 
@@ -70,7 +70,7 @@ class Term(NamedTuple):
 
 
 class Element(NamedTuple):
-    """A scalar of an object in memory: the object, the scalar's place in it, the locals in its subscripts."""
+    """A scalar of an object in memory: the object, the place of the scalar in it, the locals in its subscripts."""
 
     root: Variable
     place: Any
@@ -78,7 +78,7 @@ class Element(NamedTuple):
 
 
 class Condition(NamedTuple):
-    """That a term is not zero (`holds`), or that it is."""
+    """The condition that a term is not zero (`holds`), or that it is zero."""
 
     holds: bool
     term: Term
@@ -86,52 +86,52 @@ class Condition(NamedTuple):
 
 @dataclass(frozen=True)
 class FlowState:
-    """What is known at one point."""
+    """What is known at one point of the function."""
 
-    #: The plain locals that are written on every expected way, and on some.
+    #: The plain locals that are written on every expected path (`written`), and on some path (`touched`).
     written: frozenset[Variable] = frozenset()
     touched: frozenset[Variable] = frozenset()
-    #: The objects in memory that are written on every way, and elements of them.
+    #: The objects in memory, and elements of them, that are written on every path.
     stored: frozenset[Variable | Element] = frozenset()
-    #: The plain locals that are constants here.
+    #: The plain locals with a known constant value here.
     known: Mapping[Variable, int] = field(default_factory=dict)
-    #: The plain locals that are written if a condition holds; None means any (it does not hold here).
+    #: Condition -> the plain locals that are written if it holds; None: it cannot hold here.
     implied: Mapping[Condition, frozenset[Variable] | None] = field(default_factory=dict)
-    #: The plain locals of which an unexpected way may know less.
+    #: The plain locals that may be unwritten on an unexpected path.
     doubtful: frozenset[Variable] = frozenset()
-    #: Only unexpected ways lead here.
+    #: Only unexpected paths lead here.
     unexpected: bool = False
 
     def if_holds(self, condition: Condition) -> frozenset[Variable] | None:
-        """The plain locals that are written if `condition` holds; None means any."""
+        """The plain locals that are written if `condition` holds; None: it cannot hold."""
         implied = self.implied.get(condition, frozenset())
         if implied is None:
             return None
         return implied | self.written if implied else self.written
 
 
-#: What holds at the end of a turn, and at every break; None: no way arrives.
+#: The states at the end of a turn, and at every break; None: no path arrives there.
 Turn = tuple[FlowState | None, list[FlowState | None]]
 
 
 class Flow:
-    """The walk over one function."""
+    """The forward walk over one function."""
 
     def __init__(self, function: Function) -> None:
         self.function = function
         self.tracked = frozenset(v for v in function.locals if v.plain)
-        #: For each loop or switch that can be left from within: what holds where it is left, and at `continue`.
+        #: For each enclosing loop: the states at its `break`s and at its `continue`s; for each switch, at its `break`s.
         self.loops: list[tuple[list[FlowState | None], list[FlowState | None]]] = []
         self.switches: list[list[FlowState | None]] = []
         #: Locals that every case of a switch without default writes -> the place of that switch.
         self.undefaulted: dict[Variable, Where] = {}
-        #: Locals that every case of a complete switch without default writes -> the places of such switches; and those
-        #: whose every case leaves the function or the turn.
+        #: Locals that every case of a complete switch without default writes -> the places of such switches; the places
+        #: of complete switches whose every case leaves the function or the turn.
         self.completed: dict[Variable, frozenset[Where]] = {}
         self.left_by: frozenset[Where] = frozenset()
-        #: A loop's body is walked only to see what holds at its head: nothing is left on the nodes.
+        #: The body of a loop is walked only to find the state at its head: nothing is stored on the nodes.
         self.quiet = False
-        #: What came out of such walks, by the loop: loops within loops would be walked again and again.
+        #: The results of such walks, by loop: otherwise nested loops would be walked again and again.
         self.walked: dict[int, list[tuple[FlowState, Turn]]] = {}
 
     def run(self) -> None:
@@ -250,7 +250,7 @@ class Flow:
         return self.join(end if runs else self.join(head, end), *breaks)
 
     def turn(self, loop: While | For, head: FlowState) -> Turn:
-        """One turn of a loop, from its head to the next look at its test."""
+        """One turn of a loop, from its head to the next evaluation of its test; a quiet walk uses known results."""
         if not self.quiet:
             return self.walk(loop, head)
         known = self.walked.setdefault(id(loop), [])
@@ -262,7 +262,7 @@ class Flow:
         return outcome
 
     def walk(self, loop: While | For, head: FlowState) -> Turn:
-        """The turn, whatever is known of such walks."""
+        """Walk one turn of a loop."""
         self.loops.append(([], []))
         end = self.block(
             loop.body, self.assume(loop.test, True, head) if isinstance(loop, While) and loop.first else head
@@ -281,7 +281,7 @@ class Flow:
         return end, breaks
 
     def head(self, loop: While | For, state: FlowState, changed: Set[Variable]) -> FlowState:
-        """What holds at the head of a loop in every turn."""
+        """The state at the head of a loop that is valid in every turn."""
         quiet, self.quiet = self.quiet, True
         head = replace(state, known={v: c for v, c in state.known.items() if v not in changed})
         for _ in range(_TURNS):
@@ -300,7 +300,7 @@ class Flow:
         return head
 
     def forget(self, state: FlowState, changed: Set[Variable]) -> FlowState:
-        """What still holds when a loop may have changed variables."""
+        """The state after a loop that may have changed the variables `changed`."""
         return replace(
             state,
             stored=frozenset(),
@@ -312,14 +312,14 @@ class Flow:
     # What is written
 
     def write(self, variable: Variable, value: Any, state: FlowState) -> FlowState:
-        """`variable` has a new value."""
+        """The state after `variable` gets a new value."""
         if not variable.plain:
             return replace(state, stored=state.stored | {variable})
         known = {v: c for v, c in state.known.items() if v is not variable}
         implied = {k: v for k, v in state.implied.items() if variable not in k.term.uses}
         own = Term(variable, frozenset({variable}))
         source = term(true_part(value)) if isinstance(value, Expr) else None
-        for holds in (True, False):  # what a value implies, its copy implies
+        for holds in (True, False):  # a copy implies what the original implies
             if source is not None and Condition(holds, source) in implied:
                 implied[Condition(holds, own)] = implied[Condition(holds, source)]
         constant = evaluate(value, state.known)
@@ -333,7 +333,7 @@ class Flow:
         )  # fmt: skip
 
     def begin(self, variable: Variable, state: FlowState) -> FlowState:
-        """`variable` begins without a value."""
+        """The state after `variable` is declared without a value."""
         state = self.write(variable, None, state)
         return replace(
             state, written=state.written - {variable}, touched=state.touched - {variable},
@@ -341,7 +341,7 @@ class Flow:
         )  # fmt: skip
 
     def store(self, target: LValue, value: Expr, state: FlowState) -> FlowState:
-        """Something was assigned to `target`."""
+        """The state after an assignment to `target`."""
         root = target.root
         if not isinstance(root, Variable) or root.kind == "global" or target.bits is not None:
             return state
@@ -351,7 +351,7 @@ class Flow:
             return copied(root, state)
         key = element(target)
         if key is not None and not root.escapes:
-            # Through a pointer, or by another function, a never-written value may be copied in later.
+            # Not if a pointer or another function can reach it: they may copy a never-written value in later.
             state = replace(state, stored=state.stored | {key})
         return self.write(root, value, state) if not target.indices and root.ctype.leaves == 1 else state
 
@@ -377,7 +377,7 @@ class Flow:
     # Expressions
 
     def read(self, e: Any, state: FlowState) -> None:
-        """Leave on what is read whether it has been written."""
+        """Store on every lvalue that is read whether it can be unwritten."""
         if self.quiet:
             return
         match e:
@@ -397,7 +397,7 @@ class Flow:
             self.read(inner, state)
 
     def assume(self, test: Expr, holds: bool, state: FlowState) -> FlowState:
-        """The state in which `test` has come out true (or false)."""
+        """The state after `test` was true (or false)."""
         test = true_part(test)
         match test:
             case Not(operand=operand):
@@ -418,17 +418,17 @@ class Flow:
         if of is None or not of.uses:
             return state
         implied = state.implied.get(Condition(holds, of), frozenset())
-        if implied is None:  # no way leads here
+        if implied is None:  # no path leads here
             implied = self.tracked
         return replace(
             state, written=state.written | implied, touched=state.touched | implied,
             implied={**state.implied, Condition(not holds, of): None},
         )  # fmt: skip
 
-    # Ways that meet
+    # Where paths join
 
     def join(self, *states: FlowState | None) -> FlowState | None:
-        """What is known where several ways meet (None does not arrive)."""
+        """The state where several paths join.  A path that is None does not arrive."""
         arriving = [s for s in states if s is not None]
         expected = [s for s in arriving if not s.unexpected] or arriving
         if not expected:
@@ -448,7 +448,7 @@ class Flow:
 
 
 def meet(one: FlowState, other: FlowState) -> FlowState:
-    """What is known where two ways meet."""
+    """The state where two paths join."""
     written = one.written & other.written
     implied: dict[Condition, frozenset[Variable] | None] = {}
     for key in {**one.implied, **other.implied}:
@@ -466,7 +466,7 @@ def meet(one: FlowState, other: FlowState) -> FlowState:
 
 
 def copied(root: Variable, state: FlowState) -> FlowState:
-    """A structure was copied to `root`: what was never written in the source is so in the target now."""
+    """The state after a copy of a structure to `root`: never-written scalars of the source stay so in the target."""
     return replace(
         state,
         stored=frozenset(k for k in state.stored if k is not root and not (isinstance(k, Element) and k.root is root)),
@@ -477,7 +477,7 @@ def copied(root: Variable, state: FlowState) -> FlowState:
 
 
 def element(place: LValue) -> Element | None:
-    """What tells an element apart from others of its object; None if its subscripts are no terms."""
+    """The identity of an element within its object; None if its subscripts are not terms."""
     terms = [term(index.expr) for index in place.indices]
     if not isinstance(place.root, Variable) or None in terms:
         return None
@@ -488,7 +488,7 @@ def element(place: LValue) -> Element | None:
 
 
 def term(e: Expr) -> Term | None:
-    """An expression as a value that is equal for equal ones; None if it is more than constants and plain locals."""
+    """An expression as a `Term`; None if it contains more than constants and plain locals."""
     match e:
         case Const(value=value):
             return Term(value, frozenset())
@@ -509,7 +509,7 @@ def term(e: Expr) -> Term | None:
 
 
 def true_part(e: Expr) -> Expr:
-    """An expression without the conversions that give 0 for 0 only."""
+    """An expression without the conversions that give 0 only for 0."""
     while isinstance(e, Convert):
         match e.ctype, e.operand.ctype:
             case IntType(bits=bits), IntType(bits=before) if bits >= before or e.bounds == e.operand.bounds:
@@ -522,7 +522,7 @@ def true_part(e: Expr) -> Expr:
 
 
 def evaluate(e: Any, known: Mapping[Variable, int]) -> int | None:
-    """The integer that an expression is, with what is known of locals; None if that is not enough."""
+    """The integer value of an expression, with the known values of locals; None if it is not known."""
     match e:
         case Const(value=int(value)):
             return value
@@ -552,11 +552,11 @@ def evaluate(e: Any, known: Mapping[Variable, int]) -> int | None:
     return None
 
 
-# What it shows without running
+# Static findings
 
 
 class FlowReport:
-    """Reports what the walk has left on the nodes of one function."""
+    """Makes static findings from the results of the walk over one function."""
 
     def __init__(self, function: Function, report: StaticReport) -> None:
         self.function = function
@@ -564,7 +564,7 @@ class FlowReport:
         self.seen: set[Variable] = set()
 
     def run(self) -> None:
-        """Report it."""
+        """Report all of them."""
         f = self.function
         self.block(f.body)
         if f.expected_end and f.ctype.result != VOID and f.name != "main":
@@ -587,7 +587,7 @@ class FlowReport:
         self.to.report(self.function, where, "unreachable", message)
 
     def statement(self, s: Stmt) -> None:
-        # A value is read before the way to what it is assigned to.
+        # The assigned value is read before the subscripts of its target.
         for root in reversed(roots(s)) if isinstance(s, Assign | CopyStruct) else roots(s):
             for e in parts(root):
                 if isinstance(e, Load) and isinstance(e.lvalue.root, Variable) and e.lvalue.unwritten is not None:
@@ -609,7 +609,7 @@ class FlowReport:
             self.block(body)
 
     def read(self, variable: Variable, how: Unwritten, where: Where) -> None:
-        """A read that comes before a write; of each local the first one tells."""
+        """Report a read before any write, once for each local."""
         if not how.expected or variable in self.seen:
             return
         self.seen.add(variable)

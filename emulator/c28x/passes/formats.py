@@ -1,7 +1,7 @@
-"""Static check of formats: what `sprintf` and its like are told to read, against what they are given.
+"""Static check of formats: the arguments that the format of a `sprintf` call reads, compared with those it gets.
 
-Only of a format that stands in the call.  Words are shown in a wrong width or sign without a word of the compiler; a
-surplus argument is lawful C, and no use to anybody.
+It checks only a format that is a literal in the call.  A wrong width or sign gets no message from the compiler.  A
+surplus argument is valid C, but useless.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from emulator.c28x.ctypes import CType, FloatType, FunctionType, HandleType, Int
 from emulator.c28x.tree import Call, String
 from emulator.c28x.tree_queries import bare, source_text
 
-#: Function -> the place of the format among its parameters.
+#: Function -> the index of the format among its parameters.
 _FORMATS: Final = {
     "printf": 0, "sprintf": 1, "snprintf": 2, "System_printf": 0, "System_sprintf": 1, "System_snprintf": 2,
 }  # fmt: skip
@@ -24,7 +24,7 @@ _SPECIFICATION: Final = re.compile(
 
 
 def check_format(e: Call, say: Callable[[str, str, str], None]) -> None:
-    """Report what the arguments of a call do not fit: `say(rule, message, object)`."""
+    """Report arguments of a call that do not fit its format: `say(rule, message, object)`."""
     place = _FORMATS.get(e.function.name)
     if place is None or not e.function.ctype.variadic or place >= len(e.arguments):
         return
@@ -38,7 +38,7 @@ def check_format(e: Call, say: Callable[[str, str, str], None]) -> None:
         if not fits(given.ctype):
             text = source_text(given)
             say("varargs-type", f"{conversion} reads {what}, and {text} is of type {given.ctype}", text)
-            return  # those behind it are shifted
+            return  # the later arguments are shifted
     if len(wanted) > len(e.extra):
         conversion = wanted[len(e.extra)][0]
         say("varargs-missing", f"nothing is passed for {conversion} of {form.text!r}", form.text)
@@ -68,7 +68,7 @@ def _pointer(ctype: CType) -> bool:
 
 
 def _wanted(text: str) -> list[tuple[str, str, Callable[[CType], bool]]] | None:
-    """What each conversion reads: how it is written, what, and the test of a type; None where that is not known."""
+    """(text, what it reads, test of a type) of each conversion; None if one is not known."""
     found: list[tuple[str, str, Callable[[CType], bool]]] = []
     for one in _SPECIFICATION.finditer(text):
         written, kind, length = one[0], one["kind"], one["length"]

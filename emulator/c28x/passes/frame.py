@@ -1,4 +1,4 @@
-"""Pass `frame`: where the locals of a function lie on the stack."""
+"""Pass `frame`: the places of the locals of a function on the stack."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from emulator.c28x.ctypes import ArrayType
 from emulator.c28x.tree import Function
 from emulator.c28x.tree_queries import INSTRUCTIONS
 
-#: Words of a frame besides its locals: the return address that LCR saves.
+#: The words of a frame before its locals: the return address that LCR saves.
 FRAME_WORDS: Final = 2
 
 
 def lay_out(function: Function, room: Mapping[str, int], *, residue: bool) -> None:
-    """Give every local its word in the frame.  `room`: elements that some arrays have beyond their type."""
+    """Give every local its word in the frame.  `room`: path of an array -> its length, instead of that of its type."""
     words = FRAME_WORDS
     for variable in (*(p for p in function.parameters if p.in_memory), *function.locals):
         if variable.kind == "temporary":

@@ -1,30 +1,29 @@
-"""Pass `guards`: which values are watched while the firmware runs, and what is reported there.
+"""Pass `guards`: which values are checked while the firmware runs, and what the checks report.
 
-A check is made only where passes `intervals` and `flow` do not prove it away.  What it decides
-stands on the nodes (`guard`, `fresh`, `outside`, `sign`, `leaving`, `unwrapped`): every writer of code makes the same
-checks.
+A check is made only if passes `intervals` and `flow` cannot prove that it is not needed.  The decisions are stored on
+the nodes (`guard`, `fresh`, `outside`, `sign`, `leaving`, `unwrapped`), so every code writer makes the same checks.
 
-An unsigned result wraps silently, as C says.  It is held against the mathematical one only where the wrap is hardly
-meant: it is widened afterwards, divided, compared by order, or selects an element.
+An unsigned result wraps silently, as C defines it.  It is compared with the mathematical result only where a wrap is
+hardly intended: where it is widened afterwards, divided, limited, compared by order, or selects an element.
 
 Kinds of guards:
 
 | kind | on | what is tested |
 |---|---|---|
 | `overflow` | signed + - * << and negation | the result fits its type |
-| `wrapped` | unsigned + - * | the mathematical value is the wrapped one |
-| `divide`, `modulo`, `quotient` | / and % | the divisor; whether a remainder is lost that was wanted |
-| `shift` | << and >> | the count |
-| `float` | float operations of a watched image | a NaN or an infinity is made; `more` is the division |
-| `float-to-int`, `float-argument`, `narrowed`, `octet`, `sign` | conversions | the value arrives as it was |
+| `wrapped` | unsigned + - * << | the mathematical value is the wrapped one |
+| `divide`, `modulo`, `quotient` | / and % | the divisor is not 0; no needed remainder is lost |
+| `shift` | << and >> | the count is in range |
+| `float` | float operations of a watched image | no NaN or infinity arises; `more` is the check of a division |
+| `float-to-int`, `float-argument`, `narrowed`, `octet`, `sign` | conversions | the value is not changed |
 | `callable` | calls through a pointer | it points to a function |
-| `unwritten` | loads | somebody has written the object |
-| `index`, `deep`, `pointer`, `member` | ways to an object | they stay inside |
-| `poll`, `endless` | loops | somebody ends them |
+| `unwritten` | loads | the object was written before |
+| `index`, `deep`, `pointer`, `member` | accesses to an object | they stay inside |
+| `poll`, `endless` | loops | they end |
 | `stamps`, `past` | comparisons of stamps (pass `stamps`), the time since one | the counter has not wrapped between |
 | `case` | switches over an enumeration | a value has a case |
-| `float-out` | floats that leave | they are finite |
-| `quantity` | integers that leave to a field of a register | the field holds them |
+| `float-out` | floats that others will see | they are finite |
+| `quantity` | integers that go to a register field | they fit the field |
 | `sign-lost` | signed integers that are scaled or limited as unsigned ones | they are not negative |
 """
 
@@ -109,8 +108,8 @@ from emulator.c28x.tree_queries import (
 #: Factors that scale a ratio: per cent, per mille, milli.
 SCALES: Final = (10, 100, 1000, 10000)
 CHARACTERS: Final = (CHAR.name, SCHAR.name, UCHAR.name)
-#: Fields that hold a quantity, a level or a number: what does not fit one is meant by nobody.  A phase goes round, an
-#: octet is the lower part of a word, and a flag is truth: they are not among them.
+#: Fields that hold a quantity, a level or a number: nobody intends a value that does not fit.  Fields for a phase (it
+#: is cyclic), an octet (the lower part of a word) or a flag (a truth value) are not among them.
 QUANTITIES: Final = frozenset((
     "CMPA", "CMPB", "CMPC", "CMPD", "TBPRD", "DBRED", "DBFED", "DACVALS", "DACVAL", "DELAY", "ACQPS", "CHSEL",
     "TRIGSEL", "BURSTSIZE", "SOCPRIORITY", "SPI_BIT_RATE", "SPICHAR", "RXFFIL", "TXFFIL", "IPSC", "SAR", "BRP",
@@ -124,11 +123,11 @@ def is_character(ctype: object) -> bool:
 
 
 class Guards:
-    """The decisions for one function.
+    """Makes the decisions for one function.
 
-    `watch`: the image is watched; `ieee`: floats are divided as IEEE says; `room`: elements that some arrays have
-    beyond their type; `compared`: the file-scope objects that some function compares or subscripts with; `limited`: the
-    unsigned variables that some function limits; `stamps`: what pass `stamps` suspects.
+    `watch`: the image is watched; `ieee`: float division follows IEEE; `room`: path of an array -> its length, instead
+    of that of its type; `compared`: variables that occur in a comparison or a subscript; `limited`: unsigned variables
+    that some function limits; `stamps`: the suspicions of pass `stamps`.
     """
 
     def __init__(
@@ -147,7 +146,7 @@ class Guards:
             function.path,
             tuple((v.frame_offset, v.declaration) for v in (*function.parameters, *function.locals) if v.frame_offset),
         )
-        #: Results that are converted to a wider type after they have been computed, and remainders that are subscripts.
+        #: Identity of each result that is widened afterwards -> the wider type; identities of remainders as subscripts.
         self.widened: dict[int, str] = {}
         self.indexing: set[int] = set()
         self.averaged = averaged(function.body)
@@ -166,7 +165,7 @@ class Guards:
 
     def site(self, ctype: CType, name: str, declaration: Declaration | None = None, *, at: Where | None = None,
              **more: Any) -> Site:  # fmt: skip
-        """A place to report at: `at`, as far as that is known to be on a line of its own, or the statement."""
+        """The site of a check: at `at` if that has a line, else at the statement."""
         where = at if at is not None and at.line else self.where
         return Site(where, ctype, name, declaration, **more)
 
@@ -192,7 +191,7 @@ class Guards:
             case CopyStruct(target=target, source=source):
                 self.way(target)
                 self.way(source)
-                # What a caller has passed is told where the caller copies it.
+                # A structure that a caller passes is reported where the caller copies it.
                 kind = "parameter" if isinstance(source.root, Variable) and source.root.kind == "parameter" else ""
                 s.guard = Guard("pointer", self.site(INT, target.text or "structure", at=target.where, kind=kind))
             case Declare(value=list() as values):
@@ -233,11 +232,11 @@ class Guards:
             s.endless = Guard("endless", self.site(INT, text))
 
     def no_case(self, s: Switch) -> None:
-        """A switch over an enumeration, without default.
+        """Check a switch over an enumeration without default.
 
-        A value above the first constant of a complete one is none of the enumeration.  A constant without a case is
-        told where all cases set one object, and one of them even to the value that it has before: the list was meant to
-        be complete.
+        If it has all constants: a value above the first constant that has no case is not one of the enumeration.  If it
+        has not: a constant without a case is reported only if all cases set the same object, and one of them to the
+        value that it already has.  Then the list of cases was intended to be complete.
         """
         if s.left is None or not isinstance(s.subject.ctype, IntType):
             return
@@ -250,12 +249,12 @@ class Guards:
             s.guard = Guard("case", site)
 
     def leaves_for_all(self, root: Variable | Expr, value: Expr) -> None:
-        """A float stored where others see it."""
+        """Check a float that is stored where others see it."""
         if self.watch and isinstance(value.ctype, FloatType) and isinstance(root, Variable) and root.kind == "global":
             value.leaving = Guard("float-out", self.site(value.ctype, root.declaration.path, root.declaration))
 
     def quantity(self, target: RegisterRef | RegisterAt, value: Expr) -> None:
-        """A number that is computed for a field, before any cast has cut it."""
+        """Check a number that is computed for a register field, before any cast cuts it."""
         named = target.field.name if target.field is not None else register_text(target).rpartition(".")[2]
         if named not in QUANTITIES:
             return
@@ -268,19 +267,19 @@ class Guards:
             value.leaving = Guard("quantity", site)
 
     def limited_later(self, root: Variable | Expr, value: Expr) -> None:
-        """What becomes a variable that is limited as an unsigned one: a negative number would be the largest."""
+        """Check a value of a variable that is limited as unsigned: a negative number would become the largest."""
         if isinstance(root, Variable) and root in self.limited:
             self.not_negative(value, "is limited")
 
     def not_negative(self, e: Expr, then: str) -> None:
-        """A signed number that is taken as an unsigned one of its width, and `then` used as a number."""
+        """Check a signed number that is converted to unsigned of the same width; `then`: how it is used as a number."""
         operand = as_unsigned(e)
         if operand is not None and bounds_of(operand)[0] < 0 and not isinstance(operand, Const):
             site = self.site(operand.ctype, source_text(operand), at=operand.where, widened=then)
             operand.leaving = Guard("sign-lost", site)
 
     def sum_value(self, target: LValue, e: Expr) -> None:
-        """A value on its way into an object: an unsigned sum that is divided or widened later must not wrap."""
+        """Decide for an assigned value: an unsigned sum that is divided or widened later must not wrap."""
         match target.root, e:
             case Variable(in_memory=False) as root, Binary(op="+", left=Load(lvalue=LValue(root=added))) if (
                 added is root and root.kind != "global" and root in self.averaged
@@ -304,7 +303,7 @@ class Guards:
     # Values
 
     def value(self, e: Expr) -> None:
-        """Decide for an expression and what is in it."""
+        """Decide for an expression and its parts."""
         match e:
             case Load(lvalue=lvalue):
                 self.load(lvalue)
@@ -333,7 +332,7 @@ class Guards:
                 self.all_in(e)
 
     def all_in(self, e: Expr) -> None:
-        """Decide for what stands below."""
+        """Decide for the parts of an expression."""
         for inner in children(e):
             if isinstance(inner, LValue):
                 self.way(inner, address=isinstance(e, AddressOf))
@@ -367,17 +366,17 @@ class Guards:
                 self.value(e)
 
     def ordered(self, e: Expr, other: Expr) -> None:
-        """One side of a comparison by order."""
+        """Decide for one side of a comparison by order."""
         ctype = e.ctype
         if not isinstance(ctype, IntType) or ctype.signed:
             self.value(e)
         elif isinstance(other, Const) and other.value in (ctype.high // 2, ctype.high // 2 + 1):
-            self.value(e)  # whether a difference is negative, asked on purpose
+            self.value(e)  # a deliberate test whether a difference is negative
         else:
             self.unwrapped(e, "sign-compare" if isinstance(e, Convert) else "unsigned-wrap", "is compared")
 
     def asked_for_sign(self, e: Expr) -> None:
-        """A plain character that is compared with 0 is taken to have the sign of an octet."""
+        """A plain `char` is compared with 0, as if it had the sign of an octet: check it."""
         match e:
             case Convert(operand=Load(ctype=IntType(name="char")) as operand) if bounds_of(operand)[1] > 127:
                 e.sign = Guard("sign", self.site(operand.ctype, source_text(operand), at=operand.where, kind="sign"))
@@ -385,7 +384,7 @@ class Guards:
     # Wraps that matter
 
     def unwrapped(self, e: Expr, rule: str, then: str) -> None:
-        """A value that is to be the mathematical one where it is unsigned and can differ."""
+        """Decide for a value that must be the mathematical one: check an unsigned result that can differ from it."""
         ctype = e.ctype
         if not isinstance(ctype, IntType) or ctype.signed or not _computed(e):
             self.value(e)
@@ -399,7 +398,7 @@ class Guards:
             e.guard = Guard("wrapped", site)
 
     def mathematical(self, e: Expr, ctype: IntType) -> None:
-        """Decide for what stands below the + - * of an unsigned tree whose wraps are left out."""
+        """Decide for the operands below the + - * << of an unsigned tree that is computed without wraps."""
         for leaf in mathematical_leaves(e, ctype):
             self.value(leaf)
         for product in parts(e):
@@ -407,9 +406,9 @@ class Guards:
                 self.factors(product)
 
     def factors(self, e: Binary) -> None:
-        """The factors of a product that were widened: in 16 bits a product is the same, signed or not.
+        """Check the widened factors of a product.  (In 16 bits the product is the same, signed or not.)
 
-        A large one puts words together, or makes a hash.
+        A product with a large constant joins words or computes a hash, so it is not checked.
         """
         for side, other in ((e.left, e.right), (e.right, e.left)) if e.op == "*" else ():
             large = isinstance(other, Const) and other.value > UINT.high
@@ -417,7 +416,7 @@ class Guards:
                 self.not_negative(side.operand, "is scaled")
 
     def mark_widened(self, e: Expr, to: str) -> None:
-        """Signed results below `e` are converted to `to` after they have been computed."""
+        """Remember that the results below `e` are converted to `to` only after they have been computed."""
         match e:
             case Binary(op=op, left=left, right=right) if isinstance(e.ctype, IntType):
                 self.widened[id(e)] = to
@@ -431,7 +430,7 @@ class Guards:
                 self.mark_widened(otherwise, to)
 
     def fits(self, e: Expr, ctype: IntType, exact: Interval | None, kind: str = "") -> None:
-        """A signed result that may not fit its type."""
+        """Check a signed result that may not fit its type."""
         if ctype.signed and (exact is None or exact[0] < ctype.low or exact[1] > ctype.high):
             widened = self.widened.get(id(e), "")
             site = self.site(ctype, source_text(e), at=e.where, widened=widened, kind=kind)
@@ -454,7 +453,7 @@ class Guards:
         self.factors(e)
         if op == "/":
             cast = e.left.operand if isinstance(e.left, Convert) and not e.left.explicit else e.left
-            if isinstance(cast, Convert) and cast.explicit:  # if not, the dividend's wrap is told
+            if isinstance(cast, Convert) and cast.explicit:  # otherwise the wrap of the dividend is reported
                 self.not_negative(cast, "is divided")
         widened = self.widened.get(id(e), "")
         if op in ("/", "%"):
@@ -484,7 +483,7 @@ class Guards:
             e.guard = Guard("divide", site)
 
     def dividend(self, e: Binary) -> None:
-        """The left operand: what wrapped before it is divided or shifted down is not what is meant."""
+        """Decide for the left operand: a value that wraps before a division or a right shift is not intended."""
         power = isinstance(e.right, Const) and e.right.value > 0 and not int(e.right.value) & (int(e.right.value) - 1)
         divided = e.op == "/" or (e.op == "%" and not power)
         if divided or (e.op == ">>" and isinstance(e.left, Binary) and e.left.op == "-"):
@@ -558,19 +557,19 @@ class Guards:
         e.guard = Guard("narrowed", self.site(target, source_text(operand), at=e.where))
 
     def octet(self, e: Convert, target: IntType) -> bool:
-        """A conversion to a character, if the value may be one that an octet could not hold."""
+        """Check a conversion to a character if the value may not fit an octet.  Returns whether there is a check."""
         low, high = octet_range(target)
         least, largest = bounds_of(e.operand)
         if (low <= least and largest <= high) or isinstance(e.operand, Const):
             return False
         counter = None if e.explicit else _stepped(e.operand)
         if counter is not None and (counter.kind != "global" or counter in self.compared):
-            return False  # a counter with a limit: 16 bits are what it wants
+            return False  # a counter with a limit: it is meant to have 16 bits
         e.guard = Guard("octet", self.site(target, source_text(e.operand), at=e.where))
         return True
 
     def signed_character(self, e: Convert) -> None:
-        """A signed character on its way into arithmetic: 0x80..0xFF is not negative here."""
+        """Check a signed character that is used in arithmetic: 0x80..0xFF is not negative here."""
         operand = e.operand
         match operand:
             case Load(ctype=IntType(name=name)):
@@ -588,7 +587,7 @@ class Guards:
         self.way(lvalue)
         root = lvalue.root
         if isinstance(root, Variable) and lvalue.unwritten is not None:
-            if root.kind == "temporary":  # it has no name that a user wrote
+            if root.kind == "temporary":  # it has no name in the source
                 lvalue.fresh = Guard("unwritten", self.site(lvalue.ctype, lvalue.text, at=lvalue.where))
                 return
             text = "" if root.plain else lvalue.text
@@ -596,7 +595,7 @@ class Guards:
             lvalue.fresh = Guard("unwritten", site)
 
     def way(self, lvalue: LValue, *, address: bool = False) -> None:
-        """The subscripts and the pointer on the way to an object, or to its `address`: that may lie right behind it."""
+        """Check the subscripts and the pointer of an access.  An `address` may be right behind an array."""
         for index in lvalue.indices:
             self.subscript(index.expr)
         if isinstance(lvalue.root, Expr):
@@ -605,7 +604,7 @@ class Guards:
         root = lvalue.root
         limits = [self.bound(root, index) for index in lvalue.indices]
         if lvalue.bits is not None or (isinstance(lvalue.ctype, StructType) and lvalue.indices):
-            # Reached by its words, as through a pointer.
+            # It is accessed by its words, as through a pointer.
             lvalue.outside = Guard("pointer", self.object(lvalue, root))
         elif not all(within(i.expr, limit) for i, limit in zip(lvalue.indices, limits, strict=True)):
             local = root.kind != "global"
@@ -619,7 +618,7 @@ class Guards:
             lvalue.outside = Guard("index" if one else "deep", site)
 
     def pointed(self, lvalue: LValue, pointer: Expr, *, address: bool) -> None:
-        """What a pointer leads to, and the array members behind it that are subscripted."""
+        """Check an access through a pointer, and the subscripts of array members behind it."""
         self.value(pointer)
         about: dict[str, Any] = {"at": lvalue.where, "text": lvalue.text, "wraps": wrapping_subscript(lvalue)}
         lvalue.outside = Guard("pointer", self.site(lvalue.ctype, describe(pointer), **about))
@@ -629,23 +628,23 @@ class Guards:
                 index.guard = Guard("member", self.site(lvalue.ctype, describe(pointer), **about))
 
     def object(self, lvalue: LValue, root: Variable, **more: Any) -> Site:
-        """A place at which an object is read or written by its name."""
+        """The site of an access to an object by its name."""
         about: dict[str, Any] = {"text": lvalue.text, **more}
         return self.site(lvalue.ctype, root.declaration.path, root.declaration, at=lvalue.where, **about)
 
     def register(self, ref: RegisterAt) -> None:
-        """A register of the block that a pointer designates."""
+        """Check an access to a register through a pointer to its block."""
         self.value(ref.block)
         ctype = ULONG if ref.bits == 32 else UINT
         ref.guard = Guard("pointer", self.site(ctype, describe(ref.block), at=ref.block.where, text=register_text(ref)))
 
     def bound(self, variable: Variable, index: Index) -> int:
-        """The length of the array that is subscripted (`room` may have enlarged it)."""
+        """The length of the subscripted array; `room` may have enlarged it."""
         assert index.bound is not None
         return self.room.get(variable.declaration.path, index.bound) if index.leaves == 1 else index.bound
 
     def subscript(self, e: Expr) -> None:
-        # A difference that wraps is far outside of any array; other results may lie inside by luck.
+        # A difference that wraps is far outside of any array; other wrapped results may be inside by chance.
         if isinstance(e, Binary) and e.op in ("+", "*"):
             self.unwrapped(e, "unsigned-wrap-index", "")
             return
@@ -655,13 +654,13 @@ class Guards:
 
 
 def flags(values: Iterable[int]) -> bool:
-    """Whether constants are meant to be combined: 1, 2, 4 ..."""
+    """Whether constants are flags, to be combined: 1, 2, 4 ..."""
     listed = set(values)
     return 4 in listed and 3 not in listed and all(value & value - 1 == 0 for value in listed)
 
 
 def kept_objects(body: list[Stmt]) -> dict[int, str]:
-    """By the switch: the object that every case sets to a constant, one of them to the one that it has before."""
+    """Identity of a switch -> the object that every case sets to a constant, one case to the value it already has."""
     found: dict[int, str] = {}
     for block in (body, *(inner for s in statements(body) for inner in blocks(s))):
         start: dict[str, int | float] = {}
@@ -683,7 +682,7 @@ def kept_objects(body: list[Stmt]) -> dict[int, str]:
 
 
 def _constants(body: list[Stmt]) -> dict[str, int | float]:
-    """The constants that a case gives to objects."""
+    """The constants that a case assigns to objects."""
     return {
         s.target.text: s.value.value
         for s in body
@@ -692,9 +691,9 @@ def _constants(body: list[Stmt]) -> dict[str, int | float]:
 
 
 def steps(loop: While) -> set[int]:
-    """The statements of a loop that step an unsigned object which its test compares: with a constant, or by order.
+    """The statements of a loop that step an unsigned object of its test: one compared by order or with a constant.
 
-    That an unsigned number is not below 0 is a test that never ends the loop: it is told as that.
+    A test whether an unsigned number is below 0 never ends the loop: it is reported as a constant condition instead.
     """
     tested = [loop.test, *(s.test for s in loop.body if isinstance(s, If) and s.then and isinstance(s.then[0], Break))]
     tested += [s.value for s in loop.step if isinstance(s, Assign)]
@@ -725,9 +724,9 @@ def zero(e: Expr) -> bool:
 
 
 def loses_top(e: Expr, target: IntType) -> bool:
-    """Whether a cast cuts a number that was computed to fit: a product, or what a product or a long is scaled down to.
+    """Whether a cast cuts a number that was meant to fit: a product, or a product or a long after scaling down.
 
-    Sums and differences are cast to be taken modulo 65536, and words are split by shifts of what is unsigned.
+    Casts of sums and differences intend a result modulo 65536; shifts of unsigned values split words.
     """
     match e:
         case Binary(op="*"):
@@ -740,7 +739,7 @@ def loses_top(e: Expr, target: IntType) -> bool:
 
 
 def as_unsigned(e: Expr) -> Expr | None:
-    """The signed integer that `e` takes as an unsigned one of the same width."""
+    """The signed integer that `e` converts to unsigned of the same width; None for other expressions."""
     match e:
         case Convert(ctype=IntType(signed=False, bits=bits), operand=Expr(ctype=IntType(signed=True)) as operand):
             return operand if isinstance(operand.ctype, IntType) and operand.ctype.bits == bits else None
@@ -748,7 +747,7 @@ def as_unsigned(e: Expr) -> Expr | None:
 
 
 def _rounded(e: Expr) -> bool:
-    """Whether a half is added before a fraction is cut."""
+    """Whether an expression adds 0.5, to round before the fraction is cut."""
     return any(isinstance(p, Const) and p.value == 0.5 for p in parts(e))
 
 
@@ -763,12 +762,12 @@ def within(e: Expr, limit: int) -> bool:
 
 
 def wraps(e: Binary) -> bool:
-    """Whether an unsigned result is the mathematical one but for its upper bits: + - *, and << by a constant."""
+    """Whether an operator only loses upper bits when it wraps: + - *, and << by a constant."""
     return e.op in RING or (e.op == "<<" and isinstance(e.right, Const) and e.right.value in range(LONGEST))
 
 
 def mathematical_leaves(e: Expr, ctype: IntType) -> list[Expr]:
-    """What stands below the + - * << of an unsigned tree; a signed value converted to it counts as it is."""
+    """The operands below the + - * << of an unsigned tree; a converted signed value counts before its conversion."""
     match e:
         case Binary(left=left, right=right) if wraps(e) and e.ctype == ctype:
             return [*mathematical_leaves(left, ctype), *mathematical_leaves(right, ctype)]
@@ -778,7 +777,7 @@ def mathematical_leaves(e: Expr, ctype: IntType) -> list[Expr]:
 
 
 def mathematical_constant(e: Expr) -> int | None:
-    """The number that was written where a negative constant was taken as unsigned."""
+    """The negative constant in the source that was converted to this unsigned one; None: there is none."""
     match e:
         case Const(source=Convert(operand=Const(ctype=IntType(signed=True), value=int(value)), explicit=False)):
             return value
@@ -786,7 +785,7 @@ def mathematical_constant(e: Expr) -> int | None:
 
 
 def mathematical_bounds(e: Expr, ctype: IntType) -> Interval:
-    """Bounds of the value of an unsigned tree without any wrap."""
+    """Bounds of the mathematical value of an unsigned tree, without any wrap."""
     match e:
         case Binary(op=op, left=left, right=right) if wraps(e) and e.ctype == ctype:
             result = combine(op, mathematical_bounds(left, ctype), mathematical_bounds(right, ctype))
@@ -799,7 +798,7 @@ def mathematical_bounds(e: Expr, ctype: IntType) -> Interval:
 
 
 def octet_range(target: IntType) -> Interval:
-    """What an octet holds of a character type."""
+    """The range of a character type if it had 8 bits."""
     return (0, 255) if target.name == UCHAR.name else (-128, 127 if target.name == SCHAR.name else 255)
 
 
@@ -820,7 +819,7 @@ def describe(e: Expr) -> str:
 
 
 def polled(test: Expr) -> str:
-    """The register or object that a poll looks at."""
+    """The register or object that a poll reads."""
     for part in parts(test):
         if isinstance(part, RegisterLoad):
             return register_text(part.register)
@@ -830,7 +829,7 @@ def polled(test: Expr) -> str:
 
 
 def wrapping_subscript(lvalue: LValue) -> str:
-    """The subscript that an unsigned operation computes, as the source says it."""
+    """The source text of a subscript that an unsigned operation computes; empty: there is none."""
     for index in lvalue.indices:
         match index.expr:
             case Binary(ctype=IntType(signed=False), op="-" | "+" | "*") as computed:
@@ -839,7 +838,7 @@ def wrapping_subscript(lvalue: LValue) -> str:
 
 
 def _computed(e: Expr) -> bool:
-    """Whether `e` is a result of + - * << , or a signed value taken as unsigned."""
+    """Whether `e` is a result of + - * <<, or a signed value that is converted to unsigned."""
     match e:
         case Binary() if wraps(e):
             return True
@@ -849,7 +848,7 @@ def _computed(e: Expr) -> bool:
 
 
 def _of_stamps(target: LValue, e: Binary) -> bool:
-    """Whether a long becomes the difference of two unsigned numbers of 16 bits, widened before, or grows by it."""
+    """Whether a long gets, or adds, the difference of two unsigned 16-bit numbers that were widened before."""
     match e:
         case Binary(op="+", left=Load(lvalue=grown), right=Binary(op="-") as difference) if grown == target:
             e = difference
@@ -860,9 +859,9 @@ def _of_stamps(target: LValue, e: Binary) -> bool:
 
 
 def _mixed(e: Expr, target: IntType) -> bool:
-    """Whether `e` adds an unsigned number to a signed one, or takes it away: an unsigned result of the same width.
+    """Whether `e` adds or subtracts a signed and an unsigned number: the result is unsigned, of the same width.
 
-    A word put together of its octets by shifts is a pattern of bits, whose sign is meant.
+    A word composed of octets by shifts is a bit pattern; its sign is intended.
     """
     match e:
         case Binary(ctype=IntType(signed=False, bits=target.bits), op="+" | "-", left=left, right=right):
@@ -874,7 +873,7 @@ def _mixed(e: Expr, target: IntType) -> bool:
 
 
 def _stepped(e: Expr) -> Variable | None:
-    """The object that `e` steps by a constant."""
+    """The object that `e` increments or decrements by a constant; None: there is none."""
     match e:
         case Binary(op="+" | "-", left=stepped, right=Const()) | Binary(op="+", left=Const(), right=stepped):
             match bare(stepped):

@@ -1,8 +1,7 @@
-"""Pass `intervals`: between which bounds each integer lies.
+"""Pass `intervals`: the bounds of each integer.
 
-The type, the constants and the loops that count prove them.  One walk leaves on the nodes: `Expr.bounds`,
-`Binary.exact`, and of a `For` whether Python's own loop does the same (`plain`, `trips`) or which `test` stands at its
-head.
+They follow from types, constants and counting loops.  One walk stores on the nodes: `Expr.bounds`, `Binary.exact`, and
+for a `For`, whether a Python loop does the same (`plain`, `trips`), else its `test`.
 """
 
 from __future__ import annotations
@@ -31,14 +30,14 @@ from emulator.c28x.tree_queries import assigned_variables, blocks, observable, p
 
 Ranges = Mapping[Variable, Interval]
 
-#: Operators for which wrapping commutes with computing.
+#: Operators for which wrapping the operands or the result gives the same.
 RING: Final = ("+", "-", "*")
-#: Bits of the longest integer: a shift by as many, or more, has no value that C defines.
+#: Bits of the longest integer: C does not define a shift by as many or more.
 LONGEST: Final = 64
 
 
 def leave_bounds(body: list[Stmt], ranges: Ranges | None = None) -> None:
-    """Leave their bounds on all expressions of `body`; `ranges` says what is known of locals that count."""
+    """Store the bounds of all expressions of `body` on them; `ranges`: known bounds of counting locals."""
     known = ranges or {}
     for s in body:
         for root in roots(s):
@@ -57,7 +56,7 @@ def bounds_of(e: Expr) -> Interval:
 
 
 def _bound(root: Any, ranges: Ranges) -> None:
-    """The bounds of an expression and of all in it, operands first."""
+    """Store the bounds of an expression and of its parts, operands first."""
     for e in reversed(parts(root)):
         if isinstance(e, Expr) and isinstance(e.ctype, IntType):
             if isinstance(e, Binary):
@@ -66,7 +65,7 @@ def _bound(root: Any, ranges: Ranges) -> None:
 
 
 def _count(s: For, ranges: Ranges) -> None:
-    """A counting loop: how it is written, and what is known of its variable within."""
+    """Decide how a counting loop is written, and store the bounds of its variable within it."""
     root = s.counter
     assert isinstance(root.ctype, IntType)
     match s.start, s.stop:
@@ -87,7 +86,7 @@ def _count(s: For, ranges: Ranges) -> None:
 
 
 def _runs_alone(s: For, root: Variable) -> bool:
-    """Whether nothing but the loop itself changes its variable, and nothing changes its bound."""
+    """Whether only the loop itself changes its variable, and nothing changes its bound."""
     changed = assigned_variables(s.body)
     used = variables(parts(s.stop))
     return (
@@ -97,7 +96,7 @@ def _runs_alone(s: For, root: Variable) -> bool:
 
 
 def _counts_plainly(s: For, ctype: IntType) -> bool:
-    """Whether no conversion of the test matters and the variable can hold the value behind the loop."""
+    """Whether conversions in the test do not matter, and the variable can hold its value after the loop."""
     if not isinstance(s.stop.ctype, IntType):
         return False
     common = usual(ctype, s.stop.ctype)
@@ -111,12 +110,12 @@ def _counts_plainly(s: For, ctype: IntType) -> bool:
 
 
 def interval(e: Expr, ranges: Ranges) -> Interval:
-    """Bounds of an integer expression; `ranges` says what is known of locals."""
+    """Bounds of an integer expression; `ranges`: known bounds of locals."""
     return bounds(e, ranges, lambda operand: interval(operand, ranges))
 
 
 def bounds(e: Expr, ranges: Ranges, of: Callable[[Expr], Interval]) -> Interval:
-    """Bounds of an integer expression; `of` gives those of its operands."""
+    """Bounds of an integer expression; `ranges`: known bounds of locals, `of` returns those of an operand."""
     ctype = e.ctype
     assert isinstance(ctype, IntType)
     low, high = ctype.low, ctype.high

@@ -1,4 +1,4 @@
-"""Static check of names and stores: values never used, objects never used, functions never called, names hidden."""
+"""Static check of names and stores: unused values and objects, functions that are never called, hidden names."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ Live = frozenset[Variable]
 
 
 def read(s: Stmt) -> set[Variable]:
-    """The variables whose value or address a statement itself uses: of a target only the way is read."""
+    """The variables that a statement itself uses; of a target, only those in its subscripts or pointer."""
     nodes: list[Any] = []
     for root in roots(s):
         target = isinstance(root, LValue) and not (isinstance(s, CopyStruct) and root is s.source)
@@ -65,26 +65,26 @@ def read(s: Stmt) -> set[Variable]:
 
 
 class Liveness:
-    """Finds values of plain locals that nothing reads, walking a function backwards."""
+    """Finds values of plain locals that nothing reads, by a backward walk over a function."""
 
     def __init__(self, function: Function, report: StaticReport) -> None:
         self.function = function
         self.to = report
         self.tracked = {v for v in (*function.parameters, *function.locals) if not v.in_memory}
-        #: Structures and arrays that only statements of the function reach: a part that is stored kills nothing.
+        #: Structures and arrays that only statements of the function reach.  A store to a part does not kill them.
         self.whole = {
             v
             for v in (*function.parameters, *function.locals)
             if isinstance(v.ctype, StructType | ArrayType) and v.in_memory and not v.escapes and not v.volatile
         }
-        #: What each statement itself uses, by its identity.
+        #: Identity of each statement -> the variables that it uses itself.
         self.used = {id(s): frozenset(read(s)) for s in statements(function.body)}
         self.read_anywhere = {v for used in self.used.values() for v in used}
-        #: What is live behind each loop and at its `continue`; behind each switch.
+        #: The live variables after each enclosing loop and at its `continue`; after each enclosing switch.
         self.loops: list[tuple[Live, Live]] = []
         self.switches: list[Live] = []
         self.reporting = True
-        #: Statements that only limit the local of their `if`.
+        #: Identities of statements that only limit the local of their `if`.
         self.limits = {id(s) for test in statements(function.body) if isinstance(test, If) for s in _limits(test)}
         self.found: dict[int, tuple[Where, Variable, Expr]] = {}
 
@@ -134,7 +134,7 @@ class Liveness:
         return live | used
 
     def switch(self, s: Switch, live: Live) -> Live:
-        """What is live before the cases."""
+        """The live variables before the cases."""
         self.switches.append(live)
         entries: list[Live] = []
         following = live
@@ -147,21 +147,21 @@ class Liveness:
         return frozenset().union(*entries, *(() if default else (live,)))
 
     def while_loop(self, s: While, live: Live, used: Live) -> Live:
-        """What is live before the loop; `used` is what its test reads."""
+        """The live variables before the loop; `used` are those that its test reads."""
         endless = isinstance(s.test, Const) and s.test.value != 0
         test = used if endless else live | used
         first = self.repeated(lambda head: self.turn(s.body, live, self.block(s.step, head | test)), frozenset())
         return first | test if s.first else first
 
     def turn(self, body: list[Stmt], behind: Live, end: Live) -> Live:
-        """What is live at the beginning of a loop's body, whose turns come to `end`."""
+        """The live variables at the start of a loop's body: `end` at the end of the body, `behind` after the loop."""
         self.loops.append((behind, end))
         live = self.block(body, end)
         self.loops.pop()
         return live
 
     def repeated(self, turn: Callable[[Live], Live], head: Live) -> Live:
-        """What is live before the first of many turns: what a turn makes live is so before it and behind it."""
+        """The live variables before the first of many turns: the smallest set that one more turn does not enlarge."""
         reporting, self.reporting = self.reporting, False
         while not (grown := turn(head)) <= head:
             head |= grown
@@ -176,13 +176,13 @@ class Liveness:
         declared = isinstance(s, Declare)
         if _reads_device(value) or (_for_effect(value) and (declared or variable not in self.read_anywhere)):
             return
-        if variable in self.whole:  # told once, at its first part: the walk goes backwards
+        if variable in self.whole:  # reported once, at its first part: the walk goes backwards
             self.found = {line: found for line, found in self.found.items() if found[1] is not variable}
         self.found[s.line] = (s.where, variable, value)
 
 
     def says_unused(self, s: Assign, variable: Variable) -> bool:
-        """`arg = arg;` says that a parameter is not used; it is told elsewhere where `arg` was meant for an object."""
+        """`arg = arg;` marks a parameter as unused.  (`ValueChecks` reports it if `arg` hides a file object.)"""
         itself = isinstance(s.value, Load) and s.value.lvalue == s.target
         return itself and variable.kind == "parameter"
 
@@ -196,7 +196,7 @@ def _limits(test: If) -> list[Stmt]:
 
 
 def _harmless(variable: Variable, value: Expr) -> bool:
-    """A constant, a copy of itself, or a step (`*p++` leaves a last one)."""
+    """Whether an unused value needs no report: a constant, or a step (`*p++` leaves a last one)."""
     inner = bare(value)
     match inner:
         case Const() | Null() | String():
@@ -208,7 +208,7 @@ def _harmless(variable: Variable, value: Expr) -> bool:
     return False
 
 
-#: Functions of the run-time library that only give a value: nobody calls them for an effect.
+#: Functions of the run-time library without an effect: they only return a value.
 _VALUES_ONLY: Final = frozenset({
     "abs", "acos", "asin", "atan", "atan2", "atof", "atoi", "atol", "ceil", "cos", "exp", "fabs", "floor", "fmod",
     "labs", "log", "memcmp", "pow", "sin", "sqrt", "strcmp", "strlen", "tan",
@@ -216,7 +216,7 @@ _VALUES_ONLY: Final = frozenset({
 
 
 def _for_effect(value: Expr) -> bool:
-    """Whether a value may be read for an effect: of a call, a volatile object, or what a pointer leads to."""
+    """Whether a value may be read for an effect: it has a call, a volatile object, or an access by pointer."""
     return volatile(value) or any(
         isinstance(p, (*OBSERVABLE, RegisterAt)) or (isinstance(p, LValue) and isinstance(p.root, Expr))
         for p in parts(value)
@@ -232,12 +232,12 @@ def _reads_device(value: Expr) -> bool:
 
 
 class Mentions:
-    """What the bodies of an image and its initialisers mention."""
+    """The names that the bodies and initialisers of an image mention."""
 
     def __init__(self, modules: Iterable[Module], initialisers: Mapping[Variable, list[Any]]) -> None:
-        #: The functions whose name is used as a value.
+        #: The paths of functions whose name is used as a value.
         self.by_address: set[str] = set()
-        #: The variables that each function mentions, and initialisers.
+        #: The variables that each function mentions; `at_start`: those that initialisers mention.
         self.by = {f: self._variables(within(f.body)) for module in modules for f in module.functions}
         starts = [value for values in initialisers.values() for value in different(values) if isinstance(value, Expr)]
         self.at_start = self._variables(p for value in starts for p in parts(value))
@@ -251,9 +251,9 @@ class Mentions:
 def check_names(
     function: Function, module: Module, report: StaticReport, used: Set[Variable], *, by_address: bool = False
 ) -> None:
-    """Locals and parameters that nothing mentions (`used`: what the body mentions), or that hide an object of the file.
+    """Report locals and parameters that the body does not use (`used` are the used ones), or that hide another name.
 
-    A function that is called through a pointer (`by_address`) has the parameters that its caller passes.
+    A function that is called through a pointer (`by_address`) needs all parameters that its caller passes.
     """
     for variable in (*function.parameters, *function.locals):
         declaration = variable.declaration
@@ -270,7 +270,7 @@ def check_names(
 
 
 def in_header(where: Where, file: str) -> bool:
-    """Whether what `file` has stands in a header: other files use it too, so nobody need use all of it."""
+    """Whether something in `file` comes from a header: other files use it too, so it may be unused here."""
     return where.file not in ("", file)
 
 
@@ -278,11 +278,11 @@ def check_image(
     modules: list[Module], mentions: Mentions, reports: Mapping[Module, StaticReport], entered: Set[str], *,
     entries: bool,
 ) -> None:  # fmt: skip
-    """Functions that nothing calls and objects that nothing mentions, in the whole image.
+    """Report functions that nothing calls, and objects that nothing mentions, in the whole image.
 
-    `entered` are functions that a pointer or the board calls.  Modules that are only brought by others owe nothing to
-    anybody, nor does what an overlay adds: it serves some of the corrections.  Functions are reported only if the image
-    says where it begins: it has `entries`, or a function `main`.
+    `entered` are functions that a pointer or the board calls.  Not checked: modules that were only read because others
+    need a part of them, and additions of an overlay, which serve some of the corrections.  Functions are reported only
+    if it is known where the image begins: it has `entries`, or a function `main`.
     """
     every = [function for module in modules for function in module.functions]
     reached = {path for function in every for path in function.calls if path != function.path} | entered

@@ -1,7 +1,7 @@
-"""Static check of tests for NULL: of a pointer that has been gone through before, and so comes too late.
+"""Static check of tests for NULL that come too late: the pointer was dereferenced before.
 
-One walk forwards carries the plain pointers that every way has gone through, with no new value since.  A library
-function that reads a text or a block goes through what it is given.
+One forward walk carries the plain pointers that every path has dereferenced and not changed since.  A library function
+that reads a text or a block dereferences its arguments.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from emulator.c28x.tree import (
 from emulator.c28x.tree_queries import assigned, assigned_variables, bare, children, roots
 
 Used = frozenset[Variable]
-#: Library functions that go through every pointer that they are given.
+#: Library functions that dereference all their pointer arguments.
 _THROUGH: Final = frozenset({
     "memcpy", "memmove", "memset", "memcmp", "strlen", "strcmp", "strncmp", "strcpy", "strncpy", "strcat", "strncat",
     "strchr", "strrchr", "strstr", "atoi", "atol", "atof",
@@ -45,7 +45,7 @@ _THROUGH: Final = frozenset({
 
 
 class NullTests:
-    """The walk over one function."""
+    """The forward walk over one function."""
 
     def __init__(self, function: Function, report: StaticReport) -> None:
         self.function = function
@@ -56,7 +56,7 @@ class NullTests:
         self.block(self.function.body, frozenset())
 
     def block(self, body: list[Stmt], used: Used) -> Used | None:
-        """What is gone through behind a block; None: its end is not reached."""
+        """The pointers dereferenced at the end of a block; None: its end is not reached."""
         for s in body:
             after = self.statement(s, used)
             if after is None:
@@ -93,12 +93,12 @@ class NullTests:
         return used if written is None else used - {written}
 
     def condition(self, e: Expr, used: Used) -> Used:
-        """A controlling expression."""
+        """The pointers dereferenced after a controlling expression; reports late tests in it."""
         match e:
             case Logic(operands=operands):
                 used = self.condition(operands[0], used)
                 after = used
-                for operand in operands[1:]:  # what stands behind may not be reached
+                for operand in operands[1:]:  # later operands may not be reached
                     after = self.condition(operand, after)
                 return used
             case Not(operand=operand):
@@ -112,7 +112,7 @@ class NullTests:
         return self.value(e, used)
 
     def tested(self, e: Expr, test: Expr, used: Used) -> None:
-        """A pointer that is held against NULL."""
+        """Report a test of a dereferenced pointer for NULL."""
         match bare(e):
             case Load(ctype=PointerType(), lvalue=LValue(root=Variable() as root, indices=[])) if root in used:
                 if test.where.macro is None and e.where.macro is None:
@@ -124,7 +124,7 @@ class NullTests:
                     )  # fmt: skip
 
     def value(self, e: Any, used: Used) -> Used:
-        """An expression, and the pointers that it goes through."""
+        """The pointers dereferenced after an expression."""
         match e:
             case Logic() | Not() | Compare():
                 return self.condition(e, used)
@@ -146,7 +146,7 @@ class NullTests:
 
 
 def _pointer(e: Expr) -> Used:
-    """The plain pointer that an expression is the value of."""
+    """The plain pointer whose value an expression is, as a set; empty: none."""
     match bare(e):
         case Load(ctype=PointerType(), lvalue=LValue(root=Variable() as root, indices=[])) if root.plain:
             return frozenset({root})
@@ -154,7 +154,7 @@ def _pointer(e: Expr) -> Used:
 
 
 def _meet(one: Used | None, other: Used | None) -> Used | None:
-    """What two ways have gone through."""
+    """The pointers that both of two paths have dereferenced."""
     if one is None or other is None:
         return other if one is None else one
     return one & other

@@ -1,4 +1,4 @@
-"""What a static check finds, and where: the function, its file, and the place of the statement it looks at."""
+"""The findings of static checks, with the function, its file and the place of the statement."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from emulator.c28x.tree import Declaration, Function, Where
 
 @dataclass(frozen=True, slots=True)
 class StaticFinding:
-    """A finding of the tree alone."""
+    """A finding from the tree alone."""
 
     place: Place
     rule: str
@@ -22,7 +22,7 @@ class StaticFinding:
 
 @dataclass(frozen=True)
 class StaticReport:
-    """The findings of one module, added to those of the image."""
+    """Adds the findings of one module to those of the image."""
 
     c_file: str
     found: list[StaticFinding] = field(repr=False)
@@ -33,7 +33,7 @@ class StaticReport:
     ) -> None:  # fmt: skip
         """Record `rule` at a place of a function, or of the file scope (None).
 
-        It is about `object`: if that is not said, what `declaration` declares, else the function.
+        The finding is about `object`; by default, about the object of `declaration`, else about the function.
         """
         if function is None:
             place = Place(where.file, where.line, "", self.c_file, where.column)

@@ -1,17 +1,18 @@
-"""Pass `stamps`: which values are stamps of a free-running counter, and which comparisons of them its wrap makes wrong.
+"""Pass `stamps`: which values are stamps of a free-running counter, and which comparisons its wrap makes wrong.
 
-A stamp is what a CPU timer, an eCAP or the kernel's clock shows, or an object that an interrupt routine only counts up;
-a copy, a complement, a shift of one; what a function returns of one.  A stamp and a number is a *deadline*, two stamps
-are apart by a number.  Objects and members are followed through the whole image, whatever the order of statements.
+A stamp is a value of a CPU timer, an eCAP, the IPC counter or the kernel's clock, or of an object that an interrupt
+routine only counts up.  A copy, a complement or a shift of a stamp is a stamp too, also as the result of a function.  A
+stamp plus a number is a *deadline*; the difference of two stamps is a number.  Objects and members are followed through
+the whole image, whatever the order of statements.
 
-What is left are suspicions, by the node: the running code looks whether the counter has wrapped between the two
+The result are suspicions, by node.  The running code checks whether the counter has wrapped between the two stamps
 (`Guards`, `Runtime`).
 
 | kind | suspicion |
 |---|---|
 | `order` | two stamps compared by order, and no branch takes their difference |
 | `equal`, `equal, left` | a stamp compared for equality with a deadline (the left side is the deadline) |
-| `past` | the signed time since a stamp, compared with a limit |
+| `past` | the signed time since a stamp is compared with a limit |
 """
 
 from __future__ import annotations
@@ -46,14 +47,14 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import bare, different, parts, roots, statements, within
 
-#: What an expression is: nothing of the kind, a stamp, a stamp to which something was added.
+#: The kinds of expressions: neither of the others; a stamp; a deadline, which is a stamp plus or minus something.
 NONE: Final = 0
 STAMP: Final = 1
 DEADLINE: Final = 2
-#: Registers that count on and on, and functions that give such a count.
+#: Free-running counter registers, and functions that return such a count.
 _REGISTERS: Final = frozenset({"TIM", "TSCTR", "IPCCOUNTERL", "IPCCOUNTERH"})
 _FUNCTIONS: Final = frozenset({"Clock_getTicks", "Timestamp_get32"})
-#: What holds a stamp: a variable, a member of a structure by its type, what a parameter points to, a function's result.
+#: What can hold a stamp: a variable, a member of a structure type, the target of a parameter, the result of a function.
 Key = tuple[Any, ...]
 
 
@@ -61,21 +62,21 @@ class Stamps:
     """The stamps of one image."""
 
     def __init__(self, modules: Iterable[Module], entries: frozenset[str]) -> None:
-        """`entries`: functions (`module.name`) that the board itself enters."""
+        """`entries`: functions (`module.name`) that the board itself calls."""
         modules = list(modules)
         self.functions = [function for module in modules for function in module.functions]
         starts = [e for module in modules for variable in module.variables for e in different(variable.initial or ())]
         nodes = [p for e in starts for p in parts(e)]
         nodes += [p for function in self.functions for p in within(function.body)]
-        #: The functions that a pointer leads to: interrupt routines among them.
+        #: The functions that are called by a pointer or the board, such as interrupt routines.
         self.entered = entries | {p.function.path for p in nodes if isinstance(p, FunctionRef)}
         self.kinds: dict[Key, int] = {}
-        #: Keys of one and the same object: what is passed by its address, and what the parameter points to.
+        #: Pairs of keys of the same object: the target of a parameter, and the object whose address is passed.
         self.same: list[tuple[Key, Key]] = []
         self.given: list[tuple[Key, Expr]] = []
 
     def suspicions(self) -> dict[int, str]:
-        """Comparisons (and signed differences) that may go wrong, by the identity of their node."""
+        """Identity of a comparison (or signed difference) that may be wrong -> its kind of suspicion."""
         for counter in self.counters():
             self.kinds[counter] = STAMP
         for function in self.functions:
@@ -91,7 +92,7 @@ class Stamps:
         return found
 
     def counters(self) -> Iterator[Key]:
-        """The objects that interrupt routines count up, and that nothing else gives a value."""
+        """The objects that interrupt routines count up and no other statement sets."""
         counted: set[Key] = set()
         set_: set[Key] = set()
         for function in self.functions:
@@ -106,7 +107,7 @@ class Stamps:
         yield from counted - set_
 
     def read(self, function: Function) -> None:
-        """What a function assigns, returns and passes."""
+        """Collect what a function assigns, returns and passes."""
         for s in statements(function.body):
             match s:
                 case Assign(target=LValue() as target, value=value):
@@ -123,7 +124,7 @@ class Stamps:
                         self.passed(p)
 
     def passed(self, call: Call) -> None:
-        """The arguments of a call."""
+        """Collect the arguments of a call."""
         for parameter, argument in zip(call.function.parameters, call.arguments, strict=False):
             match bare(argument):
                 case AddressOf(lvalue=lvalue):
@@ -135,7 +136,7 @@ class Stamps:
             self.given.append(((parameter, 0), argument))
 
     def grows(self) -> bool:
-        """One more round; whether it has found anything."""
+        """Do one more round.  Returns whether it has found anything new."""
         grown = False
         for key, value in self.given:
             kind = self.kinds.get(key, NONE)
@@ -148,7 +149,7 @@ class Stamps:
         return grown
 
     def kind(self, e: Expr) -> int:
-        """What an expression is."""
+        """The kind of an expression: `NONE`, or `STAMP` and `DEADLINE` as bits."""
         match e:
             case Convert(operand=operand) | Unary(operand=operand):
                 return self.kind(operand) if isinstance(e.ctype, IntType) else NONE
@@ -168,7 +169,7 @@ class Stamps:
             case Binary(op=">>" | "&", left=left, right=Const()):
                 return self.kind(left)
             case Binary(op="-", left=Const(), right=right):
-                return self.kind(right)  # of a counter that counts down
+                return self.kind(right)  # the complement of a counter that counts down
             case Binary(op="+" | "-" as op, left=left, right=right):
                 a, b = self.kind(left), self.kind(right)
                 if a and b:
@@ -177,8 +178,10 @@ class Stamps:
         return NONE
 
     def cuts(self) -> Iterator[tuple[Function, Stmt, Expr, Expr]]:
-        """Stamps of 32 bits of which an object keeps 16, and which are then held against 32 bits: the function and
-        statement that cut, the stamp, and the difference or comparison.  Behind `suspicions`.
+        """32-bit stamps of which an object keeps only 16 bits, and which are later compared with 32 bits.
+
+        Yields the function and the statement that cut, the stamp, and the difference or comparison.  Call it after
+        `suspicions`.
         """
         cut: dict[Key, tuple[Function, Stmt, Expr]] = {}
         for function in self.functions if self.kinds else ():
@@ -204,10 +207,10 @@ class Stamps:
                         yield (*found, p)
 
     def ends(self) -> Iterator[tuple[Function, Stmt, Compare]]:
-        """Stamps of 16 bits that are compared by order with the end of a time, which wraps before them: the function,
-        the statement, the comparison.  Behind `suspicions`.
+        """16-bit stamps that are compared by order with a deadline, which wraps before they do.
 
-        Only of counters that a routine counts whatever happens: others may be kept from their wrap.
+        Yields the function, the statement and the comparison.  Call it after `suspicions`.  It yields any only if every
+        counter is counted without a condition: otherwise the firmware may keep it from wrapping.
         """
         always = {
             key_of(s.target) for f in self.functions for s in f.body
@@ -272,7 +275,7 @@ def _wide(e: Expr) -> bool:
 
 
 def _cut(e: Any) -> Expr | None:
-    """The number of 32 bits of which an expression keeps 16."""
+    """The 32-bit expression of which an expression keeps only 16 bits; None: there is none."""
     while isinstance(e, Convert):
         if isinstance(e.ctype, IntType) and e.ctype.bits == 16 and _wide(e.operand):
             return e.operand
@@ -281,7 +284,7 @@ def _cut(e: Any) -> Expr | None:
 
 
 def key_of(lvalue: LValue) -> Key | None:
-    """What an lvalue designates, as far as objects are told apart."""
+    """The key of the object that an lvalue designates; None if it has none."""
     root = lvalue.root
     if lvalue.bits is not None:
         return None
@@ -311,7 +314,7 @@ def _counts(s: Assign) -> bool:
 
 
 def _bits(e: Expr) -> int:
-    """The bits of a value before it is promoted."""
+    """The bits of a value before implicit conversions."""
     inner = e
     while isinstance(inner, Convert) and not inner.explicit:
         inner = inner.operand
@@ -319,7 +322,7 @@ def _bits(e: Expr) -> int:
 
 
 def _handled(s: Stmt, root: Any, left: Expr, right: Expr) -> bool:
-    """Whether what a comparison chooses between takes the difference of the two: it is the test for the wrap."""
+    """Whether a branch of a comparison takes the difference of its operands: then it is the test for a wrap."""
     chosen: list[Any] = []
     if isinstance(s, If):
         chosen += within([*s.then, *s.otherwise])

@@ -1,14 +1,16 @@
 """Static check of states that never end: `state-stuck`, `stepped-over`, `stamp-backwards`.
 
-Of a whole program (one with a `main`), whose statements are all there is.  A state is a case of a switch over an
-object, or an `if` that compares one with a constant; its exits give the object another value.  If all exits hang on one
-other object, its values are followed from every value that another statement gives it, pass by pass: where they only
-come round again, the state is never left.
+The check needs a whole program (one with a `main`), because it must see all statements.  A state is a case of a switch
+over an object, or an `if` that compares an object with a constant.  Its exits are statements that set the object to
+another value.  If all exits depend on one other object, the check follows the values of that object, pass by pass, from
+every value that a statement outside of the state assigns.  If they only repeat, the state is never left.
 
-A test for equality in a loop or a state, with an object that only goes up (or down) in steps: does a step ever meet it?
+A second check examines tests for equality, in a loop or a state, of an object that only goes up (or down) in steps:
+does any step reach the tested value?
 
-What is not certain is silent: an exit that hangs on anything else, an object whose address is taken, that a call, a
-pointer or a computed value may change; a state that an interrupt routine, or what stands beside the states, ends too.
+An uncertain case gives no finding: an exit that depends on anything else; an object whose address is taken, or that a
+call, a pointer or a computed value may change; a state that an interrupt routine or a statement outside of the states
+also ends.
 """
 
 from __future__ import annotations
@@ -49,14 +51,14 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import addressed, bare, blocks, parts, roots, source_text, statements, within
 
-#: More values of one object are not followed.
+#: The largest number of values of one object that are followed.
 _MOST: Final = 3000
 _SWAPPED: Final = {"==": "==", "!=": "!=", "<": ">", ">": "<", "<=": ">=", ">=": "<="}
 
 
 @dataclass(frozen=True)
 class _Write:
-    """An assignment to an object: `value`, or a step; neither is known: both None."""
+    """An assignment to an object: a known `value`, or a known `step`; None: not known."""
 
     function: Function
     statement: Stmt
@@ -66,18 +68,18 @@ class _Write:
 
 @dataclass
 class _Pass:
-    """What one pass through a state can come to: whether it can leave, and the values then."""
+    """The possible results of one pass through a state: whether it can leave, and the values afterwards."""
 
     leaves: bool = False
     values: set[int] = field(default_factory=set)
 
 
 class _Unclear(Exception):
-    """The state does more than is followed here."""
+    """The state does more than this check can follow."""
 
 
 class States:
-    """The objects of one program, and what its statements give them."""
+    """The objects of one program, and the assignments to them."""
 
     def __init__(self, modules: Iterable[Module], entries: frozenset[str]) -> None:
         self.modules = list(modules)
@@ -87,7 +89,7 @@ class States:
         self.writes: dict[Variable, list[_Write]] = {}
 
     def check(self, reports: dict[Module, StaticReport]) -> None:
-        """Report what never ends in a whole program."""
+        """Report states and waits that never end; only in a whole program."""
         if not any(f.name == "main" and f.body for f in self.functions.values()):
             return
         for f in self.functions.values():
@@ -114,7 +116,7 @@ class States:
                 self.writes.setdefault(v, []).append(_Write(f, s, None, None))
 
     def constant(self, e: Expr) -> int | None:
-        """The value of a constant, or of an object that nothing ever writes."""
+        """The value of a constant, or of an object that nothing ever writes; None for other expressions."""
         match bare(e):
             case Const(value=int(value)):
                 return value
@@ -164,10 +166,10 @@ class States:
             )  # fmt: skip
 
     def _ended_elsewhere(self, subject: Variable, label: int) -> bool:
-        """Whether a statement that runs again and again, and stands in no state of the object, ends this one."""
+        """Whether a repeated statement outside of all states of the object also ends this state."""
         in_states: set[int] = set()
         again: set[int] = set()
-        #: State -> those that its own statements lead to.
+        #: State -> the states that its own statements lead to.
         leads: dict[int, set[int | None]] = {}
         repeated = [path for path, f in self.functions.items() if f.interrupt or path in self.entries]
         for f in self.functions.values():
@@ -196,14 +198,14 @@ class States:
                 repeated += self.functions[path].calls
         return any(
             w.value != label and id(w.statement) not in in_states
-            and not (w.value is not None and leads.get(w.value) == {label})  # which is no way out
+            and not (w.value is not None and leads.get(w.value) == {label})  # that state leads straight back
             and (w.function.path in reached or id(w.statement) in again)
             for w in self.writes.get(subject, [])
         )  # fmt: skip
 
     @staticmethod
     def _only(exits: list[tuple[Assign, tuple[tuple[Expr, bool], ...]]]) -> Variable | None:
-        """The one object that all exits hang on, compared with constants."""
+        """The only object on which all exits depend, compared with constants; None: there is no such object."""
         seen: set[Variable] = set()
         for _, tests in exits:
             for test, _ in tests:
@@ -217,7 +219,7 @@ class States:
         return seen.pop() if len(seen) == 1 else None
 
     def _round(self, subject: Variable, label: int, x: Variable, body: list[Stmt]) -> str:
-        """How the values of `x` come round in a state without ever leaving it; empty: they may not."""
+        """Why the values of `x` never lead out of a state, as text; empty: they may lead out."""
         inside = {id(s) for s in statements(body)}
         own = [w for w in self.writes.get(x, []) if id(w.statement) in inside]
         others = [w for w in self.writes.get(x, []) if id(w.statement) not in inside]
@@ -246,7 +248,7 @@ class States:
         return f"because {x.declaration.name} is only {told} there"
 
     def _set_on_entry(self, subject: Variable, label: int, x: Variable) -> bool:
-        """Whether `x` is given a value wherever the state is entered."""
+        """Whether `x` is set wherever the state is entered."""
         entered = [w for w in self.writes.get(subject, []) if w.value == label]
         for w in entered:
             blocks_of = [body for body in _bodies(w.function.body) if any(s is w.statement for s in body)]
@@ -258,7 +260,7 @@ class States:
         return bool(entered) and self._start(subject) != label
 
     def _walk(self, body: list[Stmt], subject: Variable, label: int, x: Variable, values: set[int]) -> _Pass:
-        """One pass with each of these values.  Raises _Unclear."""
+        """One pass through the state with each of these values.  Raises _Unclear."""
         came = _Pass(values=set(values))
         for s in body:
             match s:
@@ -300,7 +302,7 @@ class States:
         return came
 
     def _calls(self, e: Any, *objects: Variable) -> None:
-        """Raises _Unclear if what an expression calls may write one of the objects."""
+        """Raises _Unclear if a function that an expression calls may write one of the objects."""
         waiting = [p.function.path for p in parts(e) if isinstance(p, Call)]
         if any(isinstance(p, CallPointer) for p in parts(e)):
             raise _Unclear
@@ -317,7 +319,7 @@ class States:
     # Equality
 
     def _equalities(self, f: Function, report: StaticReport) -> None:
-        """Tests for equality that end something, with what only steps past them."""
+        """Report tests for equality that would end something, but are stepped over."""
         for s in statements(f.body):
             match s:
                 case If(test=test, then=then, otherwise=otherwise):
@@ -341,7 +343,7 @@ class States:
         return any(w.step and _holds(body, w.statement) for w in self.writes.get(v, []))
 
     def _tests(self, test: Expr) -> Iterator[tuple[Compare, Variable, int, bool]]:
-        """A test that is nothing but a comparison for equality: with what, and whether it is `==`."""
+        """A test that is only a comparison for equality: the comparison, the object, the value, whether it is `==`."""
         match test:
             case Compare(op="==" | "!=" as op, left=left, right=right):
                 for side, other in ((left, right), (right, left)):
@@ -354,7 +356,7 @@ class States:
     def _step_past(
         self, f: Function, s: Stmt, compare: Compare, v: Variable, goal: int, met: list[Stmt], report: StaticReport
     ) -> None:  # fmt: skip
-        """Tell a test that the steps of `v` never meet; `met` is what is done when they do."""
+        """Report a test that the steps of `v` never meet; `met`: the statements that run if they do."""
         assert isinstance(v.ctype, IntType)
         if v.kind == "parameter" or v.ctype.bits < 16:
             return
@@ -385,7 +387,7 @@ class States:
     # Stamps
 
     def _backwards(self, reports: dict[Module, StaticReport]) -> None:
-        """The unsigned difference of an earlier stamp and the counter itself, compared by order."""
+        """Report an unsigned difference "earlier stamp minus counter" that is compared by order."""
         stamps = Stamps(self.modules, self.entries)
         counters = set(stamps.counters())
         if not counters:
@@ -423,7 +425,7 @@ class States:
                     report.report(f, s.where, "stamp-backwards", message, object=before.declaration.path)
 
     def _past(self, value: Expr, counter: Variable) -> bool:
-        """Whether a value is the counter, or earlier by a constant."""
+        """Whether a value is the counter, the counter minus a constant, or a constant."""
         inner = bare(value)
         if isinstance(inner, Binary) and inner.op == "-" and self.constant(inner.right) is not None:
             inner = bare(inner.left)
@@ -438,7 +440,7 @@ def _variable(e: Expr) -> Variable | None:
 
 
 def _states(f: Function) -> Iterator[tuple[Variable, int, list[Stmt]]]:
-    """The states of a function: object, value, what is done in it."""
+    """The states of a function: object, value, statements."""
     for s in statements(f.body):
         match s:
             case Switch(subject=subject, cases=cases):
@@ -456,7 +458,7 @@ def _states(f: Function) -> Iterator[tuple[Variable, int, list[Stmt]]]:
 def _exits(
     body: list[Stmt], subject: Variable, tests: tuple[tuple[Expr, bool], ...]
 ) -> Iterator[tuple[Assign, tuple[tuple[Expr, bool], ...]]]:  # fmt: skip
-    """The assignments to the object of a state, with the tests around each."""
+    """The assignments to the object of a state, each with the tests around it and their outcomes."""
     for s in body:
         match s:
             case Assign(target=LValue(root=Variable() as v)) if v is subject:
@@ -480,7 +482,7 @@ def _holds(body: list[Stmt], wanted: Stmt) -> bool:
 
 
 def _step(value: Expr, v: Variable) -> int | None:
-    """The constant that a statement adds to its object."""
+    """The constant that an assigned value adds to its object; None: it is not a step."""
     match bare(value):
         case Binary(op="+" | "-" as op, left=left, right=right):
             stepped, by = bare(left), bare(right)
@@ -492,13 +494,13 @@ def _step(value: Expr, v: Variable) -> int | None:
 
 
 def _within(value: int, ctype: IntType) -> int:
-    """A value as its type holds it."""
+    """A value wrapped to its type."""
     span = ctype.high - ctype.low + 1
     return (value - ctype.low) % span + ctype.low
 
 
 def _decided(test: Expr, x: Variable, constant: Callable[[Expr], int | None]) -> Callable[[int], bool] | None:
-    """A test as a function of one object; None: it is of something else."""
+    """A test as a function of the value of one object; None: it tests something else."""
     match test:
         case Compare(op=op, left=left, right=right):
             for side, other, named in ((left, right, op), (right, left, _SWAPPED[op])):

@@ -1,8 +1,8 @@
-"""Static check of stores: what is written and written again before anybody can have seen it.
+"""Static check of stores: values that are overwritten before anything can have read them.
 
-A value of an object of the file, of a member, or of a field of a register, overwritten by the statement behind it or by
-the case that the switch falls through to.  Calls, loops, registers and pointers between the two end the look: somebody
-may have seen the value there.
+The value of a file-scope object, a member, or a register field is overwritten by a following statement, or by the case
+to which a switch falls through.  A call, a loop, a register access or a pointer access in between ends the search: it
+may have read the value.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import OBSERVABLE, bare, blocks, calls, parts, roots, source_text, statements
 
-#: Blocks of which a second write to the same field is another event: what is sent, set, cleared or acknowledged.
+#: Blocks in which a second write to the same field is a second event: it sends, sets, clears or acknowledges.
 _EVENTS = ("Sci", "Spi", "I2c", "Mcb", "Can", "Usb", "Gpio", "Pie", "Lin")
 
-#: Among more cases than these that end, one that does not is an exception.
+#: If more than so many cases end with a break, a single case that does not is an exception.
 LEAST_ENDED: Final = 2
 
 
 def check_stores(function: Function, report: StaticReport) -> None:
-    """Report the stores of a function that are overwritten unseen."""
+    """Report the stores of a function that are overwritten before anything reads them, and missing breaks."""
     for s in statements(function.body):
         if isinstance(s, Switch):
             falling = [body for _, body in s.cases if len(body) > 1 and isinstance(body[-1], FallThrough)]
@@ -66,13 +66,13 @@ def _bodies(body: list[Stmt]) -> Iterator[list[Stmt]]:
 
 
 def _twice(s: Assign, again: Assign, following: Stmt) -> bool:
-    """Whether one constant follows another at once: not a start value that a later statement may replace."""
+    """Whether the next statement overwrites one constant by another: then the first is not just a start value."""
     value, other = bare(s.value), bare(again.value)
     return again is following and isinstance(other, Const) and isinstance(value, Const) and value.value != other.value
 
 
 def _falls(function: Function, body: list[Stmt], following: list[Stmt], report: StaticReport) -> None:
-    """The stores of a case that the case which it falls through to overwrites."""
+    """Report stores of a case that are overwritten by the case to which it falls through."""
     for i, s in enumerate(body):
         if not isinstance(s, Assign):
             continue
@@ -87,8 +87,9 @@ def _falls(function: Function, body: list[Stmt], following: list[Stmt], report: 
 def _unsaid(
     function: Function, body: list[Stmt], following: list[Stmt], report: StaticReport, *, only: bool
 ) -> None:  # fmt: skip
-    """A case that falls through without a word of the source, into one that is not its continuation: it does the same
-    again, or (`only`: among many that end) the same to another object.
+    """Report a case that falls through without a comment, into a case that is not its continuation.
+
+    The next case makes the same call again, or (`only`: all other cases end) stores the same value in another object.
     """
     again = next((s for s in body if isinstance(s, Assign | Evaluate) and calls(s.value) and s in following), None)
     if again is not None:
@@ -114,7 +115,7 @@ def _name(s: Assign) -> str:
 
 
 def _seen_by_others(target: LValue) -> bool:
-    """Whether a target is an object of the file, or a member of one, that only statements touch."""
+    """Whether a target is a file-scope object, or a member of one, that is not volatile."""
     return isinstance(target.root, Variable) and target.root.kind == "global" and not volatile(target)
 
 
@@ -136,12 +137,12 @@ def _overwritten(target: LValue | RegisterRef | RegisterAt, following: Iterable[
 
 
 def _setting(register: RegisterRef) -> bool:
-    """Whether a field of a register holds a number until it is written again."""
+    """Whether a register field holds a number until it is written again."""
     return register.field is not None and register.field.width > 1 and not register.block.startswith(_EVENTS)
 
 
 def _looks_at(s: Stmt, target: LValue | RegisterRef) -> bool:
-    """Whether a statement reads the target, or does what may: a call, a register, a pointer."""
+    """Whether a statement reads the target, or may read it by a call, a register or a pointer."""
     for root in roots(s):
         for p in parts(root)[1 if isinstance(s, Assign) and root is s.target else 0 :]:
             if isinstance(p, OBSERVABLE):
@@ -154,7 +155,7 @@ def _looks_at(s: Stmt, target: LValue | RegisterRef) -> bool:
 
 
 def _moves(written: LValue, target: LValue | RegisterRef) -> bool:
-    """Whether a write changes what `target` means, or may be a write to a part of it."""
+    """Whether a write may change which object `target` designates, or a part of that object."""
     if not isinstance(target, LValue) or isinstance(written.root, Expr):
         return True
     return any(isinstance(p, LValue) and p.root is written.root for p in parts(target))

@@ -1,10 +1,10 @@
-"""Pass `taken`: statements that clear an object which the statement before has read, to keep what it held.
+"""Pass `taken`: statements that clear an object whose value the statement before has copied.
 
     taken = Flags;
     Flags = 0;
 
-Together they read and change the object as `Flags &= ...` does: what an interrupt adds between them is lost.  Behind a
-test of the object (`if (Flags)`) they are how a flag is acknowledged, and right for one that is only set.
+Together they read and change the object, as `Flags &= ...` does: a flag that an interrupt sets between them is lost.
+After a test of the object (`if (Flags)`) they acknowledge a flag, which is right for a flag that is only set.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from emulator.c28x.tree_queries import bare, blocks, parts
 
 
 def leave_taken(function: Function) -> None:
-    """Mark the statements that clear what the one before has read."""
+    """Mark the statements that clear the object which the statement before has copied."""
     _look(function.body, frozenset())
 
 
@@ -34,7 +34,7 @@ def _look(body: list[Stmt], tested: frozenset[Variable]) -> None:
 
 
 def _kept(s: Stmt) -> Variable | None:
-    """The object that a statement reads whole into another one."""
+    """The scalar file-scope object that a statement copies; None: there is none."""
     value = s.value if isinstance(s, Assign | Declare) else None
     read = bare(value) if isinstance(value, Expr) else None
     if isinstance(read, Load) and isinstance(read.lvalue, LValue) and not read.lvalue.indices:

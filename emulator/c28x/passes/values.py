@@ -1,4 +1,4 @@
-"""Static check of values: conditions that never change, constants that lose, divisions that lose, signs that mix."""
+"""Static check of values: constant conditions, constants that do not fit, lossy divisions, mixed signs."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ from emulator.c28x.tree_queries import (
 
 
 class ConstantChecks:
-    """The checks of constants at one place: of a function, or (None) of the file scope."""
+    """The checks of constants at one place of a function, or (None) of the file scope."""
 
     def __init__(self, function: Function | None, report: StaticReport, where: Where) -> None:
         self.function = function
@@ -60,27 +60,27 @@ class ConstantChecks:
         self.where = where
 
     def say(self, rule: str, message: str, object: str = "", value: int | float | None = None) -> None:
-        """Report at the statement looked at."""
+        """Report at the present statement."""
         self.to.report(self.function, self.where, rule, message, object=object, value=value)
 
     def given(self, e: Any) -> None:
-        """A value that is assigned, returned or passed."""
+        """Check a value that is assigned, returned or passed."""
         match e:
             case Const(
                 source=Convert(ctype=IntType() as to, operand=Const(value=value) as written, explicit=False)
             ) if value != e.value and not _as_pattern(written, to) and not isinstance(written.ctype, Double64):
-                # A double is what a macro computes a count of cycles in: it is meant to lose its fraction.
+                # Macros compute counts of cycles in double: their fraction is meant to be lost.
                 text = source_text(written)
                 self.say("assignment-loses", f"{text} does not fit a {to}: it becomes {e.value}", text, value)
 
     def folded(self, e: Const) -> None:
-        """What folding a constant has lost."""
+        """Report what was lost when a constant was folded."""
         waiting = [e]
         while waiting:
             waiting += reversed(self.fold(waiting.pop()))
 
     def fold(self, e: Const) -> list[Const]:
-        """What one folding has lost; returns the constants that it began with."""
+        """Report what one folding step has lost.  Returns the constants that it began with."""
         match e.source:
             case Convert(ctype=FloatType(), operand=Const() as operand):
                 quotient = _lossy_division(operand)
@@ -117,18 +117,18 @@ class ValueChecks(ConstantChecks):
         self.known = known_locals(function, counted=True)
         self.loosely = known_locals(function, counted=False)
         self.ranges: Ranges = self.known
-        #: The loops around a statement: there a test of their counter may be a choice of the build.
+        #: The counters of loops around each statement: a test of one of them may be a choice of the build.
         self.turning = turning(function.body, frozenset())
-        #: What counters are behind the loops that have run to their end.
+        #: The values of counters after their loops.
         self.ends = Ends(function.body)
         self.doubtful = maybe_negative(function)
-        #: Results that are cast to their own type: a wrap is meant.
+        #: Identities of results that are cast to their own type: a wrap is intended.
         self.meant: set[int] = set()
-        #: Statements `x = x` of a branch that say what the other one changes.
+        #: Identities of assignments in a branch to objects that the other branch assigns too: `x = x` is allowed there.
         self.kept: set[int] = set()
 
     def run(self) -> None:
-        """Report what the function's expressions show."""
+        """Make all checks of the function."""
         for s in statements(self.body):
             self.where = s.where
             self.ranges = self.known
@@ -173,7 +173,7 @@ class ValueChecks(ConstantChecks):
                         self.expression(part)
 
     def outside(self, variable: Variable, value: Expr) -> None:
-        """A constant for an object of an enumeration, above all of its own: no flags, and none that says "none"."""
+        """Report a constant above all constants of its enumeration; not for flags, nor for a value that means "none"."""
         known = variable.constants
         low, high = min(known), max(known)
         if not isinstance(value, Const) or not isinstance(value.value, int) or value.value in NOBODY:
@@ -185,9 +185,9 @@ class ValueChecks(ConstantChecks):
             self.say("no-case", message, variable.declaration.path, value.value)
 
     def assigned_to_itself(self, target: LValue) -> None:
-        """`x = x`: a parameter is named so to say that it is not used, a volatile object (or `*p`) to be read.
+        """Report `x = x`.  Allowed: a parameter, to mark it as unused; a volatile object (or `*p`), to read it.
 
-        A parameter that hides an object of the file was meant to be that object on one side.
+        A parameter that hides an object of the file is reported: one side was meant to be that object.
         """
         root = target.root
         parameter = isinstance(root, Variable) and root.kind == "parameter" and root.declaration.name not in self.shared
@@ -197,14 +197,14 @@ class ValueChecks(ConstantChecks):
     # Conditions
 
     def too_late(self, counter: Variable) -> None:
-        """A counter is held against 0 behind a loop whose test has counted on: what it is at the loop's end."""
+        """Report a comparison of a counter with 0 after a loop whose test has already counted past 0."""
         assert isinstance(counter.ctype, IntType)
         name, end = counter.declaration.name, counter.ctype.wrap(-1)
         message = f"{name} is compared with 0, but the test that ends the loop counts once more: then {name} is {end}"
         self.say("constant-condition", message, counter.declaration.path)
 
     def condition(self, test: Expr) -> None:
-        """A controlling expression; comparisons are looked at wherever they stand."""
+        """Check a controlling expression.  (`compare` checks comparisons, wherever they are.)"""
         match test:
             case Logic(operands=operands):
                 for operand in operands:
@@ -250,7 +250,7 @@ class ValueChecks(ConstantChecks):
         self.say("constant-condition", f"{text} is always {always}: {why}", text)
 
     def logic(self, e: Logic) -> None:
-        """Comparisons of one thing with constants, joined: tried where one of them changes, and between these."""
+        """Check joined comparisons of one value with constants: try the values at the constants, and between them."""
         subjects: set[str] = set()
         tests: list[tuple[str, float]] = []
         limits: set[float] = set()
@@ -285,7 +285,7 @@ class ValueChecks(ConstantChecks):
     # Expressions
 
     def constant_wrap(self, e: Expr) -> None:
-        """An unsigned sum or product of two constants; a cast to its own type says that a wrap is meant."""
+        """Check an unsigned sum or product of two constants.  A cast to its own type states that a wrap is intended."""
         match e:
             case Convert(ctype=ctype, operand=Binary(ctype=same) as meant, explicit=True) if ctype == same:
                 self.meant.add(id(meant))
@@ -332,7 +332,7 @@ class ValueChecks(ConstantChecks):
                 self.say("octet", f"{text}: sizeof counts words of 16 bits here, not octets", text)
 
     def signs(self, e: Compare) -> None:
-        """A signed value that may be negative, compared as unsigned."""
+        """Report a signed value that may be negative and is compared as unsigned."""
         if e.op in ("==", "!="):
             return
         for side in (e.left, e.right):
@@ -348,7 +348,7 @@ class ValueChecks(ConstantChecks):
 
 
 def file_scope(variable: Variable, values: list[Any], report: StaticReport) -> None:
-    """The constants that a file-scope object starts from."""
+    """Check the initial values of a file-scope object."""
     checks = ConstantChecks(None, report, variable.declaration.where)
     for value in different(values):
         checks.given(value)
@@ -357,7 +357,7 @@ def file_scope(variable: Variable, values: list[Any], report: StaticReport) -> N
 
 
 def volatile(e: Expr | LValue) -> bool:
-    """Whether something in `e` is declared `volatile`, or a register."""
+    """Whether `e` contains something declared `volatile`, or a register."""
     return any(
         isinstance(p, RegisterLoad)
         or (isinstance(p, LValue) and (p.volatile or (isinstance(p.root, Variable) and p.root.volatile)))
@@ -366,7 +366,7 @@ def volatile(e: Expr | LValue) -> bool:
 
 
 def _as_pattern(e: Const, to: IntType) -> bool:
-    """A constant written as bits of the target's width (0xFFFE in an int, ~0x3C in an unsigned int), or -1."""
+    """Whether a constant is a bit pattern for its target (0xFFFE in an int, ~0x3C in an unsigned int), or -1."""
     if not isinstance(e.ctype, IntType):
         return False
     bits = e.ctype.bits <= to.bits
@@ -374,13 +374,13 @@ def _as_pattern(e: Const, to: IntType) -> bool:
 
 
 def _kept(branch: list[Stmt], other: list[Stmt]) -> set[int]:
-    """The assignments of a branch to what the other branch assigns, too."""
+    """Identities of the assignments in a branch whose targets the other branch assigns too."""
     targets = [s.target for s in other if isinstance(s, Assign)]
     return {id(s) for s in branch if isinstance(s, Assign) and s.target in targets}
 
 
 def _compared_mask(e: Expr) -> bool:
-    """A constant compared for equality, as `MASK == MASK` in `x & MASK == MASK`."""
+    """Whether an operand is a comparison of a constant for equality: `MASK == MASK` in `x & MASK == MASK`."""
     match bare(e):
         case Compare(op="==" | "!=", left=left):
             return isinstance(bare(left), Const)
@@ -396,20 +396,20 @@ def _size(e: Expr) -> bool:
 
 
 def _of_pointer(left: Expr, right: Expr) -> bool:
-    """Whether `sizeof p / sizeof *p` divides the size of a pointer by that of what it points to."""
+    """Whether a quotient divides the size of a pointer by the size of its target: `sizeof p / sizeof *p`."""
     whole = {c.measured for c in _chain(left) if isinstance(c, Const) and isinstance(c.measured, PointerType)}
     return any(isinstance(c, Const) and c.measured == p.target for c in _chain(right) for p in whole)
 
 
 def _chain(e: Expr | None) -> Iterator[Expr]:
-    """A constant and what it was folded from."""
+    """A constant, and the expressions that it was folded from."""
     while e is not None:
         yield e
         e = e.source if isinstance(e, Const) else (e.operand if isinstance(e, Convert) else None)
 
 
 def _lossy_division(e: Const) -> Binary | None:
-    """The integer division with a remainder that a constant was folded from."""
+    """The integer division with a remainder from which a constant was folded; None: there is none."""
     waiting = [e]
     while waiting:
         for step in _chain(waiting.pop()):
@@ -425,7 +425,7 @@ def _lossy_division(e: Const) -> Binary | None:
 
 
 def maybe_negative(function: Function) -> set[Variable]:
-    """Signed locals that a statement of the function may give a negative value (calls and parameters are trusted)."""
+    """The locals to which a statement may assign a negative value.  (Results of calls, and arguments, are trusted.)"""
     doubtful = {v for v in function.locals if v.in_memory}
     locals_ = set(function.locals) | set(function.parameters)
     while True:
@@ -468,5 +468,5 @@ def negative(e: Expr, doubtful: set[Variable]) -> bool:
 
 
 def depends(e: Expr) -> bool:
-    """Whether an expression is made of anything but constants."""
+    """Whether an expression contains a load, a register or a call, not only constants."""
     return any(isinstance(p, Load | RegisterLoad | Call | CallPointer) for p in parts(e))

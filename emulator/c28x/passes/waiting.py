@@ -1,7 +1,7 @@
-"""Static check of loops that wait: on an object that another thread writes, and that is not `volatile`.
+"""Static check of loops that wait for an object which another thread writes and which is not `volatile`.
 
 Nothing in such a loop writes the object, so the compiler may read it once, before the loop (ISO C 5.1.2.3 p3; CC,
-`volatile`).  A call whose body the compiler may not know keeps it from that, and so does a write through a pointer.
+`volatile`).  It may not if the loop writes through a pointer, or calls a function whose body it may not know.
 """
 
 from __future__ import annotations
@@ -51,10 +51,10 @@ from emulator.c28x.tree_queries import (
 
 
 class WriterAnalysis:
-    """Who writes an object, as seen from a function that waits for it.
+    """Which functions write an object, seen from a function that waits for it.
 
-    `entered` are the functions (`module.name`) that a pointer, an interrupt or the board calls: each begins a thread of
-    its own, as `main` does, and as does whatever nobody in this image calls.
+    `entered` are the functions (`module.name`) that a pointer, an interrupt or the board calls.  Each of them begins a
+    thread of its own.  So do `main`, and every function that nothing in this image calls.
     """
 
     def __init__(self, modules: list[Module], entered: Set[str]) -> None:
@@ -63,7 +63,7 @@ class WriterAnalysis:
 
     @cached_property
     def called(self) -> dict[str, set[str]]:
-        """Each function -> those that it calls by name."""
+        """Path of each function -> those that it calls by name."""
         return {
             path: {call.function.path for call in _calls(list(statements(f.body))) if isinstance(call, Call)}
             for path, f in self.functions.items()
@@ -71,7 +71,7 @@ class WriterAnalysis:
 
     @cached_property
     def writers(self) -> dict[Variable, dict[str, Stmt]]:
-        """File-scope objects -> the functions that write them or take their address, and where each first does."""
+        """File-scope object -> the functions that write it or take its address, each with its first such statement."""
         found: dict[Variable, dict[str, Stmt]] = {}
         for path, function in self.functions.items():
             for s in statements(function.body):
@@ -82,7 +82,7 @@ class WriterAnalysis:
 
     @cached_property
     def begins(self) -> dict[str, set[str]]:
-        """The functions where threads begin -> what each of them runs."""
+        """Each function that begins a thread -> the functions that the thread runs."""
         inner = {callee for caller, callees in self.called.items() for callee in callees if callee != caller}
         first = {
             path
@@ -92,7 +92,7 @@ class WriterAnalysis:
         return {path: self.below(path) for path in first}
 
     def below(self, path: str) -> set[str]:
-        """A function and all that it calls, and these call."""
+        """A function and all functions that it calls, directly or indirectly."""
         found, waiting = {path}, [path]
         while waiting:
             new = self.called.get(waiting.pop(), set()) - found
@@ -101,7 +101,7 @@ class WriterAnalysis:
         return found
 
     def writer(self, variable: Variable, waiting: Function) -> tuple[Function, Stmt] | None:
-        """The first function of another thread that writes `variable` while `waiting` waits; None: there is none."""
+        """The first function that another thread runs and that writes `variable`; None: there is none."""
         inside = self.below(waiting.path)
         runs = {begin for begin, reached in self.begins.items() if waiting.path in reached}
         for path, s in self.writers.get(variable, {}).items():
@@ -113,7 +113,7 @@ class WriterAnalysis:
 
 
 def check_waiting(function: Function, threads: WriterAnalysis, report: StaticReport) -> None:
-    """Report the loops of a function that wait on an object of another thread that is not `volatile`."""
+    """Report loops of a function that wait for an object which another thread writes and which is not `volatile`."""
     for loop in statements(function.body):
         if isinstance(loop, While | For):
             for variable in dict.fromkeys(_Loop(loop, function, threads).polled()):
@@ -130,7 +130,7 @@ def check_waiting(function: Function, threads: WriterAnalysis, report: StaticRep
 
 
 class _Loop:
-    """One loop: what decides whether it goes on."""
+    """One loop, and the conditions that decide whether it continues."""
 
     def __init__(self, loop: While | For, function: Function, threads: WriterAnalysis) -> None:
         self.loop = loop
@@ -138,7 +138,7 @@ class _Loop:
         self.threads = threads
         self.inside = [loop, *(s for block in blocks(loop) for s in statements(block))]
         self.written = {variable for s in self.inside for variable in _written(s)}
-        #: Locals that its turns change -> the values that they are given (None: not known).
+        #: Locals that its turns change -> the values assigned to them (None: not known).
         self.given: dict[Variable, list[Expr | None]] = {}
         for s in self.inside:
             match s:
@@ -150,11 +150,11 @@ class _Loop:
                     self.given.setdefault(root, []).append(None)
 
     def polled(self) -> list[Variable]:
-        """The objects on which the loop waits, as far as the compiler need not read them again."""
+        """The objects for which the loop waits and which the compiler need not read again."""
         decisive = [source for test in self.exits() for source in self.sources(test, frozenset())]
         if not any(self.read(source) for source in decisive) or not self.transparent():
             return []
-        read = [self.read(source) for source in decisive]  # what its calls write is known now
+        read = [self.read(source) for source in decisive]  # again, because `transparent` has added what its calls write
         return [variable for one in read for variable in one] if all(read) or self.idle() else []
 
     def exits(self) -> Iterator[Expr | None]:
@@ -171,7 +171,7 @@ class _Loop:
             yield from _decisions(block, inner=False)
 
     def sources(self, test: Expr | None, seen: Set[Variable]) -> Iterator[Expr | None]:
-        """What a condition depends on: expressions that no turn changes; None for what turns change."""
+        """The expressions on which a condition depends and which no turn changes; None for those that turns change."""
         for term in _terms(test):
             changed = self.changed(term)
             if term is not None and not changed:
@@ -183,11 +183,11 @@ class _Loop:
                 yield None
 
     def changed(self, e: Expr | None) -> set[Variable]:
-        """The locals in an expression that turns change."""
+        """The locals in an expression that the turns of the loop change."""
         return {variable for variable in variables(parts(e)) if variable in self.given}
 
     def read(self, e: Expr | None) -> list[Variable]:
-        """The objects of static storage that an expression reads; none if it reads anything that is read each time."""
+        """The objects of static storage that an expression reads; none if it reads something that is read every time."""
         found = []
         for p in parts(e):
             match p:
@@ -202,11 +202,11 @@ class _Loop:
         return found
 
     def transparent(self) -> bool:
-        """Whether the compiler knows all that the loop writes; what its calls write is added to `written`."""
+        """Whether the compiler knows all that the loop writes.  Adds to `written` what its calls write."""
         return not any(map(_writes_by_pointer, self.inside)) and all(map(self.known, _calls(self.inside)))
 
     def known(self, call: Call | CallPointer) -> bool:
-        """Whether a call runs functions of this file only, and none that writes by a pointer."""
+        """Whether a call runs only functions of this file, of which none writes or calls through a pointer."""
         if isinstance(call, CallPointer):
             return False
         if call.function.extern:
@@ -222,7 +222,7 @@ class _Loop:
         return True
 
     def idle(self) -> bool:
-        """Whether the turns do nothing but count and look."""
+        """Whether the turns only count and test."""
         if any(True for _ in _calls(self.inside)):
             return False
         for s in self.inside:
@@ -245,7 +245,7 @@ def _terms(test: Expr | None) -> Iterator[Expr | None]:
 
 
 def _decisions(block: list[Stmt], *, inner: bool) -> Iterator[Expr | None]:
-    """The conditions under which a block leaves the loop that it stands in, or (`inner`) the one around that."""
+    """The conditions under which a block leaves its loop, or (`inner`) the loop around its loop."""
     for s in block:
         within = inner or isinstance(s, While | For)
         if any(_leaves(b, inner=within) for b in blocks(s)):
@@ -261,7 +261,7 @@ def _decisions(block: list[Stmt], *, inner: bool) -> Iterator[Expr | None]:
 
 
 def _leaves(block: list[Stmt], *, inner: bool) -> bool:
-    """Whether a statement of a block leaves the loop, from within another one (`inner`) by `return` only."""
+    """Whether a block contains a statement that leaves the loop.  From an inner loop (`inner`), only `return` does."""
     return any(
         isinstance(s, Return) or (isinstance(s, Break) and not inner)
         or any(_leaves(b, inner=inner or isinstance(s, While | For)) for b in blocks(s))
@@ -292,7 +292,7 @@ def _writes_by_pointer(s: Stmt) -> bool:
 
 
 def _counts_or_looks(value: Expr) -> bool:
-    """Whether a value is a step of a counter, or says whether something holds."""
+    """Whether a value is a step of a counter, or a truth value of comparisons."""
     match bare(value):
         case Binary(op="+" | "-", left=left, right=Const()):
             return isinstance(bare(left), Load)
