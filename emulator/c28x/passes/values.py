@@ -173,7 +173,7 @@ class ValueChecks(ConstantChecks):
                         self.expression(part)
 
     def outside(self, variable: Variable, value: Expr) -> None:
-        """Report a constant above all constants of its enumeration; not for flags, nor for a value that means "none"."""
+        """Report a constant above all constants of its enumeration; not flags, nor a value that means "none"."""
         known = variable.constants
         low, high = min(known), max(known)
         if not isinstance(value, Const) or not isinstance(value.value, int) or value.value in NOBODY:

@@ -187,7 +187,7 @@ class _Loop:
         return {variable for variable in variables(parts(e)) if variable in self.given}
 
     def read(self, e: Expr | None) -> list[Variable]:
-        """The objects of static storage that an expression reads; none if it reads something that is read every time."""
+        """The objects of static storage that an expression reads; none if a part of it must be read every time."""
         found = []
         for p in parts(e):
             match p:
