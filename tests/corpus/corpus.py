@@ -1,7 +1,7 @@
-"""A corpus of drivers with seeded defects: right drivers, and small damages, each with the lines at which it is told.
+"""A corpus of drivers with seeded defects: correct drivers, and small damages with the lines of their findings.
 
-A driver is a file of `drivers/`; the TOML file beside it holds its damages.  It was written before the detectors that
-it measures, by people who did not write them.
+A driver is a file in `drivers/`; the TOML file beside it contains its damages.  Most of the corpus was written before
+the detectors that it measures, by people who did not write them (README.md names the exceptions).
 """
 
 from __future__ import annotations
@@ -30,29 +30,29 @@ CLASSES: Final = (
 
 @dataclass(frozen=True)
 class Driver:
-    """A right driver: `seconds` of virtual time show what it does."""
+    """A correct driver: `seconds` of virtual time show what it does."""
 
     file: Path
     description: str
     seconds: float
     damages: tuple[Damage, ...]
-    #: What `--board` says of it; empty: nothing.
+    #: The value of `--board` for it; empty: none.
     board: str = ""
 
     @property
     def name(self) -> str:
-        """Of its file."""
+        """The name of its file, without the ending."""
         return self.file.stem
 
     @cached_property
     def text(self) -> str:
-        """Of its file."""
+        """The text of its file."""
         return self.file.read_text(encoding="utf-8")
 
 
 @dataclass(frozen=True)
 class Damage:
-    """A defect: what is replaced in the driver by what, and the statements at which it may be told."""
+    """A defect: the replacements in the driver, and the statements at which a finding counts."""
 
     id: str
     kind: str
@@ -61,7 +61,7 @@ class Damage:
     accepted: tuple[str, ...]
 
     def of(self, text: str) -> str:
-        """The driver with it.  Raises ValueError for a text that does not stand there once."""
+        """The damaged driver.  Raises ValueError for a text that does not occur exactly once."""
         for old, new in self.replacements:
             if text.count(old) != 1:
                 raise ValueError(f"{self.id}: {old!r} stands {text.count(old)} times in the driver")
@@ -69,7 +69,7 @@ class Damage:
         return text
 
     def lines(self, damaged: str) -> frozenset[int]:
-        """The accepted lines of the damaged text.  Raises ValueError for a statement that it does not have."""
+        """The accepted lines of the damaged text.  Raises ValueError for a statement that is not in it."""
         found: set[int] = set()
         for statement in self.accepted:
             here = {n for n, line in enumerate(damaged.splitlines(), 1) if statement in line}
@@ -80,7 +80,7 @@ class Damage:
 
 
 def drivers() -> list[Driver]:
-    """All of them, by name.  Raises ValueError, KeyError for a file that is not as the README says."""
+    """All drivers, by name.  Raises ValueError or KeyError for a TOML file that does not follow the README."""
     return [_driver(file) for file in sorted(DRIVERS.glob("*.toml"))]
 
 
@@ -103,11 +103,11 @@ def _damage(entry: dict[str, Any]) -> Damage:
 
 @dataclass(frozen=True)
 class Result:
-    """What `hil check` says of a text."""
+    """The findings of `hil check` for a text."""
 
-    #: Line (0: no place in the driver), rule, message of errors and warnings.
+    #: (line, rule, message) of errors and warnings; line 0: no place in the driver.
     told: tuple[tuple[int, str, str], ...]
-    #: The same of notes.
+    #: The same for notes.
     noted: tuple[tuple[int, str, str], ...]
 
     def at(self, lines: frozenset[int]) -> str:

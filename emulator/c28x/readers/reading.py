@@ -1,4 +1,4 @@
-"""The interpreter set up for reading and translating a program: room for recursion, and no collector on the way."""
+"""Set up the interpreter for reading and translating a program: deep recursion, no garbage collection."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ _LOCK = threading.RLock()
 
 @contextmanager
 def reading(frames: int) -> Iterator[None]:
-    """Let calls nest `frames` deeper than here, and pause the cyclic collector; both as before afterwards.
+    """Let calls nest `frames` deeper than here, and pause the cyclic garbage collector.  Restores both afterwards.
 
-    Frames of Python functions live on the heap (CPython 3.11 and later), so this costs no stack of the C library.  A
-    tree that grows has no cycles, and walking over it again and again takes the collector as long as the parser.
-    Both settings are the interpreter's: one reader at a time has them changed.
+    Frames of Python functions are on the heap (CPython 3.11 and later), so this needs no C stack.  A growing tree has
+    no cycles, and repeated collections over it would take as long as the parser.  Both settings are global to the
+    interpreter, so only one reader at a time changes them.
     """
     with _LOCK:
         limit = sys.getrecursionlimit()

@@ -1,8 +1,8 @@
-"""C files that lie beside headers, as those of driverlib do: which of them defines a function.
+"""C files beside headers, such as those of driverlib: which of them defines a function.
 
-Looked into are the folders of `-I`, and `source` beside one called `include`: a function that a program uses and no
-file of it defines is taken from there, as a linker takes it from a library.  Here the files are only searched for the
-beginnings of functions; what they say is read by the reader.
+If a program uses a function that none of its files defines, it is taken from such a file, as a linker takes it from a
+library.  The search covers the folders of `-I`, and a folder `source` beside one called `include`.  This module only
+finds the starts of functions; the C reader reads the files.
 """
 
 from __future__ import annotations
@@ -12,18 +12,18 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Final
 
-#: A larger file is no driver.
+#: Larger files are skipped: they are not drivers.
 _LARGEST_BYTES: Final = 2_000_000
 _SKIPPED: Final = re.compile(
     r"""//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|^[ \t]*\#(?:\\\n|[^\n])*""",
     re.DOTALL | re.MULTILINE,
 )
-#: Nothing is tried twice, however long a name is or how many parentheses stand open.
+#: Possessive, so that it never backtracks, however long a name is or however many parentheses are open.
 _HEAD: Final = re.compile(r"\b(\w++)\s*+\([^(){};]*+(?:\([^(){};]*+\)[^(){};]*+)*+\)\s*+$")
 
 
 class Beside:
-    """The C files of some folders by the functions that they define; read when first asked."""
+    """The C files of some folders, by the functions that they define.  They are read at the first request."""
 
     def __init__(self, folders: Iterable[str | Path]) -> None:
         self._folders = [Path(folder) for folder in folders]
@@ -31,17 +31,17 @@ class Beside:
 
     @property
     def folders(self) -> list[Path]:
-        """Where C files are sought: a change of what lies there may change a program."""
+        """The folders that are searched: a change in them may change a program."""
         sources = [folder.parent / "source" for folder in self._folders if folder.name == "include"]
         return [*self._folders, *(folder for folder in sources if folder.is_dir())]
 
     def file(self, function: str) -> Path | None:
-        """The file that defines a function; None: there is none.  Of several it is the first by folder and name."""
+        """The file that defines a function; None: there is none.  Of several, it is the first by folder and name."""
         if self._found is None:
             self._found = {}
             for path in self._files():
                 names = list(functions(path.read_text(encoding="latin-1")))
-                if "main" not in names:  # another program, which is no library
+                if "main" not in names:  # it is another program, not a library
                     for name in names:
                         self._found.setdefault(name, path)
         return self._found.get(function)

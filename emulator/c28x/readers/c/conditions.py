@@ -7,7 +7,7 @@ from typing import Final
 
 from emulator.c28x.readers.c.tokens import CHAR, NAME, NUMBER, Token
 
-#: Brackets, signs and `?` within one another.
+#: How deep brackets, signs and `?` may nest.
 DEPTH: Final = 200
 
 _MASK: Final = (1 << 64) - 1
@@ -32,7 +32,7 @@ def evaluate(tokens: list[Token], directive: Token) -> bool:
 
 
 def character(token: Token) -> int:
-    """The value of a character constant in 16 bits; of several characters the last counts (SPRU514, 6.1)."""
+    """The value of a character constant, in 16 bits.  Of several characters, the last one counts (SPRU514, 6.1)."""
     body = token.text[token.text.index("'") + 1 : -1]
     found = re.findall(r"\\x([0-9a-fA-F]+)|\\([0-7]{1,3})|\\(.)|([^\\])", body)
     if not found:
@@ -71,7 +71,7 @@ def _wrap(value: int, unsigned: bool) -> Value:
 
 
 class _ConditionReader:
-    """Precedence climbing; `live` is False where the value does not matter, and nothing is an error of arithmetic."""
+    """Precedence climbing.  `live` is False where the value does not matter: there, arithmetic raises no error."""
 
     def __init__(self, tokens: list[Token], directive: Token) -> None:
         self.tokens = tokens

@@ -1,4 +1,4 @@
-"""Declarations of a C file: types, objects, functions, what is static, and what other files define.
+"""Declarations of a C file: types, objects, functions, and their linkage.
 
 Bodies and initialisers are read later, when every file of the image has been declared.
 """
@@ -34,7 +34,7 @@ from emulator.c28x.readers.c.types import Abi, specifier
 from emulator.c28x.symbols import CoreRegister, EnumType, Module, SourceError
 from emulator.c28x.tree import Const, Declaration, Expr, Function, Null, Variable, Where
 
-#: Finds a function that a file calls without declaring it, by its name.
+#: Finds a function by name that a file calls without a declaration.
 Finder = Callable[[str], Function | None]
 
 
@@ -44,7 +44,7 @@ _VECTORS: Final = 224
 
 @dataclass
 class Linkage:
-    """What other files may mean by a name of this one, and what this one means by names of others."""
+    """The linkage of names: what other files can use of this file, and what this file needs from others."""
 
     #: Names with internal linkage.
     static: set[str] = field(default_factory=set)
@@ -52,23 +52,23 @@ class Linkage:
     declared: dict[str, Where] = field(default_factory=dict)
     #: Objects and functions defined here that other files see.
     defined: dict[str, Where] = field(default_factory=dict)
-    #: Functions defined `inline` and not `static`: each file that includes their header defines them.
+    #: Functions defined `inline` but not `static`: every file that includes their header defines them.
     inline: set[str] = field(default_factory=set)
-    #: Objects that headers declare and no file of the image defines: only their use is an error.
+    #: Objects that headers declare but no file of the image defines: it is an error only to use them.
     absent: set[str] = field(default_factory=set)
 
 
 class CDeclarationReader:
-    """Reads the declarations at file scope, and those of blocks for the functions' bodies."""
+    """Reads the declarations at file scope; `FunctionReader` uses it for those in functions."""
 
     def __init__(self, module: Module, abi: Abi, find: Finder) -> None:
         self.module = module
         self.abi = abi
         self.find = find
         self.linkage = Linkage()
-        #: Functions that headers define for each file that uses them: they join the file where it uses them.
+        #: Functions that headers define: each joins the file only if the file uses it.
         self.spare: set[Function] = set()
-        #: The objects that are defined here, as far as is known.
+        #: The objects that this file has defined so far.
         self.objects: set[Variable] = set()
         self.tags: dict[str, CType | EnumType] = {}
         self.b = build.file_scope(module, remarks_pointers=True)
@@ -76,9 +76,9 @@ class CDeclarationReader:
         self.types = self.expressions.types
 
     def use(self, symbol: Function | Variable, where: Where) -> None:
-        """A function or an object is named in an expression.
+        """Note that an expression names a function or an object.
 
-        Raises SourceError for an object that no file of the image defines; a function may be given to the linker.
+        Raises SourceError for an object that no file of the image defines.  The linker looks for a missing function.
         """
         if isinstance(symbol, Variable):
             self.exists(symbol, where)
@@ -91,18 +91,18 @@ class CDeclarationReader:
                 symbol.where = where
 
     def exists(self, variable: Variable, where: Where) -> None:
-        """Raises SourceError at the use of an object that no file defines."""
+        """Raises SourceError for the use of an object that no file defines."""
         name = variable.declaration.name
         if name in self.linkage.absent and self.module.symbols.get(name) is variable:
             unknown = f"{name} is declared extern, and no file defines it: name the one that does too"
             raise SourceError.at(where, headers.hint(name) or unknown)
 
     def implicit(self, name: str, where: Where) -> Function | None:
-        """The function that a name means which nothing here declares."""
+        """The function that is called by a name which this file does not declare; None: there is none."""
         return self.find(name)
 
     def read(self, tree: c_ast.FileAST) -> None:
-        """Everything at file scope.  Raises SourceError."""
+        """Read everything at file scope.  Raises SourceError."""
         for node in tree.ext:
             match node:
                 case c_ast.FuncDef():
@@ -123,11 +123,11 @@ class CDeclarationReader:
         for tag, ctype in self.tags.items():
             kind = "enum" if isinstance(ctype, EnumType) else ctype.name.split()[0]
             if kind in ("enum", "struct", "union"):
-                self.module.symbols[f"{kind} {tag}"] = ctype  # tags have a name space of their own
+                self.module.symbols[f"{kind} {tag}"] = ctype  # tags have their own name space
                 self.module.symbols.setdefault(tag, ctype)
 
     def assembler(self, node: c_ast.FuncCall) -> None:
-        """`asm("...")` at file scope: directives to the linker, which place things."""
+        """`asm("...")` at file scope: linker directives, which place code and data."""
         self.b.remark(node.coord, "assembler-ignored", "assembler outside of functions is ignored", "asm")
 
     # Objects
@@ -143,12 +143,12 @@ class CDeclarationReader:
             return
         ctype = self.types.ctype(node.type)
         if isinstance(ctype, Prototype):
-            if name not in INTRINSICS:  # what the compiler knows stays what it is
+            if name not in INTRINSICS:  # what the compiler knows itself is not replaced
                 self.declare_function(name, ctype, node)
             return
         vectors = headers.block_types()["PIE_VECT_TABLE"].layout
         if isinstance(ctype, BlockType) and ctype.layout is vectors and name not in headers.instances():
-            ctype = build.array_of(FunctionType("function", VOID, ()), _VECTORS, where)  # one that start-up code copies
+            ctype = build.array_of(FunctionType("function", VOID, ()), _VECTORS, where)  # start-up code copies it
         if isinstance(ctype, BlockType):
             self.register_block(name, ctype, where)
             return
@@ -160,14 +160,14 @@ class CDeclarationReader:
         self.object(name, ctype, node, given, extern=extern)
 
     def sized(self, ctype: CType, given: Item | Braces | None, where: Where) -> CType:
-        """The type of an object, an array's length taken from its initialiser."""
+        """The type of an object; an array without a length takes it from its initialiser."""
         if not isinstance(ctype, Unsized):
             return ctype
         length = 1 if given is None else build.length_given(ctype.element, given)
         return build.array_of(ctype.element, length, where)
 
     def register_block(self, name: str, ctype: BlockType, where: Where) -> None:
-        """A register block, by the name that the device header gives it."""
+        """Declare a register block by its name in the device header."""
         known = headers.instances().get(name)
         if known is None or known.layout is not ctype.layout:
             raise SourceError.at(where, f"{name} is not a modelled register block of this chip")
@@ -176,7 +176,7 @@ class CDeclarationReader:
     def object(
         self, name: str, ctype: CType, node: c_ast.Decl, given: Item | Braces | None, *, extern: bool
     ) -> None:  # fmt: skip
-        """An object at file scope: declared, tentatively defined, or defined with a value."""
+        """An object at file scope: a declaration, a tentative definition, or a definition with a value."""
         where = node.coord
         known = self.module.symbols.get(name)
         if known is not None and not isinstance(known, Variable):
@@ -224,7 +224,7 @@ class CDeclarationReader:
             self.module.initialisers.setdefault(variable, lambda: zeros(variable.ctype, where))
 
     def initial(self, reader: CExpressionReader, variable: Variable, given: Item | Braces) -> list[Expr]:
-        """What an object starts from.  Raises SourceError for what is no constant."""
+        """The initial values of an object.  Raises SourceError for a value that is not constant."""
         effects, values = reader.b.apart(lambda: build.values(reader.b, variable.ctype, given))
         for i, value in enumerate(values):
             if not effects and not build.is_constant(value) and (number := build.constant_value(value)) is not None:
@@ -239,7 +239,7 @@ class CDeclarationReader:
     # Functions
 
     def declare_function(self, name: str, prototype: Prototype, node: c_ast.Decl) -> Function:
-        """A function is declared: it is one of our headers, one defined in this file, or another file's."""
+        """Declare a function: from one of our headers, from this file, or from another file."""
         where = node.coord
         known = self.module.symbols.get(name)
         if known is not None and not isinstance(known, Function):
@@ -273,7 +273,7 @@ class CDeclarationReader:
         return made
 
     def function(self, node: c_ast.FuncDef) -> None:
-        """A function is defined; its body waits."""
+        """Define a function; its body is read later."""
         declaration = node.decl
         name, where = declaration.name, declaration.coord
         if declaration.type.args is not None and any(isinstance(p, c_ast.ID) for p in declaration.type.args.params):
@@ -303,7 +303,7 @@ class CDeclarationReader:
             given = Declaration(VA_GIVEN, CHAR.pointer, self.module.short, where.file, where.line, name, where.column)
             function.given = Variable(given, given.ctype, "parameter", initialised=True)
         for variable, parameter in zip(function.parameters, _list(arguments), strict=False):
-            if not isinstance(parameter.type, c_ast.ArrayDecl):  # its elements are not the parameter
+            if not isinstance(parameter.type, c_ast.ArrayDecl):  # else the words are about its elements
                 variable.volatile = self.types.qualified(parameter, "volatile")
                 variable.constant = self.types.qualified(parameter, "const")
             self.declared_as(variable, parameter.type)
@@ -318,7 +318,7 @@ class CDeclarationReader:
             if "inline" in declaration.funcspec:
                 self.linkage.inline.add(name)
         if where.file != self.module.file and (function.static or where.file.startswith("<")):
-            # a header's own function: part of the file only if that uses it
+            # a function of a header: it is part of the file only if the file uses it
             self.spare.add(function)
         else:
             self.module.functions.append(function)
@@ -326,7 +326,7 @@ class CDeclarationReader:
         self.module.bodies[function] = lambda: FunctionReader(self, function, node).read()
 
     def declared_as(self, variable: Variable, node: c_ast.Node) -> None:
-        """What a type does not keep of its declaration: a parameter's length as an array, an enumeration."""
+        """Keep what a type loses of its declaration: the array length of a parameter, an enumeration."""
         match node:
             case c_ast.ArrayDecl(dim=c_ast.Node() as length):
                 variable.length = self.types.number(length, "the length of an array")
@@ -339,10 +339,10 @@ class CDeclarationReader:
 
 
 def _typed(names: c_ast.ParamList, declared: list[c_ast.Decl]) -> c_ast.ParamList:
-    """The parameters of a definition in the style of K&R as those of a prototype.
+    """The parameters of a K&R definition, written as those of a prototype.
 
-    C promotes what is passed and converts it back, which changes no value where `char`, `short` and `int` are one size
-    and `double` is `float`.  A parameter without a type is an int, as in C89.
+    C promotes the arguments and converts them back.  That changes no value, because here `char`, `short` and `int` have
+    the same size, and `double` is `float`.  A parameter without a type is an int, as in C89.
     """
     types = {declaration.name: declaration for declaration in declared}
     typed = []
@@ -356,7 +356,7 @@ def _typed(names: c_ast.ParamList, declared: list[c_ast.Decl]) -> c_ast.ParamLis
 
 
 class FunctionReader:
-    """Reads the body of one function, with the file's scope around it."""
+    """Reads the body of one function, within the scope of its file."""
 
     def __init__(self, file: CDeclarationReader, function: Function, node: c_ast.FuncDef) -> None:
         self.file = file
@@ -378,7 +378,7 @@ class FunctionReader:
             self.statements.statements(self.node.body.block_items)
 
     def local(self, node: c_ast.Node) -> None:
-        """A declaration within the function."""
+        """Read a declaration within the function."""
         b, where = self.b, node.coord
         if isinstance(node, c_ast.Typedef):
             self.types.typedef(node)
@@ -422,7 +422,7 @@ class FunctionReader:
         variable.constant = self.types.qualified(node, "const")
 
     def static(self, node: c_ast.Decl, ctype: CType, given: Item | Braces | None) -> None:
-        """A `static` local: an object of the file that one function sees."""
+        """A `static` local: an object of the file that only this function can name."""
         where = node.coord
         variable = self.b.declare_static(node.name, ctype, where)
         variable.initialised = given is not None
@@ -437,7 +437,7 @@ class FunctionReader:
 
 
 def zeros(ctype: CType, where: Where) -> list[Expr]:
-    """What an object without an initialiser holds where the start-up code clears it."""
+    """The initial values of an object without an initialiser that the start-up code clears."""
     return [
         Const(part, 0, where=where) if is_arithmetic(part) else Null(part, where=where) for _, part in scalars(ctype)
     ]
@@ -463,18 +463,18 @@ def _same(a: CType, b: CType) -> bool:
 
 
 def _unspecified(ctype: FunctionType) -> bool:
-    """`f()`: C does not say which parameters."""
+    """Whether a function is declared as `f()`: C then does not specify its parameters."""
     return ctype.variadic and not ctype.parameters
 
 
 def signature(name: str, ctype: FunctionType) -> str:
-    """A function's declaration, for a message."""
+    """The declaration of a function as text, for a message."""
     listed = ", ".join(str(parameter) for parameter in ctype.parameters)
     return f"{ctype.result} {name}({listed}{', ...' if ctype.variadic and listed else ''})"
 
 
 def _completes(known: CType, ctype: CType) -> bool:
-    """Whether a second declaration of an array only adds its length, or takes it from the first."""
+    """Whether a second declaration of an array only adds the length, or omits it."""
     return isinstance(known, Unsized) and isinstance(ctype, ArrayType) and known.element == ctype.element
 
 
@@ -483,6 +483,6 @@ def _list(arguments: c_ast.ParamList | None) -> list[c_ast.Node]:
 
 
 def _place(node: c_ast.Decl, ctype: CType) -> Where:
-    """Where a declaration is wrong: at its name, or at the type that is not modelled."""
+    """The place of an error in a declaration: its name, or its type if that is not modelled."""
     where: Where = node.coord
     return specifier(node.type) if isinstance(ctype, Double64) else where

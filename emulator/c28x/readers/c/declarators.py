@@ -1,7 +1,7 @@
-"""C text of types and declarations: the common core of every header that is generated.
+"""C text of types and declarations, for all generated headers.
 
-A type of the translator is written as C writes it, inside out: `int (*table[4])(char)`.  A `FunctionType` is the type
-of an object that points to a function, as everywhere in the translator; only `prototype` writes a function itself.
+A type is written as in C, inside out: `int (*table[4])(char)`.  A `FunctionType` is the type of a pointer to a
+function, as everywhere in the translator; only `prototype` writes a function itself.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from emulator.c28x.tree import Function
 
 
 def declarator(ctype: CType, name: str = "") -> str:
-    """An object of type `ctype` called `name`, without the semicolon; without a name, the type as a cast has it."""
+    """The declaration of `name` with type `ctype`, without the semicolon.  Without a name: the type, as in a cast."""
     match ctype:
         case PointerType(target=target):
             return declarator(target, f"*{name}")
         case ArrayType(element=element, length=length):
             return declarator(element, f"{_grouped(name)}[{length}]")
         case FunctionType(result=result):
-            # An empty list stands for any parameters, as `funcptr` does.
+            # An empty list means any parameters, as `funcptr` does.
             return declarator(result, f"(*{name})({_parameters(ctype, (), empty='')})")
     return f"{ctype.name} {name}".rstrip()
 
@@ -38,7 +38,7 @@ def _parameters(ctype: FunctionType, names: Sequence[str], *, empty: str) -> str
 
 
 def _grouped(name: str) -> str:
-    """`[]` and `()` bind before `*`."""
+    """A declarator in parentheses if it begins with `*`, because `[]` and `()` bind before `*`."""
     return f"({name})" if name.startswith("*") else name
 
 
@@ -49,14 +49,14 @@ def structure(ctype: StructType) -> str:
     for member in ctype.members:
         width = "" if member.width is None else f" : {member.width}"
         if bit_field and width and not member.lo and not isinstance(ctype, UnionType):
-            lines.append(f"    {declarator(member.ctype)} : 0;\n")  # it begins a word of its own
+            lines.append(f"    {declarator(member.ctype)} : 0;\n")  # the next bit-field begins a new word
         lines.append(f"    {declarator(member.ctype, member.name)}{width};\n")
         bit_field = bool(width)
     return f"{_word(ctype)} {ctype.name} {{\n{''.join(lines)}}};"
 
 
 def forward(ctype: StructType) -> str:
-    """The name of a structure before its members are known: pointers to it can be written from here on."""
+    """The declaration of a structure without its members: after it, pointers to the structure can be declared."""
     return f"typedef {_word(ctype)} {ctype.name} {ctype.name};"
 
 

@@ -1,8 +1,8 @@
 """TI's device headers as C text: types, core, register blocks, constants, the functions of the start-up files.
 
-Declarations come from `emulator.device_h`, constants from there and from `emulator.device_defines`; here stand only
-words that C has and C-shaped Python has not: type names, statements of the core, macros.  Names and values are those
-of TI's headers; a file of TI's that is compiled with the user's finds what it expects.  Source: HDR.
+Declarations come from `emulator.device_h`, constants from there and from `emulator.device_defines`.  This module adds
+only what C-shaped Python does not have: type names, statements of the core, macros.  Names and values are those of TI's
+headers, so TI's own source files can be compiled with the user's.  Source: HDR.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from emulator.c28x.readers.c.register_types import block_types, declarations, de
 from emulator.c28x.symbols import Define
 from emulator.c28x.tree import Function
 
-#: What the header of the device includes first.
+#: The headers that the device header includes first.
 _STANDARD: Final = ("assert.h", "stdarg.h", "stdbool.h", "stddef.h", "stdint.h")
-#: Statements of the core: name in C -> assembler text, which `ASSEMBLER` takes back to the function.
+#: Statements of the core: name in C -> assembler text.  `ASSEMBLER` maps the text back to the function.
 _CORE: Final = {
     "EINT": "clrc INTM", "DINT": "setc INTM", "ERTM": "clrc DBGM", "DRTM": "setc DBGM", "EALLOW": "EALLOW",
     "EDIS": "EDIS", "ESTOP0": "ESTOP0",
 }  # fmt: skip
-#: Assembler text in a C file, without blanks around it and in capitals -> what it does, under its C name, if anything.
+#: Assembler text in a C file, stripped and in capitals -> the C name of what it does; empty: nothing.
 ASSEMBLER: Final = {text.upper(): name for name, text in _CORE.items()} | {"NOP": "", "IDLE": ""}
 #: Type names (F2837xS_device.h).  CHOICE: `uint16` and `uint32` too, which the thesis' files use with this header.
 _TYPES: Final = (
@@ -32,10 +32,10 @@ _TYPES: Final = (
     ("unsigned long", "Uint32"), ("unsigned long long", "Uint64"), ("float", "float32"), ("long double", "float64"),
     ("unsigned int", "uint16"), ("unsigned long", "uint32"),
 )  # fmt: skip
-#: The kernel's CPU interrupts that no line of the PIE has.
+#: The CPU interrupts of the kernel that do not come from the PIE.
 _LINES: Final = (("M_DLOG", "0x4000"), ("M_RTOS", "0x8000"))
-#: Functions of TI's source files that are not part of the emulator: declared, so that those files can be compiled with
-#: the user's (HDR F2837xS_GlobalPrototypes.h).
+#: Functions of TI's source files that the emulator does not have.  They are declared, so that those files can be
+#: compiled with the user's (HDR F2837xS_GlobalPrototypes.h).
 _ELSEWHERE: Final = (
     ("void", "void", "AuxIntOsc2Sel AuxXtalOscSel AuxAuxClkSel"),
     ("void", "Uint16 clock_source, Uint16 imult, Uint16 fmult, Uint16 divsel", "InitAuxPll"),
@@ -46,7 +46,7 @@ _ELSEWHERE: Final = (
      InitMcbspa32bit InitMcbspaGpio InitMcbspaInt InitMcbspb InitMcbspb8bit InitMcbspb12bit InitMcbspb16bit
      InitMcbspb20bit InitMcbspb24bit InitMcbspb32bit InitMcbspbGpio InitMcbspbInt"""),
 )  # fmt: skip
-#: Default routines besides one for each vector (HDR F2837xS_defaultisr.h).
+#: Default routines in addition to the one for each vector (HDR F2837xS_defaultisr.h).
 _ROUTINES: Final = ("PIE_RESERVED", "EMPTY", "NOTUSED")
 #: Functions of the ROM that TI's sources call by address (HDR F2837xS_Examples.h).
 _ROM: Final = (
@@ -54,23 +54,23 @@ _ROM: Final = (
     ("CalAdcbINL", "void", "void", "0x0703B2"), ("CalAdccINL", "void", "void", "0x0703B0"),
     ("CalAdcdINL", "void", "void", "0x0703AE"), ("GetAdcOffsetTrimOTP", "Uint16", "Uint16 OTPoffset", "0x0703AC"),
 )  # fmt: skip
-#: Names that driverlib has too -> what they are called in a project that uses both, "" for not at all (HDR
+#: Names that driverlib has too -> their names in a project that uses both; "": they are left out (HDR
 #: F2837xS_Adc_defines.h, F2837xS_Can_defines.h).
 _DUAL: Final = {"ADC_RESOLUTION_": "ADC_BITRESOLUTION_", "CAN_": ""}
-#: What the linker's command file defines (HDR F2837xS_GlobalPrototypes.h) -> its address.  CHOICE: what start-up code
-#: copies from flash to RAM has no words, as code lies nowhere here.
+#: Symbols of the linker command file (HDR F2837xS_GlobalPrototypes.h) -> their addresses.  CHOICE: the code that
+#: start-up code copies from flash to RAM has length 0, because code has no memory here.
 LINKED: Final = {
     "RamfuncsLoadStart": 0x86000, "RamfuncsLoadEnd": 0x86000, "RamfuncsLoadSize": 0,
     "RamfuncsRunStart": 0x8000, "RamfuncsRunEnd": 0x8000, "RamfuncsRunSize": 0,
 }  # fmt: skip
-#: They, in C.
+#: The same symbols, declared in C.
 LINKER_SYMBOLS: Final = f"unsigned int {', '.join(LINKED)};\n"
-#: Declared as C declares them, with TI's structure of a timer, not as `emulator.device_h` does: see `CPU_TIMERS`.
+#: Functions declared with TI's timer structure, not as `emulator.device_h` declares them: see `CPU_TIMERS`.
 _TIMER_FUNCTIONS: Final = ("InitCpuTimers", "ConfigCpuTimer")
 _TIMERS: Final = ("CpuTimer0", "CpuTimer1", "CpuTimer2")
 
-#: The definitions behind F2837xS_cputimervars.h, in C: the three timers of a program and their two functions.  To be
-#: compiled with a program that uses one of these names and does not define it.
+#: The definitions for F2837xS_cputimervars.h, in C: the three timers of a program and their two functions.  They are
+#: compiled with a program that uses one of these names without a definition.
 CPU_TIMERS: Final = """#include "F2837xS_cputimervars.h"
 
 struct CPUTIMER_VARS CpuTimer0, CpuTimer1, CpuTimer2;
@@ -135,7 +135,7 @@ def device_header() -> str:
 
 
 def project_header() -> str:
-    """`F28x_Project.h`: the device and what TI's examples use."""
+    """`F28x_Project.h`: the device header, and the headers of TI's examples."""
     macros = (
         "#define XSTRINGIZE(s) STRINGIZE(s)", "#define STRINGIZE(s) #s",
         "#define XCONCAT(x, y) CONCAT(x, y)", "#define CONCAT(x, y) x##y",
@@ -201,9 +201,9 @@ def default_routines() -> str:
 
 
 def define_header(file: str, *prefixes: str) -> str:
-    """A header of constants: those whose names begin with one of `prefixes`.
+    """A header with the constants whose names begin with one of `prefixes`.
 
-    A project that uses driverlib beside bit fields defines `_DUAL_HEADERS`: names of both are left to driverlib.
+    A project that uses driverlib and bit fields defines `_DUAL_HEADERS`: names that both have come from driverlib.
     """
     here = {name: s for name, s in _constants().items() if name.startswith(prefixes)}
     shared = {name: s for name, s in here.items() if name.startswith(tuple(_DUAL))}
@@ -231,7 +231,7 @@ def i2c_header() -> str:
 
 @lru_cache(maxsize=1)
 def _constants() -> dict[str, Define]:
-    """The constants for bit fields, of both modules that have some."""
+    """The constants for bit fields, from both modules that define some."""
     modules = (device(), Program().module("emulator.device_defines"))
     return {n: s for module in modules for n, s in own_symbols(module).items() if isinstance(s, Define)}
 
@@ -241,6 +241,6 @@ def _include(*names: str) -> list[str]:
 
 
 def unmodelled() -> Iterator[str]:
-    """Functions that the headers declare and the emulator does not have."""
+    """Names of functions that the headers declare but the emulator does not have."""
     for _, _, names in _ELSEWHERE:
         yield from names.split()

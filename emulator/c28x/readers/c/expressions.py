@@ -1,4 +1,4 @@
-"""Expressions of C: each construct is given to the builder."""
+"""Expressions of C: the reader passes each construct to the builder."""
 
 from __future__ import annotations
 
@@ -51,19 +51,19 @@ _ARITHMETIC: Final = {f"{op}=": op for op in build.BINARY}
 
 
 def _instead(text: str) -> str:
-    """What to write for an instruction that is not known."""
+    """What to write instead of an unknown instruction."""
     if re.match(r"(PUSH|POP) ST1$", text, re.IGNORECASE):
         return "write __disable_interrupts() and __restore_interrupts() around what they protect"
     return "write in C what it does"
 
 
 def _intrinsic(name: str, result: CType, *parameters: CType) -> Function:
-    """A function that the compiler knows without a declaration."""
+    """Make a function that the compiler knows without a declaration."""
     listed = [Variable(Declaration("", p, "intrinsic", "", 0, name), p, "parameter") for p in parameters]
     return Function(name, "intrinsic", FunctionType(name, result, parameters), listed, 0, "", extern=True)
 
 
-#: Interrupts off, on, and as they were (SPRU514, "Intrinsics"); `emulator.c28x.intrinsics` implements them.
+#: Disable, enable and restore interrupts (SPRU514, "Intrinsics"); `emulator.c28x.intrinsics` implements them.
 INTERRUPTS: Final = {
     "__disable_interrupts": _intrinsic("__disable_interrupts", UINT),
     "__enable_interrupts": _intrinsic("__enable_interrupts", UINT),
@@ -82,17 +82,17 @@ FIXED_POINT: Final = {
     "__IQmpy": _intrinsic("__IQmpy", LONG, LONG, LONG, INT), "__IQxmpy": _intrinsic("__IQxmpy", LONG, LONG, LONG, INT),
     "__IQsat": _intrinsic("__IQsat", LONG, LONG, LONG, LONG), "__IQ": _intrinsic("__IQ", LONG, FLOAT, INT),
 }  # fmt: skip
-#: `RPT #n || NOP`: so many cycles pass.
+#: `RPT #n || NOP`: waits for this number of cycles.
 _IDLE_CYCLES: Final = _intrinsic("__idle_cycles", VOID, UINT)
 _MODES: Final = re.compile(r"(SETC|CLRC) ((?:INTM|DBGM)(?: ?, ?(?:INTM|DBGM))?)", re.IGNORECASE)
 _REPEATED: Final = re.compile(r"RPT #\(?(0x[0-9a-f]+|0|[1-9]\d*)\)? ?\|\| ?NOP", re.IGNORECASE)
 _MOST_REPEATED: Final = 255
-#: Registers that C does not see, put on the stack and taken back: around a call of code that does not keep them.
+#: Save and restore of registers that C does not see, around a call of code that changes them.
 _KEPT: Final = re.compile(
     r"(PUSH|POP) (ACC|P|XT|DP|XAR[0-7]|AR[0-7](:AR[0-7])?|RPC|RB)"
     r"|MOV32 \*SP\+\+ ?, ?(R[0-7]H|STF)|MOV32 (R[0-7]H|STF) ?, ?\*--SP(, ?UNCF?)?", re.IGNORECASE,
 )
-#: All that the compiler knows without a declaration: one in the file or a header changes nothing.
+#: All functions that the compiler knows; a declaration of them in a file or header changes nothing.
 INTRINSICS: Final = frozenset(
     {*INTERRUPTS, *FLOATS, *FIXED_POINT, "__eallow", "__edis", "__byte", "__byte_peripheral_32"}
 )
@@ -106,10 +106,10 @@ class CExpressionReader:
         implicit: Callable[[str, Where], Function | None], use: Callable[[Function | Variable, Where], None], *,
         around: CTypeReader | None = None,
     ) -> None:  # fmt: skip
-        """`implicit` finds the function that a call without a declaration means; `use` is told what is named.
+        """`implicit` finds the function for a call without a declaration; `use` is called for every named symbol.
 
-        Types and expressions are made of each other, so the types of these scopes are read here; `tags`, `abi` and
-        `around` are those of `CTypeReader`.
+        Types contain expressions and expressions contain types, so this reader also has the `CTypeReader` of its scope;
+        `tags`, `abi` and `around` are passed to it.
         """
         self.use = use
         self.b = b
@@ -123,7 +123,7 @@ class CExpressionReader:
         }  # fmt: skip
 
     def value(self, node: c_ast.Node) -> Expr:
-        """The value of an expression, arrays and functions decayed."""
+        """The value of an expression; arrays and functions decay to pointers."""
         read = self._read.get(type(node).__name__)
         if read is None:
             raise SourceError.at(node.coord, f"{type(node).__name__} is not an expression of C")
@@ -134,11 +134,11 @@ class CExpressionReader:
                 return build.shallow(self.b, read(node))
 
     def operands(self, *nodes: c_ast.Node) -> list[Expr]:
-        """The values of operands, from left to right."""
+        """The values of operands, evaluated from left to right."""
         return build.arguments(self.b, [partial(self.value, node) for node in nodes])
 
     def constant_expression(self, node: c_ast.Node) -> Expr:
-        """An expression that must not have effects: a length, a label.  Its effects are refused."""
+        """An expression that must not have effects: a length, a label.  Raises SourceError if it has any."""
         effects, value = self.b.apart(lambda: self.value(node))
         if effects:
             raise SourceError.at(node.coord, "this must be a constant: it has an effect")
@@ -154,14 +154,14 @@ class CExpressionReader:
         return literals.character(text, where) if text.endswith("'") else literals.number(text, where)
 
     def identifier(self, node: c_ast.ID) -> Expr:
-        """What a name stands for."""
+        """The value of a name."""
         name, where = node.name, node.coord
         match self.b.look_up(name):
             case Variable() as variable:
                 self.use(variable, where)
                 return build.value_of(self.b, build.object_place(variable, where))
             case Enumerator(value=value):
-                fits = INT.low <= value <= INT.high  # TI's compiler takes longer ones too (SPRU514, "Enumeration type")
+                fits = INT.low <= value <= INT.high  # TI's compiler accepts longs too (SPRU514, "Enumeration type")
                 return Const(INT if fits else LONG if value <= LONG.high else ULONG, value, where=where)
             case Define() as define:
                 return define.expression(self.b, where)
@@ -182,19 +182,19 @@ class CExpressionReader:
         raise self.undeclared(name, where)
 
     def undeclared(self, name: str, where: Where, otherwise: str = "") -> SourceError:
-        """The error about a name that nothing declares, which ends in `otherwise` unless it looks like another."""
+        """The error about an undeclared name.  It ends in a similar name, or in `otherwise` if there is none."""
         alike = nearest(name, [*self.b.module.symbols, *self.b.scope])
         return self.b.undeclared(name, where, headers.hint(name) or f"{name} is not declared{alike or otherwise}")
 
     def loaded(self, node: c_ast.Node) -> Expr:
-        """The value of what an expression designates."""
+        """The value of the place that an expression designates."""
         place = self.place(node)
         return place if isinstance(place, Expr) else build.value_of(self.b, place)
 
     # Places
 
     def place(self, node: c_ast.Node) -> Place | Expr:
-        """What an expression designates; a value for what is no object (a function, a call)."""
+        """The place that an expression designates; for a function or a call, its value."""
         b, where = self.b, node.coord
         match node:
             case c_ast.ID(name=name):
@@ -239,7 +239,7 @@ class CExpressionReader:
         return place if isinstance(place, Expr) else build.value_of(self.b, place)
 
     def object(self, node: c_ast.Node, what: str) -> Place:
-        """An object to be changed.  Raises SourceError for what is none."""
+        """The object that an operation changes.  Raises SourceError if the expression is not an object."""
         place = self.place(node)
         if isinstance(place, Expr):
             message = f"{what} needs an object: '{written(node)}' is a value, nothing to assign to"
@@ -339,7 +339,7 @@ class CExpressionReader:
         return build.sizeof(ctype, node.coord)
 
     def binary(self, node: c_ast.BinaryOp) -> Expr:
-        """A binary operator; a long row of them is read without recursion."""
+        """A binary operator; a long chain is read without recursion."""
         if node.op in ("&&", "||"):
             return self.logic(node)
         row = [node]
@@ -350,7 +350,7 @@ class CExpressionReader:
         return build.row(self.b, operands, [(step.op, step.coord) for step in row])
 
     def logic(self, node: c_ast.BinaryOp) -> Expr:
-        """`&&` and `||`; a row of one of them is one node."""
+        """`&&` and `||`; a chain of the same operator is one node."""
         parts = [node.right]
         left = node.left
         while isinstance(left, c_ast.BinaryOp) and left.op == node.op:
@@ -406,7 +406,7 @@ class CExpressionReader:
     # Statements' expressions
 
     def effect(self, node: c_ast.Node) -> None:
-        """An expression for its effect."""
+        """An expression that is evaluated for its effect."""
         b, where = self.b, node.coord
         match node:
             case c_ast.Assignment(op="="):
@@ -435,7 +435,7 @@ class CExpressionReader:
                 build.evaluate(b, value)
 
     def assembler(self, node: c_ast.FuncCall) -> None:
-        """`asm("...")`: the instructions that have a meaning here, one a line."""
+        """`asm("...")`: the modelled instructions, one per line."""
         value = literals.string(node.args.exprs[0].value, node.coord)
         for line in getattr(value, "text", "").split("\n"):
             text = " ".join(line.partition(";")[0].split())
@@ -443,7 +443,7 @@ class CExpressionReader:
                 self.instruction(text, node.coord)
 
     def instruction(self, text: str, where: Where) -> None:
-        """One instruction of the assembler.  Raises SourceError for one that has no meaning here."""
+        """One assembler instruction.  Raises SourceError for one that is not modelled."""
         modes = _MODES.fullmatch(text)
         repeated = _REPEATED.fullmatch(text)
         if modes is not None:
@@ -462,9 +462,9 @@ class CExpressionReader:
             raise SourceError.at(where, f"{message}; {_instead(text)}, or leave it out with #if and -D")
 
     def core(self, name: str, where: Where) -> None:
-        """A statement of the core, by its C name: a function of the device header, if it does anything here."""
+        """A statement of the core by its C name, a function of the device header; an empty name does nothing."""
         function = self.implicit(name, where) if name else None
-        if function is not None and function.extern:  # not the user's of that name, which has this instruction in it
+        if function is not None and function.extern:  # not the user's: it may contain this
             build.evaluate(self.b, build.call(self.b, function, [], where))
 
     # Calls and casts
@@ -528,7 +528,7 @@ class CExpressionReader:
                     self.types.complete(part, where)
 
     def remark_implicit(self, function: Function, values: list[Expr], where: Where) -> None:
-        """The remark about a call without a declaration: what C passes then, and what the function takes."""
+        """Make the remark about a call without a declaration: what C passes, and what the function takes."""
         wrong = []
         for i, (value, wanted) in enumerate(zip(values, function.ctype.parameters, strict=False), 1):
             passed = build.promoted(self.b, value).ctype
@@ -544,7 +544,7 @@ class CExpressionReader:
     # Intrinsics of TI's compiler
 
     def intrinsic(self, name: str, arguments: list[c_ast.Node], where: Where) -> Expr | None:
-        """What TI's compiler knows without a declaration; None for any other name."""
+        """A call of a function that TI's compiler knows without a declaration; None for any other name."""
         b = self.b
         match name, len(arguments):
             case "__eallow" | "__edis", 0:
@@ -557,7 +557,7 @@ class CExpressionReader:
         return None
 
     def is_octet(self, node: c_ast.FuncCall) -> bool:
-        """Whether a call is the intrinsic that designates an octet, or a 32-bit register."""
+        """Whether a call is an intrinsic that designates an octet or a 32-bit register."""
         return (
             isinstance(node.name, c_ast.ID)
             and node.name.name in ("__byte", "__byte_peripheral_32")
@@ -565,7 +565,7 @@ class CExpressionReader:
         )
 
     def octet(self, node: c_ast.FuncCall) -> Place:
-        """`__byte(array, n)`: octet n, an even one the lower half of its word; `__byte_peripheral_32(p)`: `*p`."""
+        """`__byte(array, n)`: octet n; an even one is the lower half of its word.  `__byte_peripheral_32(p)`: `*p`."""
         b, where = self.b, node.coord
         arguments = node.args.exprs
         if len(arguments) == 1:
@@ -599,11 +599,11 @@ class CExpressionReader:
 
 
 def _unused(symbol: Function | Variable, where: Where) -> None:
-    """What `sizeof` names is not used: nobody need define it."""
+    """Do nothing: a name in `sizeof` is not a use, so it needs no definition."""
 
 
 def _idle(op: str, value: Expr) -> bool:
-    """Whether an operation that stands as a statement does nothing: `a && f()` calls, a register is read for effect."""
+    """Whether an operation as a statement has no effect.  `a && f()` has one, and so may a read of a register."""
     acts = any(isinstance(p, Call | CallPointer) for p in parts(value))
     if op in ("&&", "||"):
         return not acts
@@ -611,7 +611,7 @@ def _idle(op: str, value: Expr) -> bool:
 
 
 def _orders(node: c_ast.Node) -> bool:
-    """Whether the effects within an expression are over before its value is used."""
+    """Whether C sequences the effects within an expression before the use of its value."""
     if isinstance(node, c_ast.BinaryOp):
         return node.op in ("&&", "||")
     return isinstance(node, c_ast.FuncCall | c_ast.ExprList | c_ast.TernaryOp)

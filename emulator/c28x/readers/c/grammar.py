@@ -1,7 +1,7 @@
-"""pycparser's grammar with our places, our errors and limits.  Imported only where pycparser is installed.
+"""pycparser's grammar with our own places, errors and limits.  It is imported only if pycparser is installed.
 
-pycparser goes back over tokens, walks declarators and looks names up in ways that a hostile file can make long: what
-can grow faster than the file is bounded here.
+A hostile file can make pycparser's backtracking, its walks over declarators and its name look-ups take very long.
+Here, everything that can grow faster than the file has a limit.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from emulator.c28x.readers.c.tokens import error_at
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Where
 
-#: Pointers, arrays and parameter lists of one declarator (C99 asks for 12), and words before it.
+#: The limits for pointers, arrays and parameter lists of one declarator (C99 requires 12), and for words before it.
 _DECLARATOR: Final = 200
 _SPECIFIERS: Final = 100
 
@@ -37,7 +37,7 @@ _SAID: Final = {
     "Expected identifier": "expected a name",
     "At end of input": "expected more",
 }
-#: What stands before the type of a declaration.
+#: The kinds of lexemes that can come before the type of a declaration.
 _BEFORE_A_TYPE: Final = frozenset((
     "SEMI", "LBRACE", "RBRACE", "LPAREN", "COMMA", "COLON", "STATIC", "EXTERN", "TYPEDEF", "REGISTER", "AUTO", "CONST",
     "VOLATILE", "RESTRICT", "INLINE",
@@ -45,39 +45,39 @@ _BEFORE_A_TYPE: Final = frozenset((
 
 
 class _Lexer:
-    """What pycparser takes for its lexer of text."""
+    """A replacement for the lexer of pycparser, which has no text to read."""
 
     filename = ""
 
     def __init__(self, error_func: Any = None, **options: Any) -> None:
-        """pycparser hands over what a lexer of text needs."""
+        """The arguments of pycparser are ignored."""
 
     def input(self, text: str, filename: str = "") -> None:
-        """Nothing: the grammar has its lexemes."""
+        """Do nothing: the grammar already has its lexemes."""
 
     def token(self) -> Lexeme | None:
-        """Nothing: the grammar looks its lexemes up itself."""
+        """Return nothing: the grammar gets its lexemes itself."""
         return None
 
 
 class Parenthesised(c_ast.Assignment):  # type: ignore[misc]
-    """An assignment in parentheses of its own, which say that its value is wanted."""
+    """An assignment in its own parentheses, which state that its value is used on purpose."""
 
 
 class Grammar(CParser):  # type: ignore[misc]
     """The parser of one sequence of lexemes."""
 
     def __init__(self, lexemes: list[Lexeme], typedefs: Collection[str], depth: int) -> None:
-        """`depth`: nodes from the root to a leaf."""
+        """`depth`: the limit for nodes from the root to a leaf."""
         super().__init__(lexer=_Lexer)
         self._lexemes = lexemes
-        #: The same with an end that look-ahead does not pass.
+        #: The lexemes, with enough None at the end for look-ahead.
         self._stream: list[Lexeme | None] = [*lexemes, None, None, None]
         self._index = 0
         self._typedefs = typedefs
         self._depth = depth
         self._again = 20 * len(lexemes) + 100_000
-        #: What each visible name is (True: a type), and what it was outside each scope.
+        #: Visible name -> whether it is a type; for each scope, what the names it hides were outside.
         self._visible: dict[str, bool] = {}
         self._hidden: list[dict[str, bool | None]] = []
 
@@ -90,8 +90,8 @@ class Grammar(CParser):  # type: ignore[misc]
         return self._guarded(self._parse_expression)
 
     def _guarded(self, rule: Any) -> Any:
-        """What `rule` reads, all lexemes consumed and every node with its place."""
-        # The public way in sets the stream up and ends in the rule that is asked for.
+        """The tree that `rule` reads.  It must consume all lexemes; every node gets a place."""
+        # The public `parse` sets up the stream; it ends in this method, which is replaced by the wanted rule.
         self._parse_translation_unit_or_empty = lambda: self._with_typedefs(rule)
         try:
             tree = self.parse("")
@@ -100,7 +100,7 @@ class Grammar(CParser):  # type: ignore[misc]
         except (AssertionError, AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
             if isinstance(error, SourceError):
                 raise
-            # The grammar's own code trips over some malformed declarations.
+            # pycparser's own code fails on some malformed declarations.
             raise self._wrong("this is no declaration or expression of C") from None
         return _placed(tree, self._depth)
 
@@ -113,7 +113,7 @@ class Grammar(CParser):  # type: ignore[misc]
             raise self._expected("an operator or the end", lexeme)
         return tree
 
-    # ---- the stream: pycparser's own takes twice the time of all the rest
+    # ---- the stream: that of pycparser takes twice as long as all the rest
 
     def _peek(self, k: int = 1) -> Lexeme | None:
         lexeme = self._stream[self._index + k - 1]
@@ -158,7 +158,7 @@ class Grammar(CParser):  # type: ignore[misc]
     def _tok_coord(self, tok: Lexeme) -> Where:
         return tok.token.where
 
-    # ---- names of types: one look-up, however many blocks are open
+    # ---- names of types: a single look-up, however many blocks are open
 
     def _push_scope(self) -> None:
         super()._push_scope()
@@ -203,7 +203,7 @@ class Grammar(CParser):  # type: ignore[misc]
             raise self._here().error(f"a declaration of more than {_SPECIFIERS} words before the name")
         return spec
 
-    # ---- what TI's compiler has besides
+    # ---- extensions of TI's compiler
 
     def _parse_external_declaration(self) -> Any:
         lexeme = self._peek()
@@ -225,7 +225,7 @@ class Grammar(CParser):  # type: ignore[misc]
 
     def _parse_specifiers(self, *, allow_storage_and_function: bool) -> Any:
         if not allow_storage_and_function:
-            # `(interrupt void (*)(void))` and members of that type: part of the type of a function for TI's compiler.
+            # `(interrupt void (*)(void))` and members of that type: for TI's compiler, it is part of a function type.
             while (lexeme := self._peek()) is not None and lexeme.value == "interrupt" and lexeme.type == "INLINE":
                 self._advance()
         return super()._parse_specifiers(allow_storage_and_function=allow_storage_and_function)
@@ -247,7 +247,7 @@ class Grammar(CParser):  # type: ignore[misc]
     # ---- errors
 
     def _here(self) -> Any:
-        """The token that is read next, or the last."""
+        """The next token, or the last one at the end."""
         return self._lexemes[min(self._index, len(self._lexemes) - 1)].token
 
     def _before(self, back: int = 1) -> Lexeme | None:
@@ -269,7 +269,7 @@ class Grammar(CParser):  # type: ignore[misc]
         raise self._expected(what, lexeme)
 
     def _expected(self, what: str, found: Lexeme | None) -> SourceError:
-        """The error where `what` should stand and `found` does, with a word on the usual cause."""
+        """The error that `what` was expected but `found` is there; it names the usual cause."""
         before = self._before()
         if found is not None and (unknown := self._unknown_type(found)) is not None:
             return unknown
@@ -286,7 +286,7 @@ class Grammar(CParser):  # type: ignore[misc]
             what = "a statement"
         last = before.token.where
         if found is None or (found.token.where.line != last.line and last.macro is None):
-            # What is missing belongs to the end of the line before.
+            # The missing text belongs to the end of the line before.
             column = last.column + (len(before.token.text) if last.macro is None else 0)
             rest = self._end() if found is None else f"found {_shown(found)} in line {found.token.where.line}"
             at = Where(last.file, last.line, column, last.macro)
@@ -295,7 +295,7 @@ class Grammar(CParser):  # type: ignore[misc]
         return found.token.error(f"expected {what}, found {_shown(found)}{after}")
 
     def _end(self) -> str:
-        """That the file ends, and which brace is still open there."""
+        """The text that the file ends, and which brace is still open."""
         waiting: list[Lexeme] = []
         for lexeme in self._lexemes:
             if lexeme.type == "LBRACE":
@@ -305,7 +305,7 @@ class Grammar(CParser):  # type: ignore[misc]
         return f"the file ends, and the {{ at {waiting[-1].token.where} is open" if waiting else "the file ends"
 
     def _unknown_type(self, found: Lexeme) -> SourceError | None:
-        """The error for a name in the place of a type, where `found` shows that it stands in one."""
+        """The error about an unknown name that is used as a type; None if `found` does not show such a use."""
         before, second, third = self._before(), self._before(2), self._before(3)
         name = opening = None
         starts = ("ID", "INT_CONST_DEC", "INT_CONST_HEX", "FLOAT_CONST")
@@ -349,11 +349,11 @@ def _shown(lexeme: Lexeme) -> str:
 
 
 def _placed(tree: Any, limit: int) -> Any:
-    """`tree`, every node with a place: its first child's or its parent's where the grammar gives none.
+    """`tree`, in which every node gets a place: if the grammar gives none, that of its first child or of its parent.
 
-    Raises SourceError where it is deeper than `limit`.
+    Raises SourceError if the tree is deeper than `limit`.
     """
-    #: A node and its parent, where one of the two has no place; parents first, of children the last first.
+    #: Pairs of a node and its parent of which one has no place: parents first, children in reverse order.
     missing: list[tuple[Any, Any]] = []
     stack: list[tuple[Any, int]] = [(tree, 0)]
     fields: dict[type, list[str]] = {}

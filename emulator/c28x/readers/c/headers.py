@@ -1,18 +1,18 @@
-"""Headers of ours under the names that C uses: which there are, and the text of each.
+"""Our own headers under the names that C uses: their names and texts.
 
-    text("F28x_Project.h")           # C text, or None: not one of ours
+    text("F28x_Project.h")           # C text; None: not one of our headers
     names()                          # all of them
-    instances()["EPwm1Regs"]         # the registers of the block that C calls so
+    instances()["EPwm1Regs"]         # the registers of the block with this C name
     block_types()["EPWM_REGS"]       # the registers behind a pointer to `struct EPWM_REGS`
-    handles()["Task_Object"]         # the handle type that a pointer to this structure is
+    handles()["Task_Object"]         # the handle type: a pointer to this structure
     structures()["Task_Params"]      # a structure of the kernel, which its headers only declare
     register_type("ADCCTL1_REG")     # the union of a register's fields with its word
     hint("uint8_t")                  # why a name is unknown here, and what to write
 
-A text is made once a process, from what the project knows already: nothing is declared twice.  It uses what every
-reader of this chip's C must know: `__interrupt`, `__cregister`, `__asm(" EALLOW")` (`ASSEMBLER` says what each of these
-texts does), `_Bool`, `long long`, `inline`.  Register blocks are only declared: `block_text` has their structures.
-So are structures of the kernel, and the types of registers.
+A text is generated once per process, from the declarations that the project already has.  It uses extensions that every
+reader of this chip's C must know: `__interrupt`, `__cregister`, `__asm(" EALLOW")` (`ASSEMBLER` maps each text to its
+effect), `_Bool`, `long long`, `inline`.  Register blocks are only declared: `block_text` has their structures.
+Structures of the kernel and types of registers are only declared as well.
 """
 
 from __future__ import annotations
@@ -36,28 +36,28 @@ __all__ = [
 ]  # fmt: skip
 
 _DEVICE: Final = "F2837xS_"
-#: TI's header of each block, modelled or not; the device header has them all.
+#: The names of TI's headers of single blocks, modelled or not.  The device header contains all blocks.
 _BLOCKS: Final = (
     "adc", "analogsubsys", "can", "cla", "clb", "clbxbar", "cmpss", "cputimer", "dac", "dcsm", "dma", "ecap", "emif",
     "epwm", "epwm_xbar", "eqep", "flash", "gpio", "i2c", "input_xbar", "mcbsp", "memconfig", "nmiintrupt", "otp",
     "output_xbar", "piectrl", "pievect", "sci", "sdfm", "spi", "sysctrl", "upp", "xbar", "xint",
 )  # fmt: skip
-#: Headers that stand for another: what examples for older parts include.
+#: Names of headers for older parts, which examples include -> our header that replaces them.
 _ALIASES: Final[Mapping[str, str]] = MappingProxyType({"DSP28x_Project.h": "F28x_Project.h"})
 
 
 def _device() -> str:
-    """The header of one block: the device header has them all."""
+    """The header of one block: it includes the device header, which contains all blocks."""
     return f'#include "{_DEVICE}device.h"\n'
 
 
 def _defines(file: str, *prefixes: str) -> tuple[str, Callable[[], str]]:
-    """A header of the constants whose names begin with one of `prefixes`."""
+    """The name of a header of constants whose names begin with one of `prefixes`, and the function that makes it."""
     name = f"{_DEVICE}{file}_defines.h"
     return name, partial(device_headers.define_header, name, *prefixes)
 
 
-#: Name as TI spells it -> what makes the text.
+#: Name as TI spells it -> the function that makes the text.
 _MAKERS: Final[Mapping[str, Callable[[], str]]] = MappingProxyType({
     f"{_DEVICE}device.h": device_headers.device_header,
     f"{_DEVICE}Examples.h": device_headers.examples_header,
@@ -87,9 +87,9 @@ _MAKERS: Final[Mapping[str, Callable[[], str]]] = MappingProxyType({
 
 
 def _key(name: str) -> str:
-    """What two spellings of one header have in common: Windows' file names are case-blind."""
+    """The key of a header name, the same for all its spellings: Windows ignores the case of file names."""
     key = name.replace("\\", "/").lower()
-    return key.replace("f2837xd_", _DEVICE.lower())  # the two-core part has the same blocks
+    return key.replace("f2837xd_", _DEVICE.lower())  # the two-core part of the family has the same blocks
 
 
 _BY_KEY: Final = MappingProxyType(
@@ -98,23 +98,23 @@ _BY_KEY: Final = MappingProxyType(
 
 
 def names() -> tuple[str, ...]:
-    """The headers of ours, as TI spells them."""
+    """The names of our headers, as TI spells them."""
     return (*_MAKERS, *_ALIASES)
 
 
 def text(name: str) -> str | None:
-    """The text of the header that a C file includes as `name`, whatever its case; None for one that is not ours."""
+    """The text of our header that a C file includes as `name`, in any case; None if it is not one of ours."""
     known = _BY_KEY.get(_key(name))
     return None if known is None else _made(known)
 
 
 def of_the_device(name: str) -> str | None:
-    """The same of headers that stand before any file of that name: all but those that programs bring themselves."""
+    """The text of our header `name` if it has priority over files of that name: all except IQmathLib.h."""
     return None if _BY_KEY.get(_key(name)) == iqmath_header.NAME else text(name)
 
 
 def of_c_itself(name: str) -> bool:
-    """Whether `name` is a header of C's library: `limits.h`."""
+    """Whether `name` is a header of C's library, such as `limits.h`."""
     return _BY_KEY.get(_key(name)) in library_headers.HEADERS
 
 
@@ -124,9 +124,9 @@ def _made(name: str) -> str:
 
 
 def definitions(name: str) -> tuple[str, str] | None:
-    """The name of TI's file that defines what a header of ours only declares, and its text here.
+    """The name and the text of the C file that defines `name`, which our header only declares.
 
-    To be compiled with a program that uses `name` and has no definition of it.  None where the emulator itself has it.
+    It is compiled with a program that uses `name` without a definition.  None for all names that need no such file.
     """
     if name in CPU_TIMER_NAMES:
         return f"{_DEVICE}CpuTimers", CPU_TIMERS
@@ -139,7 +139,7 @@ def unmodelled_block(name: str) -> Unmodelled | None:
 
 
 def hint(name: str) -> str | None:
-    """What to tell a program that uses `name`, where that is known better than by "undeclared"; None if it is not."""
+    """The error for a program that uses `name`, if there is a better one than "undeclared"; else None."""
     if name in ("class", "namespace", "template"):
         return f"{name} is a word of C++: only C is read"
     if name == library_headers.VA_GIVEN:

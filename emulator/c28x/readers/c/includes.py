@@ -1,8 +1,8 @@
-"""The headers that a C file may read: found whatever their case, and never outside the folders that were named.
+"""The headers that a C file may read: found in any case, and never outside of the given folders.
 
-A name is taken apart at `/` and `\\` and followed from one of the allowed folders by their listings alone: nothing is
-asked of the file system about a name before it is known to lie below one of them, links are resolved before a file is
-opened, and only regular files are.
+A name is split at `/` and `\\` and followed from one of the allowed folders, using only listings of folders.  No name
+reaches the file system before it is known to be below an allowed folder.  Links are resolved before a file is opened,
+and only regular files are opened.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pathlib import Path
 
 from emulator.c28x.readers.c.tokens import SourceText
 
-#: A pipe that took the file's place would not be waited for, a link not be followed.
+#: With these flags, open neither waits for a pipe that has replaced the file, nor follows a link.
 _FLAGS = os.O_RDONLY
 for _name in ("O_NONBLOCK", "O_NOFOLLOW", "O_BINARY", "O_CLOEXEC"):
     _FLAGS |= getattr(os, _name, 0)
@@ -26,37 +26,37 @@ _DRIVE = re.compile(r"[A-Za-z]:")
 
 @lru_cache(maxsize=64)
 def _ours(name: str, text: str) -> SourceText:
-    """A header that is no file."""
+    """One of our headers, which is not a file."""
     return SourceText(f"<{name}>", text, keep=True)
 
 
 def _below(path: str, root: str) -> list[str]:
-    """The parts of a path behind a folder in which it lies."""
+    """The parts of a path below the folder `root`, which contains it."""
     return path.split(os.sep)[len(root.rstrip(os.sep).split(os.sep)) :]
 
 
 class Refused(Exception):
-    """A file that is not read, and why."""
+    """A file is not read; the text says why."""
 
 
 class IncludePath:
-    """The folders of the sources, those of `-I` in order, and headers of ours."""
+    """The search path of headers: the source folders, the folders of `-I` in order, and our own headers."""
 
     def __init__(
         self, sources: Iterable[str | Path], folders: Iterable[str | Path], builtin: Callable[[str], str | None],
         file_bytes: int, fallback: Callable[[str], str | None] = lambda name: None,
         standard: Callable[[str], bool] = lambda name: False,
     ) -> None:  # fmt: skip
-        """`builtin` is asked first, `fallback` last, with the name in lower case and with `/`.
+        """`builtin` is called before any folder is searched, `fallback` after; the name is in lower case, with `/`.
 
-        Headers of C itself (`standard`) give way to a file of that name in quotes, beside the one that asks.  A file
-        has at most `file_bytes`.
+        A header of C's library (`standard`) is not built in if the name is in quotes and the folder of the including
+        file has a file of that name.  A file may have at most `file_bytes`.
         """
         self._builtin = builtin
         self._fallback = fallback
         self._standard = standard
         self._file_bytes = file_bytes
-        #: Resolved folder -> as the user wrote it.
+        #: Resolved folder -> the folder as the user wrote it.
         self._roots: dict[str, str] = {}
         self._sources = [self._root(folder) for folder in sources]
         self._folders = [self._root(folder) for folder in folders]
@@ -77,7 +77,7 @@ class IncludePath:
         return self._open(real, str(path))
 
     def find(self, name: str, quoted: bool, folder: str | None) -> SourceText:
-        """The header `name`, asked for from a file in `folder`.  Raises Refused."""
+        """The header `name`, included by a file in `folder`.  Raises Refused."""
         key = (name, quoted, folder)
         if (known := self._found.get(key)) is None:
             known = self._found[key] = self._find(name, quoted, folder)
@@ -118,13 +118,13 @@ class IncludePath:
         raise Refused(f"there is no header {name}: name its folder with -I FOLDER")
 
     def _lies_in(self, folder: str, name: str) -> bool:
-        """Whether an allowed folder has a file.  Raises Refused."""
+        """Whether the file `name` exists in `folder` or below it, within the allowed folders.  Raises Refused."""
         target = os.path.normpath(os.path.join(folder, name))
         root = self._root_of(target)
         return root is not None and self._follow(root, _below(target, root)) is not None
 
     def _root_of(self, path: str) -> str | None:
-        """The folder that `path` lies below, the innermost one; case does not matter, the listings decide."""
+        """The innermost allowed folder that contains `path`.  Case is ignored here; the listings decide later."""
         folded = path.casefold()
         found = None
         for root in self._roots:
@@ -134,12 +134,12 @@ class IncludePath:
         return found
 
     def _allowed(self, real: str) -> bool:
-        """Whether `real`, links resolved, lies below one of the folders."""
+        """Whether `real`, with links resolved, is below one of the folders."""
         real = os.path.normcase(real)
         return any(real.startswith(os.path.normcase(root).rstrip(os.sep) + os.sep) for root in self._roots)
 
     def _follow(self, root: str, parts: list[str]) -> str | None:
-        """The file below `root` whose path is `parts`, whatever their case.  Raises Refused for a link that leaves."""
+        """The file below `root` with the path `parts`, in any case.  Raises Refused for a link that leads outside."""
         path = root
         for part in parts:
             if not self._allowed(os.path.join(os.path.realpath(path), part)):
@@ -152,7 +152,7 @@ class IncludePath:
         return path
 
     def _listing(self, folder: str) -> tuple[set[str], dict[str, str]]:
-        """The names in `folder`: as they are, and in small letters -> as they are."""
+        """The names in `folder`; and each name in lower case -> the name itself."""
         if (names := self._listings.get(folder)) is None:
             try:
                 listed = sorted(os.listdir(folder), reverse=True)

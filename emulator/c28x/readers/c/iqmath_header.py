@@ -1,7 +1,7 @@
 """IQmathLib.h as C text: the types, macros and functions of the IQmath library, in both of its modes.
 
-Names, types and values are those of the library's own header.  A file of that name of the user's is read in its place,
-wherever it is found: many projects have theirs, with their own `GLOBAL_Q`.
+Names, types and values are those of the library's own header.  If the user has a file of that name anywhere on the
+include path, it is read instead: many projects have one with their own `GLOBAL_Q`.
 Source: the header of the IQmath library of C2000Ware.
 """
 
@@ -15,7 +15,7 @@ from emulator.c28x.rts_iqmath import ALL, OF_TWO, formats
 
 NAME: Final = "IQmathLib.h"
 _SHORT: Final = range(1, 16)
-#: Of both modes: function -> parameters of its macro.
+#: In both modes: function -> parameters of its macro.
 _PRODUCTS: Final = ("mpy", "rmpy", "rsmpy")
 
 
@@ -74,7 +74,7 @@ def _fixed() -> Iterator[str]:
 
 
 def _other_formats(q: int) -> Iterator[str]:
-    """From the global format to others, and back."""
+    """The conversions from the global format to other formats, and back."""
     for kind, others in (("IQ", ALL), ("Q", _SHORT)):
         for other in others:
             there, back = (">>", "<<") if other <= q else ("<<", ">>")
@@ -83,7 +83,7 @@ def _other_formats(q: int) -> Iterator[str]:
             yield f"#define _{kind}{other}toIQ(A) ((long)(A) {back} {by})"
 
 
-#: Function -> the expression for it in floats.
+#: Function -> its expression in floats.
 _FLOATS: Final = {
     "mpy": "((A) * (B))", "rmpy": "((A) * (B))", "rsmpy": "((A) * (B))", "div": "((float)(A) / (float)(B))",
     "sin": "sinf(A)", "sinPU": "sinf((A) * 6.283185307f)", "cos": "cosf(A)", "cosPU": "cosf((A) * 6.283185307f)",
@@ -98,7 +98,7 @@ _FLOATS: Final = {
 
 
 def _floating() -> Iterator[str]:
-    """The same names for floats: a program that is switched over to them."""
+    """The same names for floats, for a program that switches to floating-point mode."""
     yield "typedef float _iq;"
     yield from (f"typedef float _iq{q};" for q in ALL)
     for by in range(1, 7):

@@ -1,8 +1,8 @@
 """The headers of SYS/BIOS, xdc and UIA as C text, made from `emulator.sysbios.headers`.
 
-`<xdc/std.h>` gives the types; each other header gives all of the kernel, because TI's include each other and a program
-that leans on that is right.  A handle is a pointer to a structure that nobody sees (`handles`); the members of the
-other structures are known by the tag (`structures`), so that they are not parsed for each file.
+`<xdc/std.h>` declares the types.  Every other header declares the whole kernel, because TI's headers include each other
+and a program may rely on that.  A handle is a pointer to a hidden structure (`handles`).  The members of the other
+structures are found by their tag (`structures`), so they are not parsed for each file.
 Sources: BIOS; xdc/std.h of XDCtools (names and sizes of its types).
 """
 
@@ -20,7 +20,7 @@ from emulator.c28x.readers.c.module_header import defines, guarded, handle_tag, 
 from emulator.c28x.symbols import Module
 
 STANDARD: Final = "xdc/std.h"
-#: The other headers, as TI's packages have them.
+#: The other headers, as they are named in TI's packages.
 HEADERS: Final = (
     "xdc/cfg/global.h", "xdc/runtime/Assert.h", "xdc/runtime/Diags.h", "xdc/runtime/Error.h", "xdc/runtime/IHeap.h",
     "xdc/runtime/Log.h", "xdc/runtime/Memory.h",
@@ -39,13 +39,13 @@ _MORE_TYPES: Final = (
     ("va_list", "VaList"), ("const char *", "CString"), ("int", "Int8"), ("unsigned int", "UInt8"),
     ("unsigned int", "Bits16"), ("unsigned long", "Bits32"), ("long long", "Int64"), ("unsigned long long", "UInt64"),
 )  # fmt: skip
-#: The function types that a program casts to, with the parameters that the kernel gives.
+#: The function types to which a program casts, with the parameters that the kernel passes.
 _FUNCTIONS: Final = (
     ("Task_FuncPtr", "UArg, UArg"), ("Swi_FuncPtr", "UArg, UArg"), ("Clock_FuncPtr", "UArg"), ("Hwi_FuncPtr", "UArg"),
 )  # fmt: skip
 
 
-#: Modules of SYS/BIOS, xdc and UIA, whose names begin with their module's.
+#: Modules of SYS/BIOS, xdc and UIA.  Their names begin with the name of the module.
 _MODULES: Final = frozenset({
     "Assert", "BIOS", "Clock", "Diags", "Error", "Event", "Gate", "GateAll", "GateHwi", "GateMutex", "GateMutexPri",
     "GateSwi", "GateTask", "HeapBuf", "HeapMem", "Hwi", "Idle", "Load", "Log", "Mailbox", "Memory", "Queue",
@@ -61,20 +61,20 @@ def kernel() -> Module:
 
 @lru_cache(maxsize=1)
 def handles() -> Mapping[str, HandleType]:
-    """Tag of the structure behind each handle -> the handle's type: a pointer to such a structure is a handle."""
+    """Tag of the structure behind each handle -> the handle type.  A pointer to such a structure is a handle."""
     found = own_symbols(kernel()).items()
     return MappingProxyType({handle_tag(name): symbol for name, symbol in found if isinstance(symbol, HandleType)})
 
 
 @lru_cache(maxsize=1)
 def structures() -> Mapping[str, StructType]:
-    """Tag of each structure of the kernel that a program sees -> the structure."""
+    """Tag of each visible structure of the kernel -> the structure."""
     found = own_symbols(kernel()).values()
     return MappingProxyType({symbol.name: symbol for symbol in found if isinstance(symbol, StructType)})
 
 
 def module_of(name: str) -> str | None:
-    """The kernel's module to which a name belongs that is not declared here; None for a name of anything else."""
+    """The kernel module of a name that is not declared here; None if the name belongs to none."""
     module = name.split("_")[0]
     return module if "_" in name and module in _MODULES and name not in own_symbols(kernel()) else None
 
@@ -100,13 +100,13 @@ def kernel_header() -> str:
     lines = [f"#include <{STANDARD}>", *defines(rest), *types(rest, members=False)]
     lines += [f"typedef Void (*{name})({parameters});" for name, parameters in _FUNCTIONS]
     lines += ["typedef IHeap_Handle xdc_runtime_IHeap_Handle;"]
-    # An error without a block ends the program; one that is to be ignored has a block that nobody looks at.
+    # Without an error block, an error ends the program; to ignore an error, a program passes a block it never reads.
     lines += ["#define Error_ABORT ((Error_Block *)0)", "#define Error_IGNORE (&(Error_Block){ 0 })"]
     return guarded(_KERNEL, [*lines, *prototypes(rest)])
 
 
 def other_header(name: str) -> str:
-    """The header `name` of the kernel."""
+    """The text of the kernel header `name`."""
     return kernel_header() if name == _KERNEL else guarded(name, [f"#include <{_KERNEL}>"])
 
 
@@ -117,7 +117,7 @@ def _types() -> dict[str, CType]:
 
 
 def _of_the_kernel(symbol: CType) -> bool:
-    """Whether a type is made of the kernel's own structures."""
+    """Whether a type contains the kernel's own structures."""
     return isinstance(symbol, HandleType | StructType) or (
         isinstance(symbol, PointerType) and isinstance(symbol.target, StructType)
     )

@@ -1,9 +1,9 @@
 """The headers of C's library as C text, for the C28x: types, limits and the functions of `emulator.c28x.rts`.
 
-Functions that the library has and the emulator has not are declared too, so that a program that names one is told
-that it is not modelled and not that it is undeclared (`unmodelled`).  Sizes and limits come from `ctypes`: the smallest
-type has 16 bits, so there is no `uint8_t`; `size_t` is `unsigned long`.  Sources: CC table 6-1; ISO C 7; TI's
-stdint.h, stddef.h and float.h for this chip.
+Functions of the library that the emulator does not have are declared too.  So the error for a program that uses one
+says "not modelled", not "undeclared" (`unmodelled`).  Sizes and limits come from `ctypes`: the smallest type has 16
+bits, so there is no `uint8_t`; `size_t` is `unsigned long`.  Sources: CC table 6-1; ISO C 7; TI's stdint.h, stddef.h
+and float.h for this chip.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from emulator.c28x.readers.c.library_text import TEXT
 from emulator.c28x.readers.c.module_header import guarded, own_symbols, prototypes
 from emulator.c28x.symbols import Module
 
-#: In a variadic function, the list of what it is given behind its named parameters.
+#: In a variadic function, the name of the pointer to its extra arguments.
 VA_GIVEN: Final = "va_given"
 #: Header -> the functions of `rts.py` that it declares.
 FUNCTIONS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
@@ -49,15 +49,15 @@ _UNMODELLED: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
         "void *memchr(const void *block, int character, size_t n)", "char *strerror(int number)",
     ),
 })  # fmt: skip
-#: `double` is `float` here (COFF): the functions of float are those of double.
+#: Function of float -> function of double: they are the same, because `double` is `float` here (COFF).
 OF_FLOAT: Final[Mapping[str, str]] = MappingProxyType({f"{name}f": name for name in FUNCTIONS["math.h"]})
-#: Constants of POSIX that many programs expect of math.h, and the compiler's has.
+#: POSIX constants that many programs expect in math.h; the compiler's math.h has them.
 _MATHEMATICAL: Final = (
     ("PI", math.pi), ("PI_2", math.pi / 2), ("PI_4", math.pi / 4), ("1_PI", 1 / math.pi), ("2_PI", 2 / math.pi),
     ("E", math.e), ("LN2", math.log(2)), ("LN10", math.log(10)), ("SQRT2", math.sqrt(2)),
     ("SQRT1_2", math.sqrt(0.5)),
 )  # fmt: skip
-#: Tests of characters, in the C locale: name -> condition on c.
+#: Character tests in the C locale: name -> condition on c.
 _CHARACTERS: Final = (
     ("isdigit", "c >= '0' && c <= '9'"),
     ("isupper", "c >= 'A' && c <= 'Z'"),
@@ -71,10 +71,10 @@ _CHARACTERS: Final = (
     ("iscntrl", "(c >= 0 && c < ' ') || c == 127"),
     ("ispunct", "isgraph(c) && !isalnum(c)"),
 )
-#: stdint.h: the types that have exactly so many bits.
+#: stdint.h: the types with an exact number of bits.
 _EXACT: Final = (("int", 16), ("long", 32), ("long long", 64))
 _NULL: Final = ("#ifndef NULL", "#define NULL 0", "#endif")
-#: Names that programs expect of these headers and that cannot exist on this chip -> what to write.
+#: Names that programs expect in these headers but that cannot exist on this chip -> what to write instead.
 ABSENT: Final[Mapping[str, str]] = MappingProxyType({
     **{name: f"{name} does not exist on this chip, whose smallest type has 16 bits: write {wide}"
        for name, wide in (("uint8_t", "uint16_t"), ("int8_t", "int16_t"), ("Uint8", "Uint16"), ("int8", "int16"),
@@ -92,12 +92,12 @@ def library() -> Module:
 
 
 def header(name: str) -> str:
-    """The text of the standard header `name`.  Raises KeyError for one that is not here."""
+    """The text of the standard header `name`.  Raises KeyError for an unknown header."""
     return guarded(name, list(_CONTENT[name](name)))
 
 
 def unmodelled() -> Iterator[str]:
-    """Functions that the headers declare and the emulator does not have."""
+    """Names of functions that the headers declare but the emulator does not have."""
     for declarations in _UNMODELLED.values():
         for declaration in declarations:
             yield declaration.split("(")[0].split()[-1].lstrip("*")
@@ -191,7 +191,7 @@ def _limits(name: str) -> Iterator[str]:
 
 
 def _range(prefix: str, ctype: IntType) -> Iterator[str]:
-    """Limits of a signed type; the lowest value cannot be written as one number."""
+    """The limits of a signed type.  The lowest value cannot be written as one number."""
     yield f"#define {prefix}_MAX {ctype.high}{'L' if ctype.bits > 16 else ''}"
     yield f"#define {prefix}_MIN (-{prefix}_MAX - 1)"
 

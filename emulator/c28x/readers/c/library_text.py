@@ -1,9 +1,9 @@
-"""Functions of C's library that are written in C, in the headers of ours: header -> function -> its text.
+"""Functions of C's library that our headers define in C: header -> function -> its text.
 
-They are read like the user's own functions, as far as a program uses them: what they are given is checked, a comparison
-that `qsort` calls is the user's.
-CHOICE: each file has its own, so `strtok` and `rand` go on within one file; their time is that of this text.  There is
-no `errno`.  Sources: ISO C 7.20 and 7.21; the example of 7.20.2.2 for `rand`.
+If a program uses them, they are read like the user's own functions.  So their arguments are checked, and `qsort` calls
+the comparison function of the user.
+CHOICE: each file has its own copy, so the state of `strtok` and `rand` is per file; their time is that of this text.
+There is no `errno`.  Sources: ISO C 7.20 and 7.21; the example of 7.20.2.2 for `rand`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import Final
 
-#: What `strtol` and `strtoul` share: blanks, the sign, the base.
+#: The common part of `strtol` and `strtoul`: blanks, the sign, the base.
 _NUMBER: Final = """
 static inline const char *_number_begins(const char *text, int *base, int *minus)
 {

@@ -37,7 +37,7 @@ def number(text: str, where: Where) -> Expr:
 
 
 def character(text: str, where: Where) -> Expr:
-    """A character constant: an int; several characters fill it from the left."""
+    """A character constant: an int.  Raises SourceError unless it has exactly one character."""
     codes = characters(text.removeprefix("L")[1:-1], where)
     if not codes:
         raise SourceError.at(where, "an empty character constant")
@@ -47,13 +47,13 @@ def character(text: str, where: Where) -> Expr:
 
 
 def string(text: str, where: Where) -> Expr:
-    """A string literal; neighbours are one."""
+    """A string literal; adjacent literals are joined."""
     parts = [chr(code) for part in _STRINGS.findall(text) for code in characters(part, where)]
     return build.string("".join(parts), where)
 
 
 def characters(text: str, where: Where) -> list[int]:
-    """The characters between the quotes, escapes read.  Raises SourceError."""
+    """The codes of the characters between the quotes; escapes are replaced.  Raises SourceError."""
     codes: list[int] = []
     for found in _CHARACTER.finditer(text):
         hexadecimal, octal, escape, plain = found.groups()

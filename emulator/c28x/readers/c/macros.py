@@ -1,4 +1,4 @@
-"""What a `#define` says: name, parameters, and the body as it is filled in (ISO/IEC 9899:1999, 6.10.3)."""
+"""The definition of a macro: name, parameters, and body, prepared for its use (ISO/IEC 9899:1999, 6.10.3)."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ class Macro:
     name: str
     #: None: object-like.
     parameters: tuple[str, ...] | None
-    #: The last parameter takes what remains, commas and all.
+    #: The last parameter takes all remaining arguments, including the commas.
     variadic: bool
     body: list[Token]
     token: Token
-    #: `__FILE__` and `__LINE__`: the text depends on the place of use.
+    #: It is `__FILE__` or `__LINE__`: the text depends on the place of use.
     special: bool = False
-    #: The body as it is filled in, `#` and `##` read.
+    #: The pieces of the body; `#` and `##` are already interpreted.
     pieces: list[Piece] = field(default_factory=list)
     joins: bool = False
 
     @property
     def where(self) -> Where:
-        """Where its name stands in the `#define`."""
+        """The place of its name in the `#define`."""
         return self.token.where
 
     def same(self, other: Macro) -> bool:
-        """Whether a second definition says the same (6.10.3)."""
+        """Whether a second definition is the same (6.10.3)."""
         return (
             self.parameters == other.parameters and self.variadic == other.variadic
             and spelled(self.body) == spelled(other.body)
@@ -40,7 +40,7 @@ class Macro:
 
 @dataclass(slots=True)
 class Piece:
-    """One token of a macro's body; `parameter` is an index or -1."""
+    """One token of the body of a macro; `parameter` is the index of a parameter, or -1."""
 
     token: Token
     parameter: int
@@ -65,7 +65,7 @@ def definition(name: Token, line: list[Token]) -> Macro:
 
 
 def _parameters(line: list[Token]) -> tuple[tuple[str, ...], bool, int]:
-    """The parameters of a `#define NAME(...)`, whether the last takes the rest, and where the body starts."""
+    """The parameters of a `#define NAME(...)`, whether the last one takes the rest, and the index of the body."""
     names: list[str] = []
     known: set[str] = set()
     index = 4
@@ -94,7 +94,7 @@ def _parameters(line: list[Token]) -> tuple[tuple[str, ...], bool, int]:
 
 
 def _pieces(macro: Macro) -> list[Piece]:
-    """The body of `macro` with `#` and `##` read.  Raises SourceError."""
+    """The pieces of the body of `macro`, with `#` and `##` interpreted.  Raises SourceError."""
     numbers = {name: number for number, name in enumerate(macro.parameters or ())}
     pieces: list[Piece] = []
     hash_token: Token | None = None

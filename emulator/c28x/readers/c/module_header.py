@@ -1,8 +1,8 @@
-"""The header of a module: what other C files may know of it, written as C.
+"""The header of a module: its types, constants and functions as C text, for other C files.
 
-For firmware in C-shaped Python that C files are mixed with, and for the headers of the project itself: types,
-constants and prototypes are those of the read module, so that nothing is declared twice.  Objects are not part of a
-header: the language of the port does not say which are `static`, and no C file of the robot uses another's.
+It is used for firmware in C-shaped Python that is mixed with C files, and for the headers of the project itself.
+Types, constants and prototypes come from the read module, so nothing is declared twice.  A header has no objects:
+C-shaped Python does not state which of them are `static`, and no C file of the robot uses an object of another file.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from emulator.c28x.readers.c.declarators import declarator, definition, enumerat
 from emulator.c28x.symbols import Define, EnumType, Module, Symbol
 from emulator.c28x.tree import Function
 
-#: Header in which a type that a module uses is declared, for the module's own header to include; None for no header.
+#: Name of a type -> the header that declares it, which the module's header then includes; None: no header.
 Home = Callable[[str], "str | None"]
 
 _MARKS: Final = re.compile(r"\W")
@@ -28,8 +28,8 @@ def c_header(
 ) -> str:  # fmt: skip
     """The text of the header `file` of `module`: its own types, constants and functions.
 
-    `home` names the header of a type that comes from elsewhere.  `constants` are those that become `#define`s, None for
-    all.  What is `private` is left out: functions that are `static` in the C file.
+    `home` returns the header of a type that is declared elsewhere.  `constants` are the names that become `#define`s;
+    None: all.  `private` names are left out: functions that are `static` in the C file.
     """
     own = {name: symbol for name, symbol in own_symbols(module).items() if name not in private}
     includes = dict.fromkeys(header for name in _foreign(own) if (header := home(name)) is not None and header != file)
@@ -39,13 +39,13 @@ def c_header(
 
 
 def guarded(file: str, lines: Collection[str]) -> str:
-    """The text of a header that may be included twice."""
-    mark = f"_GENERATED_{_MARKS.sub('_', file).upper()}"  # reserved: no header of the user's has it
+    """The text of a header, with guards so that it can be included twice."""
+    mark = f"_GENERATED_{_MARKS.sub('_', file).upper()}"  # a reserved name: no header of the user has it
     return "\n".join((f"#ifndef {mark}", f"#define {mark}", *lines, "#endif", ""))
 
 
 def own_symbols(module: Module) -> dict[str, Symbol]:
-    """What a module declares itself, in its order; what it imports is left out."""
+    """The symbols that a module declares itself, in order, without imported ones."""
     return {name: module.symbols[name] for name in module.own if name in module.symbols}
 
 
@@ -61,7 +61,7 @@ def prototypes(symbols: Mapping[str, Symbol]) -> list[str]:
 
 
 def types(symbols: Mapping[str, Symbol], *, members: bool = True) -> list[str]:
-    """The types among `symbols`, as declarations in an order that C can read; structures without `members` on wish."""
+    """The types among `symbols`, declared in an order that C accepts.  `members` False: structures without members."""
     names, bodies = [], []
     done: set[str] = set()
 
@@ -92,12 +92,12 @@ def types(symbols: Mapping[str, Symbol], *, members: bool = True) -> list[str]:
 
 
 def handle_tag(name: str) -> str:
-    """The tag of the structure that nobody sees behind the handle type `name`."""
+    """The tag of the hidden structure behind the handle type `name`."""
     return f"{name.removesuffix('_Handle')}_Object"
 
 
 def _foreign(symbols: Mapping[str, Symbol]) -> Iterator[str]:
-    """Names of types that `symbols` are made with and that are not among them."""
+    """The names of types that `symbols` use but do not contain."""
     for symbol in symbols.values():
         match symbol:
             case StructType():
@@ -112,7 +112,7 @@ def _foreign(symbols: Mapping[str, Symbol]) -> Iterator[str]:
 
 
 def _named(ctype: CType) -> Iterator[str]:
-    """The types with a name of their own that `ctype` is made of."""
+    """The named types that `ctype` consists of."""
     match ctype:
         case PointerType(target=inner) | ArrayType(element=inner):
             yield from _named(inner)

@@ -1,4 +1,4 @@
-"""Types that C names and no object has.  Apart from what reads them: a kept program needs no parser to be loaded."""
+"""Types that C names but no object has.  Apart from the reader, so that loading a kept program needs no parser."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from emulator.c28x.ctypes import CType, FunctionType
 
 @dataclass(frozen=True)
 class Prototype(FunctionType):
-    """The type of a function itself; a pointer to it is a `FunctionType`."""
+    """The type of a function itself.  (A `FunctionType` is a pointer to a function.)"""
 
     names: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class Unsized(CType):
-    """`element x[]`, before its initialiser tells the length."""
+    """The type of `element x[]`, before its initialiser gives the length."""
 
     element: CType

@@ -1,17 +1,17 @@
-"""From tokens to a syntax tree: pycparser, fed with our own tokens, so that every node knows its place.
+"""From tokens to a syntax tree: pycparser reads our own tokens, so that every node has its place.
 
     unit = preprocess("us.c")
     tree = parse(unit.tokens, typedefs={"Uint16"})
 
-`coord` of every node is a `Where`.  pycparser is the extra `[c]` and is imported when a file is parsed.
+`coord` of every node is a `Where`.  pycparser is the extra `[c]`; it is imported when a file is parsed.
 
-What TI's compiler has beyond C99, in the tree:
+Extensions of TI's compiler to C99, in the tree:
 
 * `interrupt`, `__interrupt`, `__attribute__((interrupt))`: "interrupt" in a declaration's `funcspec`;
 * `cregister`: "cregister" in its `quals`;
 * `asm("...")`, `__asm("...")`: a call of `__asm`, also at file scope;
-* `far`, `near`, `__attribute__((...))`, `__extension__`: gone, nothing on this chip depends on them;
-* adjacent string literals: one Constant, whose value has them as they are written, with a blank between.
+* `far`, `near`, `__attribute__((...))`, `__extension__`: removed, because nothing on this chip depends on them;
+* adjacent string literals: one Constant; its value contains them as they are written, separated by blanks.
 """
 
 from __future__ import annotations
@@ -28,24 +28,24 @@ from emulator.c28x.symbols import SourceError
 if TYPE_CHECKING:
     from pycparser import c_ast
 
-#: Frames for the deepest file: about nine a bracket, three an `else if`.
+#: Frames for the deepest file: about nine per bracket, three per `else if`.
 _FRAMES: Final = 20_000
 
 
 @dataclass(frozen=True)
 class ParserLimits:
-    """What one translation unit may be; C99 (5.2.4.1) asks for 63 brackets and 127 blocks within one another."""
+    """Limits of one translation unit.  C99 (5.2.4.1) requires 63 nested brackets and 127 nested blocks."""
 
-    #: Tokens of the unit; all of TI's headers for this chip have about 150,000.
+    #: Tokens of the unit.  All of TI's headers for this chip together have about 150,000.
     tokens: int = 500_000
-    #: Brackets of every kind within one another.
+    #: Nested brackets of every kind.
     nesting: int = 400
-    #: Nodes from the root to a leaf: whoever walks the tree recursively needs room for as many.
+    #: Nodes from the root to a leaf: a recursive walk over the tree needs so many levels.
     depth: int = 10_000
 
 
 class NoParser(ValueError):
-    """pycparser is not installed, or is one that this reader does not know."""
+    """pycparser is not installed, or has a version that this reader does not know."""
 
 
 def parse(
@@ -66,7 +66,7 @@ def parse_expression(
 ) -> c_ast.Node:  # fmt: skip
     """The tree of one expression, as a macro's text has it.
 
-    Raises SourceError, NoParser, and ValueError for no tokens at all, which have no place.
+    Raises SourceError, NoParser, and ValueError if there are no tokens, because an error would have no place.
     """
     if not tokens:
         raise ValueError("no tokens, no expression")
@@ -85,7 +85,7 @@ def _grammar(lexemes: list[Lexeme], typedefs: Collection[str], limits: ParserLim
 
 
 class Lexeme:
-    """A token as pycparser takes it: its kind there (which the parser changes for names of types) and its text."""
+    """A token in the form that pycparser needs: its kind (the parser changes that of type names) and its text."""
 
     __slots__ = ("token", "type", "value")
 
@@ -95,7 +95,7 @@ class Lexeme:
         self.token = token
 
 
-#: pycparser's names of the punctuators; digraphs (C99, 6.4.6) are what they stand for.
+#: pycparser's names of the punctuators; digraphs (C99, 6.4.6) have the name of the punctuator they replace.
 PUNCTUATORS: Final = {
     "...": "ELLIPSIS", "<<=": "LSHIFTEQUAL", ">>=": "RSHIFTEQUAL", "++": "PLUSPLUS", "--": "MINUSMINUS", "->": "ARROW",
     "&&": "LAND", "||": "LOR", "<<": "LSHIFT", ">>": "RSHIFT", "<=": "LE", ">=": "GE", "==": "EQ", "!=": "NE",
@@ -111,7 +111,7 @@ _PLAIN: Final = """
     auto break case char const continue default do double else enum extern float for goto if inline int long register
     restrict return short signed sizeof static struct switch typedef union unsigned void volatile while offsetof
 """
-#: Keywords -> pycparser's kind and the spelling that the tree has.
+#: Keywords -> pycparser's kind, and the spelling in the tree.
 KEYWORDS: Final[dict[str, tuple[str, str]]] = {
     **{word: (word.upper(), word) for word in _PLAIN.split()},
     "_Bool": ("_BOOL", "_Bool"),
@@ -128,7 +128,7 @@ KEYWORDS: Final[dict[str, tuple[str, str]]] = {
     "asm": ("ID", "__asm"), "__asm": ("ID", "__asm"), "__asm__": ("ID", "__asm"),
 }  # fmt: skip
 
-#: Words that are refused by name.
+#: Words that are not supported, each with its error.
 REFUSED: Final = {
     "_Generic": "_Generic is C11", "_Atomic": "_Atomic is C11", "_Thread_local": "_Thread_local is C11",
     "_Alignas": "_Alignas is C11", "_Alignof": "_Alignof is C11", "__thread": "__thread is an extension of gcc",
@@ -157,7 +157,7 @@ _LONGEST_DECLARATION: Final = 300
 
 
 def lexemes_of(tokens: Sequence[Token], limits: ParserLimits) -> list[Lexeme]:
-    """`tokens` as pycparser takes them.  Raises SourceError for what no C is, for what is refused, and for nesting."""
+    """`tokens` as lexemes.  Raises SourceError for text that is not C or not supported, and for too deep nesting."""
     if len(tokens) > limits.tokens:
         raise tokens[limits.tokens].error(f"the file has more than {limits.tokens:,} tokens with its headers")
     out: list[Lexeme] = []
@@ -230,7 +230,7 @@ def _number_kind(token: Token) -> str:
 
 
 def _is_far(tokens: Sequence[Token], index: int) -> bool:
-    """Whether `far` or `near` is the old qualifier of a type here, not the name of an object."""
+    """Whether `far` or `near` is the old type qualifier here, not the name of an object."""
     if index + 1 >= len(tokens):
         return False
     following = tokens[index + 1]
@@ -266,7 +266,7 @@ def _check_asm(tokens: Sequence[Token], index: int, token: Token) -> None:
 
 
 def _check_nesting(lexemes: list[Lexeme], limit: int) -> None:
-    """Not too many brackets are open at once.  Raises SourceError."""
+    """Raises SourceError if too many brackets are open at once."""
     open_brackets: list[Lexeme] = []
     for lexeme in lexemes:
         kind = lexeme.type
@@ -275,7 +275,7 @@ def _check_nesting(lexemes: list[Lexeme], limit: int) -> None:
             if len(open_brackets) > limit:
                 raise lexeme.token.error(f"brackets nested deeper than {limit}")
         elif open_brackets and _OPENING[open_brackets[-1].type] == kind:
-            # What closes nothing, or the wrong one, is an error that the grammar words better.
+            # The grammar has better errors for a bracket that closes nothing, or the wrong one.
             open_brackets.pop()
 
 

@@ -3,9 +3,9 @@
     unit = preprocess("us.c", PreprocessorOptions(include=["headers"], defines=["LAB=3"]))
     unit.tokens, unit.macros, unit.pragmas, unit.remarks
 
-A macro is not expanded within its own expansion: while its text is being read it is busy, and its name met then is
-painted, for good (6.10.3.4).  The file is hostile: every token that is read, written or looked at again is taken from a
-budget, and depths have limits; running out of one is an error with a place.
+A macro is not expanded within its own expansion.  It is busy while its text is being read; its name found there is
+painted: it is never expanded later (6.10.3.4).  The file may be hostile: a budget limits the tokens that are read,
+written or read again, and depths have limits.  Exceeding one is an error with a place.
 """
 
 from __future__ import annotations
@@ -49,45 +49,45 @@ PREDEFINED: Final = {
     "__TI_STRICT_ANSI_MODE__": "0", "__TI_STRICT_FP_MODE__": "1", "__SIZE_T_TYPE__": "unsigned long",
     "__PTRDIFF_T_TYPE__": "long", "__WCHAR_T_TYPE__": "int",
 }  # fmt: skip
-#: What `--abi eabi` has besides, or otherwise.
+#: The macros that `--abi eabi` adds or changes.
 PREDEFINED_EABI: Final = {"__TI_EABI__": "1", "__WCHAR_T_TYPE__": "long"}
 
-#: Frames for the deepest expansion and condition that the limits allow.
+#: Frames for the deepest expansion and the deepest condition that the limits allow.
 _FRAMES: Final = 6_000
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What one translation unit may cost; each is far beyond what a program for this chip needs."""
+    """Limits of one translation unit, all far beyond the needs of a program for this chip."""
 
-    #: Tokens read, written by macros and looked at again.
+    #: Tokens that are read, written by macros, or read again.
     tokens: int = 1_500_000
-    #: Files within files, and all of them.
+    #: Nested `#include`s; all files that are read.
     include_depth: int = 64
     includes: int = 5_000
-    #: Macro calls within arguments of macro calls.
+    #: Nested macro calls within arguments.
     macro_depth: int = 200
-    #: `#if` within `#if`.
+    #: Nested `#if`s.
     conditions: int = 200
-    #: Characters of one token that `#` or `##` makes.
+    #: Characters of a token that `#` or `##` creates.
     token_length: int = 65_536
     file_bytes: int = 4 << 20
 
 
 @dataclass(frozen=True)
 class PreprocessorOptions:
-    """How a file is preprocessed: `-I`, `-D`, the ABI, headers of ours."""
+    """How a file is preprocessed: `-I`, `-D`, the ABI, our own headers."""
 
     include: Sequence[str | Path] = ()
     #: `NAME` (1), `NAME=VALUE` or `NAME(x)=VALUE`.
     defines: Sequence[str] = ()
-    #: Folders of the sources besides the file's own.
+    #: Source folders in addition to that of the file itself.
     sources: Sequence[str | Path] = ()
-    #: The text of a header of ours, asked for in lower case with `/`; None: not ours.
+    #: Name in lower case, with `/` -> the text of our header; None: not one of ours.
     builtin: Callable[[str], str | None] = lambda name: None
-    #: The text of a header that no folder has, by name.
+    #: Name -> the text of a header that is in no folder.
     fallback: Callable[[str], str | None] = lambda name: None
-    #: Whether a header of ours is one of C itself: a file of the user's may have its name.
+    #: Name -> whether it is a header of C's library: the user may have a file of that name.
     standard: Callable[[str], bool] = lambda name: False
     eabi: bool = False
     limits: Limits = Limits()
@@ -108,18 +108,18 @@ class Unit:
 
     file: str
     tokens: list[Token]
-    #: The macros that are defined at its end, without the compiler's own.
+    #: The macros defined at its end, without the compiler's own.
     macros: dict[str, Macro]
     pragmas: list[Pragma]
     remarks: list[SourceRemark]
-    #: Every file that was read, by its resolved path; headers of ours are not among them.
+    #: Every file that was read, by its resolved path, without our own headers.
     files: dict[str, SourceText]
     limits: Limits
-    #: The same with the compiler's own.
+    #: The macros defined at its end, including the compiler's own.
     known: dict[str, Macro]
 
     def expansion(self, name: str) -> list[Token]:
-        """What the object-like macro `name` finally stands for, with the macros at the unit's end; maybe nothing."""
+        """The complete expansion of the object-like macro `name`, with the macros at the unit's end; maybe empty."""
         preprocessor = _Preprocessor(IncludePath((), (), lambda name: None, 0), self.limits)
         preprocessor.macros.update(self.known)
         with reading(_FRAMES):
@@ -165,7 +165,7 @@ def _run(source: SourceText, include: IncludePath, options: PreprocessorOptions)
 
 
 class _Text:
-    """Tokens that a macro wrote, still to be read, last first; the macro is busy until they are."""
+    """The tokens of an expanded macro that are still to be read, last first.  The macro is busy until they are read."""
 
     __slots__ = ("macro", "tokens")
 
@@ -176,7 +176,7 @@ class _Text:
 
 @dataclass(slots=True)
 class _Condition:
-    """An `#if` that is open: whether its surroundings are read, and whether one of its groups was."""
+    """An open `#if`.  `outer`: its surroundings are read; `taken`: one of its groups has been read."""
 
     token: Token
     outer: bool
@@ -193,9 +193,9 @@ class _OpenFile:
         self.source = source
         self.lines = lines
         self.conditions: list[_Condition] = []
-        #: Whether the present group is read.
+        #: Whether the present group is read, not skipped.
         self.live = True
-        #: A line that was looked at and not taken.
+        #: A line that was read ahead and put back.
         self.again: list[Token] | None = None
 
 
@@ -216,19 +216,20 @@ class _Preprocessor:
         #: The line of the file that is being read.
         self._line: list[Token] = []
         self._index = 0
-        #: Macro text to be read before the line goes on.
+        #: Macro text to read before the rest of the line.
         self._texts: list[_Text] = []
         self._busy: set[str] = set()
-        #: Only `_texts` is read: an argument or a directive, not the file.
+        #: Only `_texts` is read, not the file: for an argument or a directive.
         self._closed = False
-        #: An argument list is read, or its `(` sought: the end of a file is its end, and then a directive is too.
+        #: `_arguing`: an argument list is read, which the end of the file ends.  `_seeking`: its `(` is sought, and a
+        #: directive ends the search as well.
         self._arguing = False
         self._seeking = False
         self._depth = 0
         nowhere = SourceText("", "")
         self._end = Token(END, "", nowhere, 0)
 
-    # ---- what is defined from the beginning
+    # ---- predefined macros
 
     def predefine(self, macros: dict[str, str]) -> None:
         """Define the compiler's own macros."""
@@ -267,7 +268,7 @@ class _Preprocessor:
         return out
 
     def _take_plain(self, out: list[Token]) -> None:
-        """The tokens of the line up to the next name that means something here: most of a file is copied."""
+        """Copy the tokens of the line up to the next macro or `_Pragma`.  Most of a file is copied so."""
         line, macros = self._line, self.macros
         first = index = self._index
         for token in line[first:]:
@@ -278,7 +279,7 @@ class _Preprocessor:
         self._index = index
 
     def expand(self, tokens: list[Token], at: Token) -> list[Token]:
-        """`tokens` with every macro expanded, as if nothing followed them."""
+        """`tokens` with every macro expanded, without the tokens that follow them."""
         return list(self._expanded(tokens, at))
 
     def _expanded(self, tokens: list[Token], at: Token, condition: bool = False) -> Iterator[Token]:
@@ -294,7 +295,7 @@ class _Preprocessor:
         self._depth -= 1
 
     def _pull(self) -> Token:
-        """The next token, not expanded."""
+        """The next token, before expansion."""
         texts = self._texts
         while texts:
             text = texts[-1]
@@ -312,7 +313,7 @@ class _Preprocessor:
         return self._line[self._index - 1]
 
     def _get(self) -> Token:
-        """The next token, expanded."""
+        """The next token, after expansion."""
         while True:
             token = self._pull()
             if token.kind != NAME or token.painted or (macro := self.macros.get(token.text)) is None:
@@ -323,7 +324,7 @@ class _Preprocessor:
                 return token
 
     def _next_line(self) -> bool:
-        """Go to the next line of text; False at the end of what may be read."""
+        """Go to the next line of text.  Returns False where reading must end."""
         while True:
             file = self._files[-1]
             if file.again is not None:
@@ -352,7 +353,7 @@ class _Preprocessor:
     # ---- macros
 
     def _enter(self, macro: Macro, token: Token) -> bool:
-        """Read `macro`'s text next, in place of `token`; False where its name stands without arguments."""
+        """Read the text of `macro` next, instead of `token`.  Returns False if its arguments are missing."""
         use = token.use or token
         if macro.special:
             text = self._special(macro.name, use)
@@ -384,7 +385,7 @@ class _Preprocessor:
         return [Token(STRING, f'"{file}"', use.source, use.at)]
 
     def _arguments(self, macro: Macro, name: Token) -> list[list[Token]] | None:
-        """The arguments of a call, or None where no `(` follows."""
+        """The arguments of a macro call; None if no `(` follows."""
         assert macro.parameters is not None
         arguing, seeking = self._arguing, self._seeking
         self._arguing = self._seeking = True
@@ -430,7 +431,7 @@ class _Preprocessor:
         return arguments
 
     def _fill(self, macro: Macro, arguments: list[list[Token]], use: Token) -> list[Token]:
-        """The body of `macro` with its arguments, `#` and `##` carried out."""
+        """The body of `macro` with its arguments inserted, and `#` and `##` carried out."""
         out: list[Token] = []
         expanded: dict[int, list[Token]] = {}
         for piece in macro.pieces:
@@ -447,7 +448,7 @@ class _Preprocessor:
                 if variadic and not absent and index == 0 and not arguments[0]:
                     absent = True
                 if variadic and piece.joins_left and out and out[-1].text == "," and out[-1].kind == PUNCT:
-                    # `, ## __VA_ARGS__`: without arguments the comma goes, with some nothing is joined (as gcc).
+                    # `, ## __VA_ARGS__`: without arguments the comma is dropped, else nothing is joined (as in gcc).
                     if absent:
                         out.pop()
                         out.append(Token(PLACE, "", token.source, token.at, token.space, use))
@@ -473,7 +474,7 @@ class _Preprocessor:
         return [token for token in out if token.kind != PLACE] if macro.joins else out
 
     def _string(self, argument: list[Token], at: Token, use: Token) -> Token:
-        """`#`: the argument's spelling as a string (6.10.3.2)."""
+        """`#`: the spelling of the argument as a string (6.10.3.2)."""
         parts = []
         for number, token in enumerate(argument):
             text = token.text
@@ -485,7 +486,7 @@ class _Preprocessor:
         return Token(STRING if kind_of(text) == STRING else BAD, text, at.source, at.at, at.space, use)
 
     def _joined(self, left: Token, right: Token, at: Token, use: Token) -> list[Token]:
-        """`##`: one token out of two (6.10.3.3)."""
+        """`##`: two tokens joined to one (6.10.3.3)."""
         text = left.text + right.text
         self._length(text, use)
         if left.kind == PLACE and right.kind == PLACE:
@@ -574,7 +575,7 @@ class _Preprocessor:
         return evaluate(list(self._expanded(self._without_defined(line[2:]), name, condition=True)), name)
 
     def _without_defined(self, tokens: list[Token]) -> list[Token]:
-        """`tokens` with each `defined NAME` and `defined(NAME)` as 1 or 0, before anything is expanded."""
+        """`tokens` with each `defined NAME` and `defined(NAME)` replaced by 1 or 0, before expansion."""
         out = []
         index = 0
         while index < len(tokens):
@@ -593,7 +594,7 @@ class _Preprocessor:
         return out
 
     def _defined(self, token: Token) -> Token:
-        """`defined` that a macro wrote: its operand follows in the text."""
+        """The value of a `defined` in the text of a macro; its operand follows there."""
         operand = self._pull()
         bracket = operand.text == "("
         if bracket:
@@ -642,7 +643,7 @@ class _Preprocessor:
         self._files.append(_OpenFile(source, source.lines(self.budget)))
 
     def _header(self, line: list[Token]) -> tuple[str, bool, Token]:
-        """The name that an `#include` asks for, whether in quotes, and the token to complain at."""
+        """The name in an `#include`, whether it is in quotes, and the token at which to report an error."""
         if len(line) < 3:
             raise line[1].error('expected "NAME" or <NAME> after #include')
         first = line[2]
@@ -675,7 +676,7 @@ def _painted(token: Token) -> Token:
 
 
 def _spaced(tokens: list[Token], space: bool) -> list[Token]:
-    """`tokens`, the first of them with a blank before it or without."""
+    """`tokens`, the first one with or without a blank before it."""
     if not tokens or tokens[0].space == space:
         return tokens
     first = tokens[0]
@@ -683,7 +684,7 @@ def _spaced(tokens: list[Token], space: bool) -> list[Token]:
 
 
 def _rest(line: list[Token]) -> str:
-    """What a directive says after its name, as it is written."""
+    """The text of a directive after its name."""
     if len(line) < 3:
         return ""
     return spelled(line[2:])[:500]

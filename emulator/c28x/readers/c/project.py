@@ -1,11 +1,11 @@
-"""What a project of Code Composer says of its C files: include folders and macros, from its `.cproject`.
+"""The include folders and macros of a Code Composer project, from its `.cproject`.
 
     project = read(Path("lab3/.cproject"))
     Program(names, include=project.include, defines=project.defines)
 
-The file is XML of Eclipse CDT: options of the compiler hold `<listOptionValue value="...">`, those with INCLUDE_PATH in
-their names folders, those with DEFINE macros.  A project has several configurations (Debug, Release); the first one
-that says anything is taken.  Values may hold `${NAME}`: only what names the project's own folder is known here.
+The file is XML of Eclipse CDT.  Compiler options contain `<listOptionValue value="...">`: folders if the name of the
+option contains INCLUDE_PATH, macros if it contains DEFINE.  A project has several configurations (Debug, Release); the
+first one with any values is used.  Values may contain `${NAME}`: only variables for the project's own folder are known.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree
 
-#: The name of the file in every project.
+#: The name of the file, the same in every project.
 NAME: Final = ".cproject"
-#: CHOICE: projects have some tens of kilobytes; what is larger is none.
+#: CHOICE: project files have some tens of kilobytes; a larger file is not one.
 LARGEST_BYTES: Final = 2_000_000
 _VARIABLE: Final = re.compile(r"\$\{([^}]*)\}")
 #: Variables that name the folder of the project.
@@ -28,7 +28,7 @@ _DEFINE: Final = re.compile(r"[A-Za-z_]\w*(\(\w*\))?(=.*)?", re.ASCII | re.DOTAL
 
 @dataclass(frozen=True)
 class CcsProject:
-    """Folders and macros in their order; `notes` say, a line each, what was left out and why."""
+    """Folders and macros in their order.  `notes`: what was left out and why, one line each."""
 
     include: tuple[str, ...] = ()
     defines: tuple[str, ...] = ()
@@ -38,8 +38,8 @@ class CcsProject:
 def read(path: Path) -> CcsProject:
     """Read a `.cproject`.
 
-    Raises ValueError, in one line, for what is none: no regular file, too large, no XML, a DOCTYPE (which could define
-    entities).  OSError if it cannot be read.
+    Raises ValueError, in one line, for a file that is not one: not regular, too large, not XML, or with a DOCTYPE
+    (which could define entities).  Raises OSError if it cannot be read.
     """
     if not path.is_file():
         raise ValueError(f"{path}: there is no such file")
@@ -59,10 +59,10 @@ def read(path: Path) -> CcsProject:
 
 
 class _ProjectTreeBuilder(ElementTree.TreeBuilder):
-    """Builds the tree; refuses the declaration in which entities are defined."""
+    """Builds the tree; rejects a DOCTYPE, because it can define entities."""
 
     def doctype(self, name: str, pubid: str | None, system: str | None) -> None:
-        """Called at a DOCTYPE, which no project has."""
+        """Called for a DOCTYPE, which no project has."""
         raise ValueError(f"a DOCTYPE ({name}) is not read")
 
 
@@ -96,7 +96,7 @@ def _settings(element: ElementTree.Element, path: Path) -> CcsProject:
 
 
 def _folder(value: str, path: Path, include: dict[str, None], notes: dict[str, None]) -> None:
-    """Put the folder that `value` means into `include`, or why it is left out into `notes`."""
+    """Add the folder that `value` names to `include`, or the reason why it is left out to `notes`."""
     here = path.resolve().parent
     unknown: list[str] = []
 
@@ -108,7 +108,7 @@ def _folder(value: str, path: Path, include: dict[str, None], notes: dict[str, N
             return ""
         return str(here) if own else _below(name, here)
 
-    # The project's name stands inside of another variable: ${workspace_loc:/${ProjName}/include}.
+    # The project's name can be inside of another variable: ${workspace_loc:/${ProjName}/include}.
     text = value.replace("${ProjName}", here.name)
     folder = _VARIABLE.sub(known, text).replace("\\", "/")
     if unknown:
@@ -122,6 +122,6 @@ def _folder(value: str, path: Path, include: dict[str, None], notes: dict[str, N
 
 
 def _below(name: str, here: Path) -> str:
-    """The folder of a `workspace_loc:/PROJECT/...` that lies in this project; empty for another project's."""
+    """The folder of a `workspace_loc:/PROJECT/...` in this project; empty for a folder of another project."""
     project, _, rest = name.removeprefix("workspace_loc:/").partition("/")
     return str(here / rest) if project == here.name else ""

@@ -1,9 +1,9 @@
-"""Register blocks as C names and types: `EPwm1Regs` of type `struct EPWM_REGS`, and what that structure holds.
+"""Register blocks as C names and types: `EPwm1Regs` of type `struct EPWM_REGS`, and the members of that structure.
 
-Which blocks there are, and what they hold, is read from the device header, which has them from `emulator.blocks`.
-The device header in C text only declares the blocks; who reads C resolves a block by its name (`instances`) and a
-pointer to one by its structure's tag (`block_types`), and so the type of a register's copy (`register_type`), because
-4,000 lines of fields would have to be parsed for each file.  `block_text` has the types as C.
+The blocks and their registers are read from the device header, which has them from `emulator.blocks`.  The device
+header in C text only declares the blocks, because otherwise 4,000 lines of fields would be parsed for each file.  The C
+reader resolves a block by its name (`instances`), a pointer to a block by the tag of its structure (`block_types`), and
+the type of a copy of a register by its tag (`register_type`).  `block_text` returns the types as C text.
 """
 
 from __future__ import annotations
@@ -28,21 +28,21 @@ def device() -> Module:
 
 @lru_cache(maxsize=1)
 def block_types() -> Mapping[str, RegisterBlock]:
-    """Tag of a block's structure -> its registers, under the block class's name."""
+    """Tag of a block's structure -> its registers, with the name of the block class."""
     blocks = [symbol for symbol in device().symbols.values() if isinstance(symbol, RegisterBlock)]
     return MappingProxyType({symbol.struct: replace(symbol, name=symbol.type_name) for symbol in blocks})
 
 
 @lru_cache(maxsize=1)
 def instances() -> Mapping[str, RegisterBlock]:
-    """Name of a register block in C -> its registers, under that name."""
+    """Name of a register block in C -> its registers, with that name."""
     own = own_symbols(device())
     return MappingProxyType({name: symbol for name, symbol in own.items() if isinstance(symbol, RegisterBlock)})
 
 
 @lru_cache(maxsize=1)
 def unmodelled() -> Mapping[str, Unmodelled]:
-    """Name of a register block in C that the chip has and the emulator does not -> what to say of it."""
+    """Name of each register block in C that is not modelled -> the block."""
     own = own_symbols(device())
     return MappingProxyType({name: symbol for name, symbol in own.items() if isinstance(symbol, Unmodelled)})
 
@@ -53,14 +53,14 @@ def tag(name: str) -> str:
 
 
 def declarations() -> Iterator[str]:
-    """The blocks as C declares them, without what they hold."""
+    """The C declarations of the blocks, without their members."""
     for name in instances():
         yield f"extern volatile struct {tag(name)} {name};"
 
 
 @lru_cache(maxsize=1)
 def _registers() -> Mapping[str, Any]:
-    """Name of a register with fields -> it.  Registers of one name have the same fields, in whatever block."""
+    """Name of a register with fields -> the register.  Registers of one name have the same fields in all blocks."""
     return MappingProxyType({
         name: described
         for block in block_types().values()
@@ -72,7 +72,7 @@ def _registers() -> Mapping[str, Any]:
 def register_type(tag: str) -> StructType | None:
     """The type that C calls `struct NAME_BITS` or `union NAME_REG`, made anew; None: no register has this name.
 
-    A copy of a register in RAM has it: what has to be written at once is made up there.
+    A copy of a register in RAM has this type: firmware prepares there a value that it then writes at once.
     """
     name, _, kind = tag.rpartition("_")
     described = _registers().get(name) if kind in ("BITS", "REG") else None
@@ -90,8 +90,8 @@ def register_type(tag: str) -> StructType | None:
 def block_text(name: str) -> str:
     """The definition of the structure with the tag `name`, with the types of its registers before it.
 
-    Every register stands at its true offset; what the manual reserves is filled with words.  The structure ends with
-    its last register.  Needs Uint16, Uint32 and PINT.  Raises KeyError for a tag that is not a block's.
+    Every register is at its true offset; reserved parts are filled with words.  The structure ends with its last
+    register.  Needs Uint16, Uint32 and PINT.  Raises KeyError for a tag that is not a block's.
     """
     layout = block_types()[name].layout
     registers = sorted(layout.items(), key=lambda item: item[1].offset)
@@ -117,7 +117,7 @@ def block_text(name: str) -> str:
 
 
 def _plain(described: Any) -> bool:
-    """Whether C accesses a register as a number, or a vector as a pointer, and not by fields."""
+    """Whether C accesses a register as a whole: a number, or a vector as a pointer, without fields."""
     return list(described.register.fields) == ["VALUE"]
 
 
@@ -136,7 +136,7 @@ def _fields(described: Any) -> Iterator[tuple[int, str, int]]:
     named = [(field, f) for field, f in described.register.fields.items() if f.access.name != "RSV"]
     for field, f in [*sorted(named, key=lambda item: item[1].lo), ("", None)]:
         lo = bits if f is None else f.lo
-        while at < lo:  # what is reserved stops at the end of a word
+        while at < lo:  # a reserved field ends at the end of a word
             gaps += 1
             width = min(lo, (at // 16 + 1) * 16) - at
             yield 16, f"rsvd{gaps}", width

@@ -1,4 +1,4 @@
-"""A C file: preprocessed, parsed, its declarations read; what several files mean by one name."""
+"""A C file (preprocessed, parsed, its declarations read), and the names that several files share."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ from emulator.c28x.tree import Function, Variable, Where
 if TYPE_CHECKING:
     from emulator.c28x.readers.c.declarations import CDeclarationReader
 
-#: Frames for the deepest function: what nests has limits of its own.
+#: Frames for the deepest function; nested constructs have their own limits.
 _FRAMES: Final = 8_000
-#: Pragmas that change what a program does or where it lies.
+#: Pragmas that place code or data.
 _PLACING: Final = ("CODE_SECTION", "DATA_SECTION", "DATA_ALIGN", "SET_CODE_SECTION", "SET_DATA_SECTION", "LOCATION")
 
 
 @dataclass(frozen=True)
 class CSettings:
-    """How C files are read: `-I`, `-D`, the ABI, and headers that a project makes."""
+    """How C files are read: `-I`, `-D`, the ABI, and headers that the project generates."""
 
     include: Sequence[str | Path] = ()
     defines: Sequence[str] = ()
-    #: "coff": `.bss` is not cleared and double has 32 bits; "eabi": it is cleared, and 64 bits are refused.
+    #: "coff": `.bss` is not cleared, and double has 32 bits; "eabi": it is cleared, and 64-bit double is an error.
     abi: str = "coff"
-    #: The text of a header that a project makes for those who have none of that name; None: not one of its own.
+    #: Name -> the text of a header that the project generates, if no folder has that header; None: not one of these.
     header: Callable[[str], str | None] = lambda name: None
 
     def __post_init__(self) -> None:
@@ -45,14 +45,14 @@ class CSettings:
             raise ValueError(f"no ABI {self.abi}: coff or eabi")
 
     def options(self) -> PreprocessorOptions:
-        """What the preprocessor takes."""
+        """The options for the preprocessor."""
         return PreprocessorOptions(
             include=self.include, defines=self.defines, builtin=headers.of_the_device, fallback=self._last,
             standard=headers.of_c_itself, eabi=self.abi == "eabi",
         )  # fmt: skip
 
     def _last(self, name: str) -> str | None:
-        """The header that is found nowhere else.  Raises Refused where it is known why there is none."""
+        """The text of a header that no folder has; None: there is none.  Raises Refused if the reason is known."""
         text = self.header(name) or headers.text(name)
         if text is None and (why := headers.hint(name)) is not None:
             raise Refused(why)
@@ -68,17 +68,17 @@ class CFile:
     unit: Unit
 
     def wanted(self) -> set[str]:
-        """Names that the file uses, outside of headers of ours, and that it only declares."""
+        """Names that the file, or a header that is not ours, uses and that the file only declares."""
         used = {token.text for token in self.unit.tokens if not token.source.file.startswith("<")}
         return used & set(self.reader.linkage.declared)
 
 
 @dataclass
 class CFiles:
-    """The C files of an image, and the modules in Python that define what they only declare."""
+    """The C files of an image, and the Python modules that define what they only declare."""
 
     settings: CSettings
-    #: Reads the module that a name of a library means; None: there is none.
+    #: Reads the module that defines a library function; None: there is none.
     libraries: Callable[[str], Module | None] = lambda name: None
     #: Reads a C file that lies beside headers.
     bring: Callable[[Path], object] = lambda file: None
@@ -90,12 +90,12 @@ class CFiles:
         self._beside = Beside(self.settings.include)
 
     def looked_into(self) -> set[str]:
-        """The files that were read, and the folders in which headers were sought."""
+        """The files that were read, and the folders in which headers were searched."""
         files = {file for read in self.files.values() for file in read.unit.files}
         return files | {str(Path(file).parent) for file in files} | {str(folder) for folder in self._beside.folders}
 
     def read(self, name: str, file: str, text: str | None = None) -> Module:
-        """Read a C file, from its text where that is given.  Raises SourceError; NoParser without pycparser."""
+        """Read a C file; `text` is used if there is no file.  Raises SourceError; NoParser without pycparser."""
         options = self.settings.options()
         unit = preprocess(file, options) if text is None or Path(file).is_file() else (
             preprocess_text(text, file, options)
@@ -122,7 +122,7 @@ class CFiles:
         return module
 
     def find(self, name: str) -> Function | None:
-        """The function that `name` means in this image, wherever it is defined."""
+        """The function `name` of this image, wherever it is defined; None: there is none."""
         for file in self.files.values():
             if name in file.reader.linkage.defined:
                 symbol = file.module.symbols[name]
@@ -135,10 +135,10 @@ class CFiles:
         return self.find(OF_FLOAT[name]) if name in OF_FLOAT else None
 
     def link(self, others: Iterable[Module]) -> list[Module]:
-        """Give each name that a file only declares its meaning: what another file, module or header defines.
+        """Resolve each name that a file only declares to its definition in another file, module or header.
 
-        Gives the modules that this adds: definitions behind headers of ours.  Raises SourceError for a name that two
-        files define, and for an object that a file declares itself and none defines.
+        Returns the modules that this adds: definitions for our headers.  Raises SourceError for a name that two files
+        define, and for an object that a file itself declares and none defines.
         """
         if self._linked == len(self.files):
             return []
@@ -166,7 +166,7 @@ class CFiles:
         return added
 
     def _bring_what_is_beside(self) -> None:
-        """Read the C files beside headers that define what the files use and none defines, and what those use."""
+        """Read C files beside headers if they define what the files use and none defines; repeat for these files."""
         asked: set[str] = set()
         while True:
             defined = {name for file in self.files.values() for name in file.reader.linkage.defined}
@@ -180,7 +180,7 @@ class CFiles:
                 self.bring(path)
 
     def _behind_headers(self) -> list[Module]:
-        """Read what headers of ours only declare, as far as the files use it and none defines it."""
+        """Read the definitions of names that our headers only declare, if the files use but do not define them."""
         defined = {name for file in self.files.values() for name in file.reader.linkage.defined}
         wanted = {name for file in self.files.values() for name in file.wanted()} - defined
         added = dict(filter(None, map(headers.definitions, sorted(wanted))))
@@ -198,7 +198,7 @@ class CFiles:
             found = defined[name].module.symbols[name]
         else:
             found = next((m.symbols[name] for m in python if name in m.own and name in m.symbols), None)
-            if found is None and (used or _of_ours(name)):  # a linker takes nothing from a library that nobody uses
+            if found is None and (used or _of_ours(name)):  # a linker takes only what is used from a library
                 found = self.find(name)
         if isinstance(mine, Function) and isinstance(found, Function):
             self._compare(file, mine, found, where)
@@ -216,7 +216,7 @@ class CFiles:
             raise SourceError.at(where, f"{name} is declared extern, and no file defines it")
 
     def _compare(self, file: CFile, mine: Function, found: Function, where: Where) -> None:
-        """Remark a declaration that is not that of the definition."""
+        """Make a remark about a declaration that differs from the definition."""
         from emulator.c28x.readers.c.declarations import compatible, signature
 
         if where.file.startswith("<") or compatible(mine.ctype, found.ctype):
@@ -226,12 +226,12 @@ class CFiles:
 
 
 def _of_ours(name: str) -> Module | None:
-    """The module of the emulator that has a function of this name."""
+    """The module of the emulator with a function of this name; None: there is none."""
     return next((m for m in (library(), kernel(), device()) if isinstance(m.symbols.get(name), Function)), None)
 
 
 def _one_object(first: Module, second: Module, name: str) -> bool:
-    """Whether two files define one object tentatively (`int x;` in both): then it is that of the first."""
+    """Whether two files define the same object tentatively (`int x;` in both).  If so, join the two definitions."""
     mine, other = first.symbols[name], second.symbols[name]
     if not isinstance(mine, Variable) or not isinstance(other, Variable) or mine.ctype != other.ctype:
         return False
@@ -247,7 +247,7 @@ def _one_object(first: Module, second: Module, name: str) -> bool:
 
 
 def _inline(first: CFile, second: CFile, name: str) -> bool:
-    """Whether a header defines a function `inline` for two files: then it is that of the first (ISO C99 6.7.4)."""
+    """Whether a header defines a function `inline` for two files (ISO C99 6.7.4).  If so, keep that of the first."""
     if name not in first.reader.linkage.inline or name not in second.reader.linkage.inline:
         return False
     other = second.module.symbols[name]
@@ -262,14 +262,14 @@ _NO_TYPE: Final = re.compile(r"'(\w+)' is not a type")
 
 
 def _hinted(error: SourceError) -> SourceError:
-    """The parser's error about an unknown type, with what is known of its name."""
+    """The parser's error about an unknown type, with a hint if its name is known."""
     found = _NO_TYPE.search(str(error))
     hint = headers.hint(found[1]) if found is not None else None
     return error if hint is None else SourceError(error.file, error.line, hint, error.column)
 
 
 def _remark_preprocessing(module: Module, unit: Unit) -> None:
-    """Pragmas that matter and are not modelled, and what the preprocessor took with a word."""
+    """Make remarks about pragmas that are not modelled, and about what the preprocessor remarked."""
     for remark in unit.remarks:
         module.remarks.append(Remark(remark.where, rule="preprocessor", message=remark.message, name=""))
     for pragma in unit.pragmas:

@@ -1,4 +1,4 @@
-"""Statements of C: each construct is given to the builder; labels, `goto` and computed cases are refused."""
+"""Statements of C: the reader passes each to the builder; labels, `goto` and computed cases are errors."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import leaves, parts
 
-#: What a comment says of a case that goes on with the next one, as compilers and people write it.
+#: The texts of a comment about a case that falls through, as compilers and people write them.
 _FALLS: Final = re.compile(r"(?i)(//|/\*).*(fall|thro?ugh|no\W*break|drops|goes on|next case)")
 _STEPS: Final = {"p++": 1, "++": 1, "p--": -1, "--": -1}
 
 
 class Locals(Protocol):
-    """Declares what a block declares: objects, types, functions."""
+    """Reads the declarations of a block: objects, types, functions."""
 
     def local(self, node: c_ast.Node) -> None:
-        """A declaration within a function."""
+        """Read a declaration within a function."""
 
 
 class CStatementReader:
@@ -51,11 +51,11 @@ class CStatementReader:
         self.b = b
         self.expressions = expressions
         self.declarations = declarations
-        #: What `break` ends, innermost last: "loop" or "switch".
+        #: What a `break` ends, innermost last: "loop" or "switch".
         self.breakable: list[str] = []
 
     def statement(self, node: c_ast.Node | None) -> None:
-        """One statement."""
+        """Read one statement."""
         b = self.b
         if node is None:
             return
@@ -104,7 +104,7 @@ class CStatementReader:
                 self.expression(node)
 
     def statements(self, items: list[c_ast.Node] | None) -> None:
-        """Statements one after the other."""
+        """Read statements in order."""
         for item in items or ():
             self.statement(item)
 
@@ -129,7 +129,7 @@ class CStatementReader:
     # Blocks
 
     def body(self, node: c_ast.Node | None, kind: str) -> Callable[[], None]:
-        """The body of a loop, to be read when the builder asks for it, within a block that it opens."""
+        """A function that reads the body of a loop; the builder calls it within a block that the builder opens."""
 
         def read() -> None:
             self.breakable.append(kind)
@@ -142,7 +142,7 @@ class CStatementReader:
         return read
 
     def branch(self, node: c_ast.Node | None) -> Callable[[], None]:
-        """A branch of an `if`: a block, with braces or without."""
+        """A function that reads a branch of an `if` as a block, with braces or without."""
 
         def read() -> None:
             if node is None:
@@ -157,7 +157,7 @@ class CStatementReader:
         return read
 
     def if_(self, node: c_ast.If) -> None:
-        """`if`; an `else if` is no block of its own."""
+        """`if`; an `else if` does not open a block."""
         links: list[build.IfBranch] = []
         last: c_ast.Node | None = node
         while isinstance(last, c_ast.If):
@@ -167,7 +167,7 @@ class CStatementReader:
         build.chain(self.b, links, self.branch(last) if last is not None else None)
 
     def test(self, node: c_ast.Node, *branches: c_ast.Node | None) -> Expr:
-        """A controlling expression; of an `if` with its branches.  Raises SourceError for a structure or void."""
+        """A controlling expression; `branches` are those of an `if`.  Raises SourceError for a structure or void."""
         value = self.expressions.value(node)
         if isinstance(value.ctype, StructType):
             raise SourceError.at(node.coord, f"a structure ({value.ctype}) is not a condition")
@@ -180,10 +180,10 @@ class CStatementReader:
         return value
 
     def compares(self, node: c_ast.Assignment, branches: tuple[c_ast.Node | None, ...]) -> bool:
-        """Whether the assignment of a condition was to be a comparison.
+        """Whether an assignment as a condition was meant as a comparison.
 
-        So is any of a constant.  Of another value, in an `if` and without parentheses of its own, if no branch looks at
-        what was assigned; a local that takes what a function gives may be looked at later.
+        An assignment of a constant always was.  One of another value was if it is in an `if`, has no parentheses of its
+        own, and no branch uses the target.  A local that gets the result of a function may be used later: it was not.
         """
         effects, value = self.b.apart(lambda: self.expressions.value(node.rvalue))
         if not effects and build.constant_value(value) is not None:
@@ -198,7 +198,7 @@ class CStatementReader:
     # Loops
 
     def for_(self, node: c_ast.For) -> None:
-        """`for`: one that counts from a start to a limit, or any other."""
+        """`for`: a counting loop from a start to a limit, or a general loop."""
         b, where = self.b, node.coord
         if isinstance(node.init, c_ast.DeclList):
             with b.block(where) as statements:
@@ -224,13 +224,13 @@ class CStatementReader:
         self.general(node)
 
     def general(self, node: c_ast.For) -> None:
-        """A `for` at large, behind its beginning."""
+        """A general `for`, after its initialisation."""
         test = (lambda: self.test(node.cond)) if node.cond is not None else None
         step = (lambda: self.expressions.effect(node.next)) if node.next is not None else None
         build.loop(self.b, test, self.body(node.stmt, "loop"), step, node.coord)
 
     def counted(self, node: c_ast.For) -> tuple[c_ast.Node, int] | None:
-        """Limit and step of `for (i = a; i < n; i++)`, or `>` and a step down; None for any other `for`."""
+        """Limit and step of a counting `for (i = a; i < n; i++)`, or with `>` and a step down; None for any other."""
         match node.init:
             case c_ast.Assignment(op="=", lvalue=c_ast.ID(name=name)):
                 symbol = self.b.look_up(name)
@@ -270,14 +270,14 @@ class CStatementReader:
         return (limit, step) if not effects and isinstance(stop.ctype, IntType) else None
 
     def number(self, node: c_ast.Node) -> int | None:
-        """A step that is a constant."""
+        """The value of a constant step; None if it is not a constant."""
         if not isinstance(node, c_ast.Constant):
             return None
         value = build.constant_value(self.expressions.value(node))
         return value if isinstance(value, int) else None
 
     def range(self, node: c_ast.For, name: str, start: c_ast.Node, limit: c_ast.Node, step: int) -> None:
-        """A `for` that counts."""
+        """A counting `for`."""
         b = self.b
         symbol = b.look_up(name)
         assert isinstance(symbol, Variable)
@@ -289,7 +289,7 @@ class CStatementReader:
     # Switch
 
     def switch(self, node: c_ast.Switch) -> None:
-        """`switch`: cases that end, that fall through, that are left from within."""
+        """`switch`: its cases may end, fall through, or be left from within."""
         b, where = self.b, node.coord
         subject = self.expressions.value(node.cond)
         if not isinstance(subject.ctype, IntType):
@@ -308,7 +308,7 @@ class CStatementReader:
         build.switch(b, subject, cases, where, self.named(items), self.expressions.types.enumerations)
 
     def cases(self, items: list[Any], subject: Expr) -> list[tuple[list[int] | None, list[Stmt]]]:
-        """Labels and bodies, in order; labels that follow each other directly share a body."""
+        """Labels and bodies, in order.  Adjacent labels share a body."""
         assert isinstance(subject.ctype, IntType)
         ctype = promote(subject.ctype)
         groups: list[tuple[list[int] | None, list[Any], Where]] = []
@@ -338,7 +338,7 @@ class CStatementReader:
             if item.stmts:
                 groups.append((labels, list(item.stmts), item.coord))
                 labels = []
-        if labels is None or labels:  # labels at the very end have nothing to do
+        if labels is None or labels:  # labels at the very end have an empty body
             groups.append((labels, [], items[-1].coord))
         behind = [where for _, _, where in groups[1:]]
         return [self.case(*group, behind=next_) for group, next_ in zip(groups, [*behind, None], strict=True)]
@@ -346,7 +346,7 @@ class CStatementReader:
     def case(
         self, labels: list[int] | None, statements: list[Any], where: Where, *, behind: Where | None
     ) -> tuple[list[int] | None, list[Stmt]]:  # fmt: skip
-        """One case: a `break` at its end is its end; without one it falls through to the case `behind`."""
+        """One case.  A `break` at its end ends it; without one it falls through to the case at `behind`."""
         b = self.b
         ended = False
         with b.aside() as body:
@@ -366,7 +366,7 @@ class CStatementReader:
     def falls(self, end: Where, behind: Where) -> bool:
         """Whether a comment between the end of a case and the next one says that it falls through.
 
-        CHOICE: unknown text, a header's or a macro's, is taken to say so.
+        CHOICE: text that is not known (of a header or a macro) counts as such a comment.
         """
         module = self.b.module
         if end.file != module.file or behind.file != module.file or end.macro or behind.macro:
@@ -374,7 +374,7 @@ class CStatementReader:
         return _FALLS.search("\n".join(module.text.splitlines()[end.line - 1 : behind.line])) is not None
 
     def block_case(self, node: c_ast.Compound) -> bool:
-        """`case 1: { ... break; }`: whether the block ends with a `break`."""
+        """Read the block of `case 1: { ... break; }`.  Returns whether it ends with a `break`."""
         items = list(node.block_items or ())
         ended = bool(items) and isinstance(items[-1], c_ast.Break)
         with self.b.block(node.coord) as statements:
@@ -383,7 +383,7 @@ class CStatementReader:
         return ended
 
     def named(self, items: list[Any]) -> set[str]:
-        """The names that the cases are, if all of them are names and there is no default."""
+        """The names in the cases, if all cases are names and there is no default; else empty."""
         names = {item.expr.name for item in items if isinstance(item, c_ast.Case) and isinstance(item.expr, c_ast.ID)}
         if len(names) != sum(isinstance(item, c_ast.Case) for item in items):
             return set()
@@ -410,7 +410,7 @@ class CStatementReader:
 
 
 def initialise_local(b: Builder, reader: CExpressionReader, variable: Variable, init: c_ast.Node, where: Where) -> None:
-    """A local with a value."""
+    """Declare a local with an initial value."""
     ctype = variable.ctype
     if isinstance(ctype, StructType) and not isinstance(init, c_ast.InitList):
         value = reader.value(init)
@@ -430,7 +430,7 @@ def initialise_local(b: Builder, reader: CExpressionReader, variable: Variable, 
 
 
 def _mentions(node: c_ast.Node, name: str) -> bool:
-    """Whether an expression uses a name: a limit that its own loop counts is none."""
+    """Whether an expression uses a name.  (A limit that uses the counter of its loop is not a limit.)"""
     waiting = [node]
     while waiting:
         inner = waiting.pop()
@@ -441,7 +441,7 @@ def _mentions(node: c_ast.Node, name: str) -> bool:
 
 
 def _declares(node: c_ast.Node) -> bool:
-    """Whether an expression makes an object: it must be read once only."""
+    """Whether an expression creates an object, so that it must be read only once."""
     waiting = [node]
     while waiting:
         inner = waiting.pop()
@@ -452,7 +452,7 @@ def _declares(node: c_ast.Node) -> bool:
 
 
 def _stands(text: str, node: c_ast.Node | None) -> bool:
-    """Whether an expression that is written so stands in a statement."""
+    """Whether a statement contains an expression with this text."""
     waiting = [node]
     while waiting:
         inner = waiting.pop()

@@ -1,7 +1,7 @@
-"""C source as tokens that know their place: the real line and column of the file, and both ends of a macro.
+"""C source as tokens with their places: the real line and column in the file, and both places of a macro text.
 
-Source is C99 (ISO/IEC 9899:1999, 6.4) without trigraphs.  A backslash before a line's end joins two lines; a token's
-place stays that of the file as it is on disk.  A tab counts as one column.
+Source is C99 (ISO/IEC 9899:1999, 6.4) without trigraphs.  A backslash at the end of a line joins two lines, but the
+places of tokens are those of the file on disk.  A tab counts as one column.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from typing import Final
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Where
 
-#: What a token is.  OTHER is a character that no token of C starts with, BAD a quote that is not closed in its line,
-#: PLACE the empty operand of `##`, END the end of what is read.
+#: The kinds of tokens.  OTHER is a character with which no C token starts, BAD a quote that is not closed in its line,
+#: PLACE the empty operand of `##`, END the end of the input.
 NAME: Final = "name"
 NUMBER: Final = "number"
 STRING: Final = "string"
@@ -37,7 +37,7 @@ _CHAR = r"L?'(?:[^'\\\n]|\\.)++'"
 _NUMBER = r"\.?[0-9](?:[eEpP][+-]|[0-9A-Za-z_.$])*+"
 _NAME = r"[A-Za-z_$][0-9A-Za-z_$]*+"
 
-#: One alternative a kind; the order decides (a number may start with a point, a string with a letter).
+#: One alternative per kind.  Their order matters (a number may start with a point, a string with a letter).
 _TOKEN: Final = re.compile(
     r"((?:[ \t\f\v\r]++|//[^\n]*+|/\*(?s:.*?)\*/)++)"  # 1: blank
     r"|(\n)"  # 2: end of line
@@ -55,7 +55,7 @@ _ONE_KINDS: Final = ("", STRING, CHAR, NAME, NUMBER, PUNCT)
 
 
 def error_at(where: Where, message: str) -> SourceError:
-    """The error at `where`; one within a macro names both ends."""
+    """The error at `where`; within a macro, it names both places."""
     if where.macro is not None:
         message += f" (out of the macro text at {where.macro})"
     return SourceError(where.file, where.line, message, where.column)
@@ -63,27 +63,27 @@ def error_at(where: Where, message: str) -> SourceError:
 
 @dataclass(frozen=True, slots=True)
 class SourceRemark:
-    """Something in the source that is worth a word and no error."""
+    """Something in the source that deserves a remark, but is not an error."""
 
     where: Where
     message: str
 
 
 def kind_of(text: str) -> str | None:
-    """The kind of the one token that `text` is; None where it is none, or several."""
+    """The kind of `text` if it is exactly one token, else None."""
     match = _ONE.fullmatch(text)
     return _ONE_KINDS[match.lastindex or 0] if match else None
 
 
 class SourceText:
-    """The text of one file with joined lines, and the way from an offset in it to the line and column on disk."""
+    """The text of one file with joined lines, and the map from an offset in it to line and column on disk."""
 
     __slots__ = ("_joints", "_kept", "_removed", "_starts", "file", "folder", "text")
 
     def __init__(self, file: str, text: str, folder: str | None = None, *, keep: bool = False) -> None:
-        """`file`: the name that places show.  `folder`: where its own `#include "..."` are sought first.
+        """`file`: the name in places.  `folder`: searched first for its own `#include "..."`.
 
-        `keep`: its tokens are kept, because many files include it.
+        `keep`: store its tokens, because many files include it.
         """
         self._kept: list[list[Token]] | None = [] if keep else None
         if "\r" in text and "\n" not in text:
@@ -113,7 +113,7 @@ class SourceText:
         return Where(self.file, line, at - self._starts[line - 1] + 1, macro)
 
     def lines(self, budget: TokenBudget) -> Iterator[list[Token]]:
-        """The tokens of each line that has any.  Raises SourceError for a comment without end, or beyond `budget`."""
+        """The tokens of each line that has any.  Raises SourceError for an unclosed comment, and beyond `budget`."""
         if self._kept is None:
             yield from self._scanned(budget)
             return
@@ -153,8 +153,8 @@ class SourceText:
 class Token:
     """One token: its kind, its text, and where it stands.
 
-    A token that a macro wrote keeps its place in the macro's definition (`source`, `at`), and in `use` the token in the
-    file that named the macro.  An argument's token is written in the file itself: it has no `use`.
+    A token from a macro has its place in the macro's definition (`source`, `at`); `use` is the token in the file that
+    named the macro.  A token of an argument is in the file itself: it has no `use`.
     """
 
     __slots__ = ("at", "kind", "painted", "source", "space", "text", "use")
@@ -163,7 +163,7 @@ class Token:
         self, kind: str, text: str, source: SourceText, at: int, space: bool = False, use: Token | None = None,
         painted: bool = False,
     ) -> None:  # fmt: skip
-        """`space`: a blank stands before it.  `painted`: a macro's own name in its expansion, never expanded again."""
+        """`space`: a blank is before it.  `painted`: a macro's name in its own expansion, never expanded again."""
         self.kind = kind
         self.text = text
         self.source = source
@@ -174,7 +174,7 @@ class Token:
 
     @property
     def where(self) -> Where:
-        """Where it is used; `macro` is where a macro's definition has it."""
+        """Its place in the file; for text from a macro, `macro` is the place in the macro's definition."""
         if self.use is None:
             return self.source.where(self.at)
         return self.use.source.where(self.use.at, self.source.where(self.at))
@@ -188,7 +188,7 @@ class Token:
 
 
 class TokenBudget:
-    """How many tokens one translation unit may cost: read, written by macros, and looked at again."""
+    """The limit for tokens of one translation unit: read, written by macros, and read again."""
 
     __slots__ = ("left", "limit")
 
@@ -197,12 +197,12 @@ class TokenBudget:
         self.left = limit
 
     def spend(self, tokens: int, at: Token) -> None:
-        """Take `tokens` away.  Raises SourceError at `at` where none is left."""
+        """Use up `tokens`.  Raises SourceError at `at` if none are left."""
         self.left -= tokens
         if self.left < 0:
             raise at.error(f"more than {self.limit:,} tokens with all headers and macros: the file is not read further")
 
 
 def spelled(tokens: list[Token]) -> str:
-    """The tokens as text, with one blank where the source has any."""
+    """The tokens as text; any white space becomes one blank."""
     return "".join(" " * token.space + token.text for token in tokens).strip()

@@ -36,7 +36,7 @@ from emulator.c28x.tree import Expr, Where
 
 
 def specifier(node: c_ast.Node) -> Where:
-    """Where the words of a type begin, behind which its declarator stands."""
+    """The place where the words of a type begin, before its declarator."""
     while isinstance(node, c_ast.Typename | c_ast.TypeDecl | c_ast.PtrDecl | c_ast.ArrayDecl | c_ast.FuncDecl):
         node = node.type
     where: Where = node.coord
@@ -48,13 +48,13 @@ def pointer(prototype: FunctionType) -> FunctionType:
     return FunctionType("funcptr", prototype.result, prototype.parameters, prototype.variadic)
 
 
-#: How many declarators may stand within each other; C asks for 12 (ISO C99 5.2.4.1).
+#: How deep declarators may nest; C requires 12 (ISO C99 5.2.4.1).
 _DECLARATORS: Final = 40
 
 
 @dataclass
 class Abi:
-    """What differs between the two interfaces of the chip's compiler."""
+    """The difference between the two ABIs of the chip's compiler."""
 
     eabi: bool = False
 
@@ -65,10 +65,10 @@ class Abi:
 
 
 class CTypeReader:
-    """Reads types in the scopes of one file; tags have a name space of their own.
+    """Reads types in the scopes of one file; tags have their own name space.
 
-    `evaluate` gives the value of a constant expression: lengths, widths, enumerators.  `around` reads those of the file
-    around a function.
+    `evaluate` reads a constant expression: a length, a width, an enumerator.  For a function, `around` is the reader of
+    its file.
     """
 
     def __init__(
@@ -79,17 +79,17 @@ class CTypeReader:
         self.tags = tags
         self.abi = abi
         self.evaluate = evaluate
-        #: What each definition in braces has made: `struct s { ... } a, *b;` comes here for `a` and for `b`.
+        #: Definition in braces -> its type: `struct s { ... } a, *b;` is read twice, for `a` and for `b`.
         self.defined: dict[c_ast.Node, CType | EnumType] = {}
-        #: Every enumeration that has been read, in the functions of the file as well.
+        #: Every enumeration that has been read, including those in functions of the file.
         self.enumerations: list[EnumType] = [] if around is None else around.enumerations
-        #: Names of types that are `const` or `volatile` -> these words.
+        #: Name of a type -> its words `const` and `volatile`.
         self.qualifiers: dict[str, set[str]] = {} if around is None else dict(around.qualifiers)
 
     # Specifiers
 
     def ctype(self, node: c_ast.Node) -> CType:
-        """The type that a declarator, a type name or a specifier means; a function itself is a `Prototype`."""
+        """The type of a declarator, a type name or a specifier; the type of a function itself is a `Prototype`."""
         match node:
             case c_ast.Typename() | c_ast.TypeDecl() | c_ast.Decl() | c_ast.Typedef():
                 return self.ctype(node.type)
@@ -197,7 +197,7 @@ class CTypeReader:
     # Functions
 
     def prototype(self, node: c_ast.FuncDecl) -> Prototype:
-        """A function's type: parameters that are arrays or functions are pointers to them."""
+        """The type of a function.  Parameters declared as arrays or functions are pointers."""
         result = self.ctype(node.type)
         if isinstance(result, ArrayType | Prototype):
             raise SourceError.at(node.coord, "a function returns no array or function: return a pointer")
@@ -218,7 +218,7 @@ class CTypeReader:
             parameters.append(ctype)
             names.append(parameter.name or "")
         if node.args is None:
-            variadic = True  # `f()`: C does not say which parameters
+            variadic = True  # `f()`: C does not specify its parameters
         return Prototype("function", result, tuple(parameters), variadic, tuple(names))
 
     @staticmethod
@@ -254,7 +254,7 @@ class CTypeReader:
             return known
         if known is None or known.members:
             if known is not None and self._is_of_register(known, node.name):
-                pass  # the tag was used before this definition, and is not the register's
+                pass  # the tag was used before this definition, and does not mean the register
             elif known is not None and self.b.depth == 0:
                 raise SourceError.at(node.coord, f"{word} {node.name} is defined twice")
             else:
@@ -270,7 +270,7 @@ class CTypeReader:
 
     @staticmethod
     def _is_of_register(known: StructType, tag: str) -> bool:
-        """Whether a structure has its members because its tag is that of a register."""
+        """Whether a structure got its members because its tag is that of a register."""
         ours = headers.register_type(tag)
         return ours is not None and ours.members == known.members
 
@@ -304,7 +304,7 @@ class CTypeReader:
         return members
 
     def qualified(self, node: c_ast.Node, word: str) -> bool:
-        """Whether what is declared is itself `const` or `volatile` (`word`), an array by its elements."""
+        """Whether the declared object itself is `const` or `volatile` (`word`); for an array, its elements."""
         inner = getattr(node, "type", None)
         while isinstance(inner, c_ast.ArrayDecl):
             inner = inner.type
@@ -328,9 +328,9 @@ class CTypeReader:
         return width
 
     def enumeration(self, node: c_ast.Enum, *, ahead: bool = False) -> EnumType:
-        """An enumeration: its constants are ints under their own names.
+        """An enumeration; its constants are ints with their own names.
 
-        `ahead`: it may be defined later.  C has no such declaration, but the compiler takes one.
+        `ahead`: it may be defined later.  C has no such declaration, but the compiler accepts it.
         """
         made = self.defined.get(node)
         if isinstance(made, EnumType):
@@ -356,19 +356,19 @@ class CTypeReader:
             constants[enumerator.name] = value
             following += 1
         made = EnumType(node.name or "", constants)
-        if isinstance(known, EnumType) and not known.constants:  # a typedef before has it already
+        if isinstance(known, EnumType) and not known.constants:  # an earlier typedef already has it
             known.constants.update(constants)
             made = known
         self.defined[node] = made
         self.enumerations.append(made)
         if node.name:
             self.tags[node.name] = made
-        elif not self.b.depth:  # without a name it is still found by its constants, under one that C cannot write
+        elif not self.b.depth:  # unnamed: stored under a name that C cannot have
             self.b.module.symbols[f"enum {{{', '.join(constants)}}}"] = made
         return made
 
     def declare(self, name: str, symbol: CType | Enumerator | EnumType, where: Where) -> None:
-        """A type or constant in the scope at hand.  Raises SourceError for a name that is declared there."""
+        """Declare a type or constant in the present scope.  Raises SourceError if the scope has the name already."""
         scope = self.b.scope if self.b.depth or self.b.function.name != "file scope" else self.b.module.symbols
         known = scope.get(name) if scope is self.b.module.symbols or name in self.b.declared else None
         if known is not None and known != symbol:
@@ -377,7 +377,7 @@ class CTypeReader:
         scope[name] = symbol
 
     def typedef(self, node: c_ast.Typedef) -> None:
-        """A name for a type."""
+        """Declare a name for a type."""
         self.qualifiers[node.name] = {word for word in ("const", "volatile") if self.qualified(node, word)}
         if isinstance(node.type, c_ast.TypeDecl) and isinstance(node.type.type, c_ast.Enum):
             made = self.enumeration(node.type.type, ahead=True)
@@ -386,7 +386,7 @@ class CTypeReader:
         self.declare(node.name, self.type_name(self.ctype(node.type), node.name), node.coord)
 
     def type_name(self, ctype: CType, name: str) -> CType:
-        """A structure without a name of its own takes that of its typedef."""
+        """The type for a typedef: a structure without a name takes that of the typedef."""
         if isinstance(ctype, StructType) and (
             "(line" in ctype.name or ctype.name in (f"struct {name}", f"union {name}")
         ):

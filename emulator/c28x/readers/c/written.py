@@ -10,7 +10,7 @@ _LONGEST: Final = 60
 
 
 def written(node: c_ast.Node, depth: int = 0) -> str:
-    """The text of an expression; what is deep or long ends in dots."""
+    """The text of an expression; deep or long parts become dots."""
     text = _written(node, depth)
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
 

@@ -1,4 +1,4 @@
-"""The file scope of a module in C-shaped Python: imports, constants, types, objects, signatures of functions.
+"""The file scope of a module in C-shaped Python: imports, constants, types, objects, function signatures.
 
 Bodies and initialisers are read later, when every module of the image has been declared.
 """
@@ -35,22 +35,22 @@ from emulator.c28x.readers.python.types import PythonTypeReader, shown
 from emulator.c28x.symbols import CoreRegister, Define, EnumType, Module, NoModule, RegisterBlock, Unmodelled
 from emulator.c28x.tree import Declaration, Expr, Function, Variable, Where
 
-#: Modules whose names mean something to the translator itself.
+#: Modules whose names the translator itself knows.
 WORDS: Final = ("__future__", "emulator.c28x.language", "typing", "collections.abc")
-#: The package of register blocks, and the table of those that the chip has: they alone are imported, because they are
-#: this project's own.
+#: The package of register blocks, and the module with the table of the chip's blocks.  Only these are imported, because
+#: they belong to this project.
 REGISTERS: Final = "emulator.registers."
 BLOCKS: Final = "emulator.blocks"
 #: `# us.c: Read_Distance` above a function names the C file that it mirrors.
 ANCHOR: Final = re.compile(r"#\s*([A-Za-z_][\w.-]*\.[ch]):\s*(\w+)")
 
 
-#: What a class of members derives from.
+#: The base classes of structures and unions.
 _KINDS: Final[dict[str, type[StructType]]] = {"struct": StructType, "union": UnionType}
 
 
 def _base(node: ast.ClassDef) -> str:
-    """What a class derives from; empty if that is not one plain name."""
+    """The name of the base class; empty if there is not exactly one plain name."""
     match node:
         case ast.ClassDef(bases=[ast.Name(id=base)], keywords=[]):
             return base
@@ -63,7 +63,7 @@ def block_class(kind: Any) -> RegisterBlock:
 
 
 def block_classes(kind: Any) -> Iterator[Any]:
-    """A class of register blocks, and those of the structures within it."""
+    """A class of register blocks, and the classes of the structures within it."""
     yield kind
     for part in kind.parts.values():
         yield from block_classes(part.kind)
@@ -72,8 +72,8 @@ def block_classes(kind: Any) -> Iterator[Any]:
 class PythonDeclarationReader(PythonTypeReader):
     """Reads the declarations of one module.
 
-    `find` gives the module that an import names, for the file that imports it.  An `overlay` may remove what its base
-    declares.
+    `find` returns the module that an import names, for the file that imports it.  An `overlay` may remove declarations
+    of its base.
     """
 
     def __init__(
@@ -86,7 +86,7 @@ class PythonDeclarationReader(PythonTypeReader):
 
     def read(self) -> None:
         """Fill the module's symbols, objects and functions.  Raises SourceError."""
-        for node in self.tree.body:  # pointers to a structure may stand before it, and in it
+        for node in self.tree.body:  # pointers to a structure may be before it and within it
             if isinstance(node, ast.ClassDef) and (made := _KINDS.get(_base(node))) is not None:
                 self.module.symbols[node.name] = made(node.name)
         for node in self.tree.body:
@@ -119,14 +119,14 @@ class PythonDeclarationReader(PythonTypeReader):
                     for target in targets:
                         self.remove(target)
                 case ast.Assign() | ast.Pass():
-                    pass  # for instance __all__ of a header
+                    pass  # such as `__all__` of a header
                 case _:
                     kind = type(node).__name__
                     wanted = hints.at_file_scope(node)
                     raise self.error(node, f"{kind} at file scope is not in the language{wanted}")
 
     def remove(self, target: ast.expr) -> None:
-        """`del name` of an overlay: the faithful module declares it, the corrected one does not."""
+        """`del name` in an overlay: the faithful module declares the name, the corrected one does not."""
         symbol = self.module.symbols.pop(target.id, None) if isinstance(target, ast.Name) else None
         if isinstance(symbol, Variable) and symbol in self.module.variables:
             self.module.variables.remove(symbol)
@@ -136,13 +136,13 @@ class PythonDeclarationReader(PythonTypeReader):
             raise self.error(target, f"there is no object or function {shown(target)} to remove")
 
     def read_imports(self, body: list[ast.stmt]) -> None:
-        """Imports that stand under TYPE_CHECKING: a header's register blocks."""
+        """Imports under TYPE_CHECKING: the register blocks of a header."""
         for node in body:
             if isinstance(node, ast.ImportFrom):
                 self.read_import(node)
 
     def read_import(self, node: ast.ImportFrom) -> None:
-        """Names of another module, a header, or a register block."""
+        """Import names of another module, a header, or a register block."""
         source = node.module or ""
         if not source:
             raise self.error(node, "an import of dots alone: write the module's name")
@@ -165,7 +165,7 @@ class PythonDeclarationReader(PythonTypeReader):
             other = self.find(source, self.module.file)
         except NoModule as error:
             raise self.error(node, f"{error}{hints.library(source)}") from None
-        except OSError as error:  # a name longer than a file's can be
+        except OSError as error:  # the name is too long for a file
             raise self.error(node, f"no module {source}: {error.strerror}") from None
         for alias in node.names:
             if alias.name == "*":
@@ -177,7 +177,7 @@ class PythonDeclarationReader(PythonTypeReader):
             self.module.symbols[alias.asname or alias.name] = symbol
 
     def declare_blocks(self) -> None:
-        """The register blocks of the chip, as declared in the module that imports their table; and their types."""
+        """Declare the register blocks of the chip, and their types, in the module that imports their table."""
         table = importlib.import_module(BLOCKS)
         kinds = {kind.__name__: kind for block in table.BLOCKS.values() for kind in block_classes(block.kind)}
         self.module.symbols |= {name: block_class(kind) for name, kind in kinds.items()}
@@ -187,7 +187,7 @@ class PythonDeclarationReader(PythonTypeReader):
         self.module.own += [*table.BLOCKS, *table.UNMODELLED]
 
     def read_class(self, node: ast.ClassDef) -> None:
-        """An enumeration, a structure or a union."""
+        """Read an enumeration, a structure or a union."""
         base = _base(node)
         plain = f"class {node.name}(struct):"
         if node.decorator_list:
@@ -210,7 +210,7 @@ class PythonDeclarationReader(PythonTypeReader):
             raise self.error(node, f"class {node.name} must derive from enum or struct, or from union: write {plain}")
 
     def read_structure(self, node: ast.ClassDef, word: str) -> None:
-        """The members of a structure or union."""
+        """Read the members of a structure or union."""
         members: dict[str, tuple[CType, int | None]] = {}
         volatile: set[str] = set()
         for item in node.body:
@@ -242,7 +242,7 @@ class PythonDeclarationReader(PythonTypeReader):
             raise self.error(node, message)
 
     def read_object(self, node: ast.AnnAssign) -> None:
-        """A file-scope object, or a register block that a header names."""
+        """Read a file-scope object, or a register block that a header names."""
         assert isinstance(node.target, ast.Name)
         name = node.target.id
         annotation = node.annotation
@@ -277,13 +277,13 @@ class PythonDeclarationReader(PythonTypeReader):
         self.module.variables.append(variable)
 
     def initial(self, variable: Variable, value: ast.expr) -> list[Expr]:
-        """What a file-scope object starts from."""
+        """The initial values of a file-scope object."""
         return PythonExpressionReader(build.file_scope(self.module), PythonTypeReader(self.module)).initial(
             variable.ctype, value
         )
 
     def read_constant(self, name: str, value: ast.expr) -> None:
-        """A `#define`, a type name, or a handle type."""
+        """Read a `#define`, a type name, or a handle type."""
         match value:
             case ast.Call(func=ast.Name(id="handle")):
                 self.module.symbols[name] = HandleType(name)
@@ -301,11 +301,11 @@ class PythonDeclarationReader(PythonTypeReader):
                 )
 
     def replacement(self, value: ast.expr, b: Builder, use: Where) -> Expr:
-        """What a `#define` stands for where it is used."""
+        """The expression that replaces a `#define` at its place of use."""
         return PythonExpressionReader(b, PythonTypeReader(self.module, use)).value(value)
 
     def read_function(self, node: ast.FunctionDef) -> None:
-        """The signature of a function; its body is read when the image is translated."""
+        """Read the signature of a function.  Its body is read when the image is translated."""
         words = {shown(decorator): decorator for decorator in node.decorator_list}
         for name, decorator in words.items():
             if name not in ("extern", "interrupt"):
@@ -336,7 +336,7 @@ class PythonDeclarationReader(PythonTypeReader):
             self.module.bodies[function] = lambda: PythonStatementReader(self.module, function).read(node)
 
     def parameter(self, node: ast.FunctionDef, argument: ast.arg, annotation: ast.expr) -> Variable:
-        """A parameter: an array is a pointer to its first element, a structure is a copy."""
+        """A parameter.  An array is a pointer to its first element; a structure is a copy."""
         declared = self.declared(annotation)
         if "static" in declared.words:
             raise self.error(argument, f"parameter {argument.arg} of {node.name} is static: only a local can be")
@@ -354,7 +354,7 @@ class PythonDeclarationReader(PythonTypeReader):
                 parameter.constants = tuple(symbol.constants.values()) if isinstance(symbol, EnumType) else ()
                 declared.mark(parameter)
             case ast.Subscript(value=ast.Name(id="array")):
-                pass  # its elements are not the parameter
+                pass  # the words are about its elements, not the parameter
             case _:
                 declared.mark(parameter)
         return parameter

@@ -1,4 +1,4 @@
-"""Expressions of C-shaped Python: each construct is given to the builder, anything else is refused."""
+"""Expressions of C-shaped Python: the reader passes each construct to the builder; all others are errors."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _OPS: Final[dict[type, str]] = {
 _COMPARE: Final[dict[type, str]] = {
     ast.Eq: "==", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=",
 }  # fmt: skip
-#: How the words of the language that look like functions are used.
+#: The syntax of language words that look like functions.
 _USES: Final = {
     "addressof": "addressof(object)", "cast": "cast(ptr[TYPE], value)", "sizeof": "sizeof(TYPE) or sizeof(object)",
     "do": "while do(test):", "fallthrough": "fallthrough() as the last statement of a case that is not the last",
@@ -49,7 +49,7 @@ class PythonExpressionReader:
         self.types = types
 
     def error(self, node: ast.AST, message: str) -> SourceError:
-        """A construct outside the language, with its place."""
+        """The error about a construct outside the language, with its place."""
         return self.types.error(node, message)
 
     def where(self, node: ast.AST) -> Where:
@@ -59,13 +59,13 @@ class PythonExpressionReader:
     # Values
 
     def value(self, node: ast.expr) -> Expr:
-        """The value of an expression, arrays decayed."""
+        """The value of an expression; arrays decay to pointers."""
         where = self.where(node)
         with self.b.nested(where):
             return build.shallow(self.b, self.whole_value(node, where))
 
     def whole_value(self, node: ast.expr, where: Where) -> Expr:
-        """The value, however deep its tree is."""
+        """The value of an expression, before its depth is limited."""
         b = self.b
         match node:
             case ast.Constant():
@@ -103,14 +103,14 @@ class PythonExpressionReader:
                 return self.call(node)
             case ast.NamedExpr(target=target, value=source):
                 place, value = self.assignment(target, source)
-                if self.types.before(node) == "(":  # where that is an operand, its operation begins there
+                if self.types.before(node) == "(":  # where it is an operand, its operation begins at the parenthesis
                     where = where._replace(column=where.column - 1)
                 return build.assigned(b, place, value, where)
         kind = type(node).__name__
         raise self.error(node, f"'{shown(node)}' ({kind}) is not in the language{hints.construct(node)}")
 
     def check_step(self, node: ast.UnaryOp) -> None:
-        """Refuse `++x` and `--x`, which are two signs for Python and a step for C."""
+        """Reject `++x` and `--x`: in Python they are two signs, in C a step."""
         match node:
             case ast.UnaryOp(
                 op=ast.UAdd() | ast.USub() as op,
@@ -126,7 +126,7 @@ class PythonExpressionReader:
         return build.arguments(self.b, [partial(self.value, node) for node in nodes])
 
     def chain(self, node: ast.BinOp) -> Expr:
-        """Operators one after the other, as a sum of many terms: `((a + b) + c) + d`."""
+        """A chain of operators, such as a sum of many terms: `((a + b) + c) + d`."""
         steps = [node]
         while isinstance(steps[-1].left, ast.BinOp):
             steps.append(steps[-1].left)
@@ -136,11 +136,11 @@ class PythonExpressionReader:
         return build.row(self.b, operands, operators)
 
     def converted(self, node: ast.expr, ctype: CType, *, explicit: bool = False) -> Expr:
-        """The value of an expression where a `ctype` is wanted: 'a' is a character, or a string for a pointer."""
+        """The value of an expression, converted to `ctype`: 'a' is a character, or a string if a pointer is needed."""
         return build.convert(self.b, self.wanted(node, ctype), ctype, explicit=explicit)
 
     def wanted(self, node: ast.expr, ctype: CType) -> Expr:
-        """The value of an expression, a string where text is wanted."""
+        """The value of an expression for a `ctype`; a text is a string if a pointer is needed."""
         match node:
             case ast.Constant(value=str(text)) if isinstance(ctype, PointerType | ArrayType):
                 return build.string(text, self.where(node))
@@ -184,7 +184,7 @@ class PythonExpressionReader:
         return build.integer(value, where, decimal=not self.types.text(node).startswith(("0x", "0b", "0o")))
 
     def name(self, node: ast.expr, name: str) -> Expr:
-        """What a name stands for."""
+        """The value of a name."""
         where = self.where(node)
         match self.meaning(name):
             case Variable() as variable:
@@ -210,12 +210,12 @@ class PythonExpressionReader:
         raise self.b.undeclared(name, where, f"{name} is not declared{wanted}")
 
     def hint(self, name: str) -> str:
-        """What to write instead of a name that is not declared; perhaps it looks like one that is."""
+        """What to write instead of an undeclared name; it may be similar to a declared one."""
         known = hint(name, self.types.module.text)
         return known or nearest(name, [*self.types.module.symbols, *self.b.scope])
 
     def meaning(self, name: str) -> Symbol | None:
-        """What a name means where the expression is used; within a `#define` also where that stands."""
+        """The meaning of a name where the expression is used; for a `#define`, also where it is defined."""
         symbol = self.b.look_up(name)
         return symbol if symbol is not None else self.types.module.symbols.get(name)
 
@@ -233,17 +233,17 @@ class PythonExpressionReader:
     # Places
 
     def loaded(self, node: ast.expr) -> Expr:
-        """The value of what an expression designates."""
+        """The value of the place that an expression designates."""
         return build.value_of(self.b, self.place(node))
 
     def place(self, node: ast.expr) -> Place:
-        """What an expression designates."""
+        """The place that an expression designates."""
         where = self.where(node)
         with self.b.nested(where):
             return build.shallow_place(self.b, self.whole_place(node, where))
 
     def whole_place(self, node: ast.expr, where: Where) -> Place:
-        """What an expression designates, however deep its pointer is."""
+        """The place that an expression designates, before the depth of its pointer is limited."""
         match node:
             case ast.Name(id=name):
                 match self.meaning(name):
@@ -268,7 +268,7 @@ class PythonExpressionReader:
         raise self.error(node, f"'{shown(node)}' does not designate an object{hints.construct(node)}")
 
     def object(self, node: ast.expr) -> LValue | RegisterRef | RegisterAt:
-        """An object to be changed.  Raises SourceError for what is none."""
+        """The object that a statement changes.  Raises SourceError if the expression is not an object."""
         place = build.complete(self.place(node))
         if isinstance(place, LValue) and isinstance(place.root, Variable) and place.root.constant:
             raise self.error(node, f"{place.root.declaration.name} is const: nothing is assigned to it")
@@ -299,13 +299,13 @@ class PythonExpressionReader:
         return designated, value
 
     def base(self, node: ast.expr) -> Place | Expr:
-        """What stands before `.member` or `[index]`: an aggregate, a pointer, a register block."""
+        """The part before `.member` or `[index]`: an aggregate, a pointer, a register block."""
         if isinstance(node, ast.Name | ast.Attribute | ast.Subscript) and self.enumerated(node) is None:
             return self.place(node)
         if isinstance(node, ast.Call) and self.constructed(node) is not None:
             return self.place(node)
         value = self.value(node)
-        if isinstance(value.ctype, StructType):  # what a function returned
+        if isinstance(value.ctype, StructType):  # the result of a function
             return build.held(self.b, value, self.where(node))
         if not isinstance(value.ctype, PointerType):
             raise self.error(node, f"'{shown(node)}' is a {value.ctype}, not a pointer")
@@ -343,7 +343,7 @@ class PythonExpressionReader:
         return build.call_value(self.b, target, arguments, where, shown(node.func))
 
     def called(self, node: ast.expr) -> Expr:
-        """The pointer that a call goes through.  Raises SourceError, which says so where it looks like a method."""
+        """The function pointer of a call.  Raises SourceError; it says so if the call looks like a method."""
         try:
             return self.value(node)
         except SourceError as error:
@@ -354,14 +354,14 @@ class PythonExpressionReader:
             raise self.error(node, f"{message}. C has no methods{wanted}") from None
 
     def constructed(self, node: ast.Call) -> StructType | None:
-        """The structure that `point(1, 2)` or `point(x=1)` makes; None for any other call."""
+        """The structure type of `point(1, 2)` or `point(x=1)`; None for any other call."""
         if not isinstance(node.func, ast.Name):
             return None
         symbol = self.meaning(node.func.id)
         return symbol if isinstance(symbol, StructType) else None
 
     def arguments(self, nodes: Sequence[ast.expr], wanted: Sequence[CType]) -> list[Expr]:
-        """The arguments of a call, as its parameters want them."""
+        """The arguments of a call, for the types of its parameters."""
         given = zip(nodes, wanted, strict=False)
         return build.arguments(self.b, [partial(self.wanted, node, ctype) for node, ctype in given])
 
@@ -380,7 +380,7 @@ class PythonExpressionReader:
         raise self.error(node, f"{name} used wrongly: write {_USES[name]}")
 
     def measured(self, node: ast.expr) -> CType:
-        """The type of the object whose size is asked; its effects do not happen."""
+        """The type of the operand of `sizeof`; the operand is not evaluated."""
         _, place = self.b.apart(lambda: build.complete(self.place(node)))
         if isinstance(place, LValue) and place.bits is not None:
             raise self.error(node, "a bit-field has no size")
@@ -389,7 +389,7 @@ class PythonExpressionReader:
     # Initialisers
 
     def initialiser(self, node: ast.expr) -> Item | Braces:
-        """The right side of a declaration: a value, or a list of them, for elements or members in order or by name."""
+        """The right side of a declaration: a value, or a list for elements or members, in order or by name."""
         where = self.where(node)
         match node:
             case ast.Tuple(elts=parts) | ast.List(elts=parts):
@@ -441,5 +441,5 @@ class PythonExpressionReader:
         return ctype
 
     def constant_value(self, node: ast.expr) -> int | float | None:
-        """The number that an expression is, if it is one at translation time."""
+        """The value of an expression that is constant at translation time, else None."""
         return build.constant_value(self.value(node))

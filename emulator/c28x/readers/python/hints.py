@@ -1,4 +1,4 @@
-"""What to write instead of what C-shaped Python does not have: words of C and of Python, constructs, C's spelling."""
+"""Hints what to write instead of constructs that C-shaped Python does not have: words, syntax of C and Python."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _LIBRARY: Final = "emulator.c28x.rts"
 _STRUCTURE: Final = "a structure, class NAME(struct), or an array of them"
 _CONSOLE: Final = f"sprintf of {_LIBRARY} into an array of char: the chip has no console"
 _RANGE: Final = "for i in range(first, limit, step)"
-#: Names that mean something in C or in Python, and what to write here.
+#: Names of C or Python -> what to write here.
 _NAMES: Final = {
     # C's types
     "int": "int16", "float": "float32", "bool": "uint16, with 1 and 0", "_Bool": "uint16, with 1 and 0",
@@ -50,19 +50,19 @@ _NAMES: Final = {
     "property": "a function", "super": "a function by its name", "exec": "a function", "eval": "a function",
     "self": "a pointer to the structure, as a parameter",
 }  # fmt: skip
-#: Modules of Python's library that nothing of the firmware is called by, and what to write here.
+#: Modules of Python's library whose names no firmware uses -> what to write here.
 _MODULES: Final = {
     "math": f"from {_LIBRARY} import sin, cos, sqrt, fabs", "random": "a generator of your own: x = x * 25173 + 13849",
     "dataclasses": "class NAME(struct) with struct of emulator.c28x.language",
     "ctypes": "from emulator.c28x.language import *", "threading": "a task of emulator.sysbios.headers",
     "asyncio": "a task of emulator.sysbios.headers", "numpy": "array[TYPE, LENGTH] and loops",
 }  # fmt: skip
-#: Headers in C-shaped Python, and where what each declares stands.
+#: Header in C-shaped Python -> the files with its declarations.
 _HEADERS: Final = {
     _LIBRARY: ("c28x/rts.py",), "emulator.device_h": ("device_h.py", "blocks.py"),
     "emulator.sysbios.headers": ("sysbios/headers.py",),
 }  # fmt: skip
-#: Words of the language that stand for nothing alone, and how they are used.
+#: Words of the language that cannot be used alone -> their syntax.
 _WORDS: Final = {
     "ptr": "ptr[TYPE]", "array": "array[TYPE, LENGTH]", "const": "const[TYPE]", "volatile": "volatile[TYPE]",
     "static": "static[TYPE]", "struct": "class NAME(struct)", "union": "class NAME(union)", "enum": "class NAME(enum)",
@@ -72,7 +72,7 @@ _WORDS: Final = {
     "handle": 'NAME = handle("NAME")', "cregister": "NAME: cregister[uint16]",
 }  # fmt: skip
 
-#: Kinds of statements and expressions of Python, and what to write here.
+#: Kinds of Python statements and expressions -> what to write here.
 _CONSTRUCTS: Final = {
     "With": "the statements before and after it", "AsyncWith": "the statements before and after it",
     "Try": "an if: C has no exceptions, a function returns a status",
@@ -104,7 +104,7 @@ _TYPES: Final = (
     r"(?:(?:static|const|volatile|extern|unsigned|signed|struct|union|enum|register)\s+)*"
     r"(?:u?int(?:8|16|32|64)?(?:_t)?|[Uu]int(?:8|16|32|64)|u?char|float(?:32|64)?|double|long|short|void|unsigned|bool)"
 )
-#: C's own spelling in a line that Python does not read, in the order in which it is looked for.
+#: C syntax in a line that Python cannot parse, in the order of the search.
 _SPELLINGS: Final = (
     (r"^\s*(?:typedef\s+)?(?:struct|union|enum)\b", "class NAME(struct): with a line `member: type` for each member"),
     (r"^\s*(?:typedef\b|type\s+\w+\s*=)", "NAME = TYPE at file scope"),
@@ -135,7 +135,7 @@ _SPELLINGS: Final = (
     (r"(?:^|[=(,]|\breturn\b)\s*\*+\s*\w", "p[0] for *p"),
     (r"\bsizeof\s+\w", "sizeof(x)"),
 )  # fmt: skip
-#: What Python says of a text that its grammar takes, and what to write.
+#: Messages of Python about text that its grammar accepts -> what to write.
 _MESSAGES: Final = (
     ("'break' outside loop", "a case ends by itself: write the rest of it into an else, or a function with return"),
     ("'continue' not properly in loop", "continue stands in a while or for"),
@@ -147,7 +147,7 @@ _QUOTED: Final = re.compile(r"'(?:\\.|[^'\\])*'|\"(?:\\.|[^\"\\])*\"")
 
 
 def hint(name: str, text: str = "") -> str:
-    """What to write instead of a name that means nothing in the module `text`: empty, or `: write ...`."""
+    """What to write instead of an unknown name in the module `text`: empty, or `: write ...`."""
     if name in _NAMES:
         return f": write {_NAMES[name]}"
     if name in _MODULES:
@@ -164,7 +164,7 @@ def hint(name: str, text: str = "") -> str:
 
 @lru_cache(maxsize=8)
 def _declared(path: str) -> frozenset[str]:
-    """The names that a header in C-shaped Python declares, or the table of blocks."""
+    """The names that a file declares: a header in C-shaped Python, or the table of blocks."""
     text = (Path(__file__).parents[3] / path).read_text(encoding="utf-8")
     return frozenset(re.findall(r"^(?:def |class )?([A-Za-z]\w*)(?=\(|:(?! Final)| = )", text, re.MULTILINE))
 
@@ -203,7 +203,7 @@ def library(module: str) -> str:
 
 
 def spelling(line: str, message: str) -> str:
-    """What to write instead of C's own spelling in a line that Python refuses with `message`: empty, or `: ...`."""
+    """What to write instead of C syntax in a line that Python rejects with `message`: empty, or `: ...`."""
     for part, wanted in _MESSAGES:
         if part in message:
             return f": {wanted}"

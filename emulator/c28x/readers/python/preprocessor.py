@@ -1,6 +1,6 @@
-"""`FIXED("ID")`: one source for every combination of corrections, resolved before anything is translated.
+"""`FIXED("ID")`: one source for every combination of corrections, resolved before the translation.
 
-A corrected function stands apart from the faithful one and says where each correction applies, as C would with
+A corrected function is separate from the faithful one.  It marks where each correction applies, as C would with
 `#ifdef`:
 
     if FIXED("US-accumulator"):
@@ -10,8 +10,8 @@ A corrected function stands apart from the faithful one and says where each corr
 
     if (not FIXED("US-first") or i > 0) and v[i - 1] > v[i]:
 
-Conditions are `FIXED("ID")`, `not`, `and`, `or`; within a longer condition they vanish where they do not matter.  A
-branch that is not taken is gone: it declares nothing.
+Conditions are `FIXED("ID")`, `not`, `and`, `or`.  In a longer condition, decided parts are removed where they do not
+matter.  A branch that is not taken is removed, with its declarations.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def fixed_ids(node: ast.AST) -> set[str]:
 
 
 def preprocess(tree: ast.Module, fixes: Set[str]) -> ast.Module:
-    """`tree` with every condition on corrections decided.  Raises ValueError (message, node) outside the form."""
+    """`tree` with every condition on corrections decided.  Raises ValueError (message, node) for another form."""
     _CorrectionFolder(fixes).visit(tree)
     return ast.fix_missing_locations(tree)
 
@@ -80,7 +80,7 @@ class _CorrectionFolder(ast.NodeTransformer):
         return visited
 
     def visit_BoolOp(self, node: ast.BoolOp) -> ast.AST:
-        """`and` and `or` with decided parts: a neutral one goes, an absorbing one in front decides."""
+        """`and` and `or` with decided parts: a neutral part is removed; an absorbing first part decides."""
         absorbing = isinstance(node.op, ast.Or)
         values: list[ast.expr] = []
         for value in node.values:
@@ -106,7 +106,7 @@ class _CorrectionFolder(ast.NodeTransformer):
         return self.generic_visit(node)
 
     def generic_visit(self, node: ast.AST) -> ast.AST:
-        """Visit the children; a body that lost all its statements is an empty statement."""
+        """Visit the children.  A body that has lost all its statements gets an empty one."""
         super().generic_visit(node)
         if isinstance(node, ast.FunctionDef | ast.If | ast.For | ast.While | ast.match_case) and not node.body:
             where = node.pattern if isinstance(node, ast.match_case) else node

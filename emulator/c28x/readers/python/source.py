@@ -1,4 +1,4 @@
-"""A module in C-shaped Python: its text parsed, its declarations read, corrected functions laid over it."""
+"""A module in C-shaped Python: parse its text, read its declarations, apply an overlay of corrections."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module, SourceError
 from emulator.c28x.tree import Function, Variable
 
-#: How many terms a sum may have; more would need more stack of Python's parser than every system has.
+#: The most terms of a sum: with more, Python's parser needs more stack than some systems have.
 LONGEST_SUM: Final = 6000
-#: How many `elif` an `if` may have; of many more Python's parser makes no tree.
+#: The most `elif`s of an `if`: with many more, Python's parser fails.
 LONGEST_CHAIN: Final = 1000
-#: Finds the module that an import names, for the file that imports it.
+#: (name, importing file) -> the module that an import names.
 Finder = Callable[[str, str], Module]
 
 
 def new_module(name: str, file: str, text: str) -> Module:
-    """A module without its declarations: a comment `# us.c: Read_Distance` names the C file that it mirrors."""
+    """A module without its declarations.  A comment `# us.c: Read_Distance` in it names the C file that it mirrors."""
     anchors = ANCHOR.findall(text)
     return Module(name, file, text, anchors[0][0] if anchors else name.rsplit(".", 1)[-1] + ".c")
 
@@ -39,9 +39,9 @@ def read(module: Module, find: Finder) -> None:
 
 
 def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) -> None:
-    """Put the corrected functions of an overlay in the place of the faithful ones; both share one scope.
+    """Replace faithful functions by the corrected ones of an overlay.  Both share one scope.
 
-    `FIXED` is looked at in what is laid over, and nowhere else.
+    `FIXED` has an effect only in the overlay.
     """
     overlay = Module(
         base.name, file, text, base.c_file, base.symbols, base.own, base.variables, base.functions, base.bodies,
@@ -56,7 +56,7 @@ def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) 
         body += _decided(overlay, node, fixes) if ids else [node]
     before = dict(base.symbols)
     PythonDeclarationReader(overlay, ast.Module(body, []), find, overlay=True).read()
-    for name in {**before, **base.symbols}:  # also what `del` took away behind a corrected function
+    for name in {**before, **base.symbols}:  # also names that a `del` after a corrected function removes
         old, symbol = before.get(name), base.symbols.get(name)
         if old is symbol or not isinstance(symbol, Function | Variable | None):
             continue
@@ -71,9 +71,9 @@ def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) 
 
 
 def parse(module: Module) -> ast.Module:
-    """The syntax tree of a module's text, not to be changed: others read it too.
+    """The syntax tree of a module's text.  It is shared, so it must not be changed.
 
-    Raises SourceError for what is not Python, or nests too deeply.
+    Raises SourceError for text that is not Python, or nests too deeply.
     """
     return _tree(module.file, module.text)
 
@@ -92,7 +92,7 @@ def _decided(overlay: Module, node: ast.stmt, fixes: Set[str]) -> list[ast.stmt]
 
 
 def _copy(node: Any) -> Any:
-    """A tree of its own."""
+    """A deep copy of a tree."""
     if isinstance(node, list):
         return [_copy(inner) for inner in node]
     if not isinstance(node, ast.AST):
@@ -118,7 +118,7 @@ def _read(file: str, text: str) -> ast.Module:
     try:
         try:
             return _parsed(module)
-        except RecursionError:  # perhaps no more than a long sum
+        except RecursionError:  # it may be only a long sum
             with reading(LONGEST_SUM // 3):
                 return _parsed(module)
     except SyntaxError as error:
@@ -128,7 +128,7 @@ def _read(file: str, text: str) -> ast.Module:
         raise SourceError(module.file, number, message, max(1, error.offset or 1)) from None
     except SourceError:
         raise
-    except ValueError as error:  # half of a surrogate pair
+    except ValueError as error:  # such as half of a surrogate pair
         raise SourceError(module.file, 1, f"not Python: {error}", 1) from None
     except (RecursionError, MemoryError):
         number = _long_chain(module.text)
@@ -141,19 +141,19 @@ def _parsed(module: Module) -> ast.Module:
     tree = ast.parse(module.text, module.file)
     _check_nesting(module, tree)
     try:
-        compile(tree, module.file, "exec", dont_inherit=True)  # finds what the grammar allows and Python does not
+        compile(tree, module.file, "exec", dont_inherit=True)  # finds errors that the grammar does not
     except RecursionError:
-        compile(module.text, module.file, "exec", dont_inherit=True)  # it takes three times as deep a text as a tree
+        compile(module.text, module.file, "exec", dont_inherit=True)  # a text may be three times as deep as a tree
     return tree
 
 
-#: Texts whose trees are kept: those of an image, none of which is as long as this.
+#: A cache of trees, for texts up to this length: no text of an image is as long.
 _kept = lru_cache(maxsize=48)(_read)
 _KEPT_LENGTH: Final = 100_000
 
 
 def _inner(node: ast.AST) -> list[ast.AST]:
-    """The nodes directly below one."""
+    """The nodes directly below a node."""
     found: list[ast.AST] = []
     for value in vars(node).values():
         if isinstance(value, list):
@@ -168,7 +168,7 @@ def _too_long() -> str:
 
 
 def _long_chain(text: str) -> int:
-    """The line of the first `elif` that has too many before it; 0 if there is none."""
+    """The line of the first `elif` with too many before it; 0 if there is none."""
     chains: dict[int, int] = {}  # indentation -> elifs of the `if` there
     for number, line in enumerate(source_lines(text), 1):
         code = line.lstrip(" \t")
@@ -188,14 +188,14 @@ def _too_deep() -> str:
 
 
 def _check_nesting(module: Module, tree: ast.Module) -> None:
-    """Refuse what nests more deeply than the translator follows."""
+    """Raises SourceError for a tree that nests more deeply than the translator supports."""
     waiting: list[tuple[ast.AST, int, int, int]] = [(tree, 0, 0, 0)]
     while waiting:
         node, expressions, blocks, chained = waiting.pop()
         expressions = expressions + 1 if isinstance(node, ast.expr) else 0
         blocks += isinstance(node, ast.If | ast.For | ast.While | ast.Match)
         chained = chained + 1 if isinstance(node, ast.If) else 0
-        if chained > LONGEST_CHAIN + 1:  # the `if` itself is none
+        if chained > LONGEST_CHAIN + 1:  # the `if` itself is not an elif
             raise PythonTypeReader(module).error(node, _too_long())
         if expressions > EXPRESSION_NESTING:
             raise PythonTypeReader(module).error(node, _too_deep())
@@ -205,13 +205,13 @@ def _check_nesting(module: Module, tree: ast.Module) -> None:
         for inner in _inner(node):
             on = isinstance(node, ast.BinOp) and inner is node.left and isinstance(inner, ast.BinOp)
             goes_on = isinstance(node, ast.If) and len(node.orelse) == 1 and inner is node.orelse[0]
-            # The terms of a sum are no deeper than the sum, an elif is no deeper than its if.
+            # The terms of a sum are not deeper than the sum; an elif is not deeper than its if.
             elif_ = goes_on and isinstance(inner, ast.If)
             waiting.append((inner, expressions - on, blocks - elif_, chained if elif_ else 0))
 
 
 def _longest_line(text: str) -> int:
-    """Where the statement with the most words begins: the one that Python's parser gave up on, most likely."""
+    """The first line of the statement with the most tokens: most likely the one on which Python's parser failed."""
     longest = first = count = best = 0
     try:
         for token in tokenize.generate_tokens(io.StringIO(text).readline):

@@ -1,4 +1,4 @@
-"""Statements of C-shaped Python: each construct is given to the builder, anything else is refused."""
+"""Statements of C-shaped Python: the reader passes each to the builder; all other constructs are errors."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class PythonStatementReader:
         self.expressions = PythonExpressionReader(self.b, self.types)
 
     def error(self, node: ast.AST, message: str) -> SourceError:
-        """A construct outside the language, with its place."""
+        """The error about a construct outside the language, with its place."""
         return self.types.error(node, message)
 
     def read(self, node: ast.FunctionDef) -> None:
@@ -36,12 +36,12 @@ class PythonStatementReader:
             self.statements(node.body)
 
     def statements(self, body: list[ast.stmt]) -> None:
-        """Statements one after the other."""
+        """Read statements in order."""
         for node in body:
             self.statement(node)
 
     def block(self, body: list[ast.stmt], where: Where) -> Callable[[], None]:
-        """A block within braces, to be read when the builder asks for it."""
+        """A function that reads a block; the builder calls it."""
 
         def read() -> None:
             with self.b.block(where) as statements:
@@ -51,7 +51,7 @@ class PythonStatementReader:
         return read
 
     def statement(self, node: ast.stmt) -> None:
-        """One statement."""
+        """Read one statement."""
         b, where = self.b, self.types.where(node)
         match node:
             case ast.Pass() | ast.Expr(value=ast.Constant()) | ast.Global():
@@ -96,7 +96,7 @@ class PythonStatementReader:
                 raise self.error(node, message)
 
     def choice(self, node: ast.If) -> None:
-        """`if`, `elif`, `else`; an `else` that is nothing but an `if` is an `elif`."""
+        """`if`, `elif`, `else`; an `else` with only an `if` in it is an `elif`."""
         links: list[build.IfBranch] = []
         body: list[ast.stmt] = [node]
         where = self.types.where(node)
@@ -109,7 +109,7 @@ class PythonStatementReader:
         build.chain(self.b, links, self.block(body, where))
 
     def declare(self, node: ast.AnnAssign) -> None:
-        """A local, with or without a value."""
+        """Declare a local, with or without a value."""
         assert isinstance(node.target, ast.Name)
         b, where = self.b, self.types.where(node)
         declared = self.types.declared(node.annotation)
@@ -128,7 +128,7 @@ class PythonStatementReader:
         declared.mark(variable)
 
     def initialise(self, variable: Variable, ctype: CType, source: ast.expr, where: Where) -> None:
-        """A local with a value: a structure may be a copy of another one."""
+        """Declare a local with a value; a structure may be a copy of another one."""
         reader = self.expressions
         listed = isinstance(source, ast.Tuple | ast.List | ast.Dict) or (
             isinstance(source, ast.Call) and reader.constructed(source) is not None
@@ -143,7 +143,7 @@ class PythonStatementReader:
             build.initialise(self.b, variable, reader.wanted(source, ctype), where)
 
     def start(self, variable: Variable, source: ast.expr | None) -> None:
-        """The value that a `static` local starts from: a constant."""
+        """Read the initial value of a `static` local, a constant."""
         variable.initialised = source is not None
         if source is None:
             return
@@ -155,7 +155,7 @@ class PythonStatementReader:
         self.module.initialisers[variable] = lambda: values
 
     def assign(self, target: ast.expr, value: ast.expr, where: Where) -> None:
-        """`target = value`; of a structure, a copy."""
+        """`target = value`; a structure is copied."""
         place, given = self.expressions.assignment(target, value)
         build.assign(self.b, place, given, where)
 
@@ -186,12 +186,12 @@ class PythonStatementReader:
             start = self.expressions.value(args[0])
         limit = args[1] if len(args) > 1 else args[0]
         before, stop = self.b.apart(lambda: self.expressions.value(limit))
-        if before:  # it is evaluated again in every turn
+        if before:  # it is evaluated again for every turn
             raise self.error(limit, "this limit of range has too many operators: use a local for it")
         build.for_range(self.b, counter, start, stop, step, lambda: self.statements(node.body), where)
 
     def switch(self, node: ast.Match) -> None:
-        """`match`: a switch; a case ends it, or says with `fallthrough()` that it goes on with the next one."""
+        """`match`: a switch.  Each case ends it, unless it ends with `fallthrough()`."""
         where = self.types.where(node)
         subject = self.expressions.value(node.subject)
         if not isinstance(subject.ctype, IntType):
@@ -217,7 +217,7 @@ class PythonStatementReader:
         return False
 
     def named(self, node: ast.Match) -> tuple[set[str], list[EnumType]]:
-        """The constants that the cases name, if all of them are of one enumeration, and that one."""
+        """The constants that the cases name, and their enumeration, if all are of one; else empty."""
         named: set[str] = set()
         enumerations: set[str] = set()
         for case in node.cases:
@@ -233,7 +233,7 @@ class PythonStatementReader:
         return (named, [symbol]) if isinstance(symbol, EnumType) else (set(), [])
 
     def labels(self, pattern: ast.pattern) -> list[int] | None:
-        """The constants of a case; None is the default."""
+        """The constants of a case; None: the default."""
         match pattern:
             case ast.MatchAs(pattern=None, name=None):
                 return None

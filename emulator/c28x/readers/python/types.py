@@ -1,4 +1,4 @@
-"""C types as annotations write them, and the constant integers within them."""
+"""C types as written in annotations, and the constant integers in them."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _LINE_END: Final = re.compile(r"\r\n|\r|\n")
 
 @lru_cache(maxsize=8192)
 def shown(node: ast.AST) -> str:
-    """A construct as a message or a report names it.  Images of a process share their trees, and so these texts."""
+    """The text of a construct for a message.  It is cached, because images of a process share their trees."""
     try:
         return ast.unparse(node)
     except RecursionError:
@@ -47,25 +47,25 @@ def shown(node: ast.AST) -> str:
 
 @lru_cache(maxsize=64)
 def source_lines(text: str) -> tuple[str, ...]:
-    """The lines of a text as Python counts them: form feeds and other separators end none."""
+    """The lines of a text as Python counts them: form feeds and other separators do not end a line."""
     return tuple(_LINE_END.split(text))
 
 
-#: Words before the type of an object that say something about the object itself.
+#: Words before a type that are about the object itself.
 _QUALIFIERS: Final = ("const", "volatile", "static")
 
 
 @dataclass(frozen=True)
 class DeclaredType:
-    """The type of an object or member, and what its declaration says besides."""
+    """The type of an object or member, and the words in front of it."""
 
     ctype: CType
     words: frozenset[str]
-    #: The type as it is written, without the words in front.
+    #: The node of the type, without the words in front.
     node: ast.expr
 
     def mark(self, variable: Variable) -> None:
-        """Leave on a variable what its declaration says."""
+        """Store these words on a variable."""
         variable.volatile = "volatile" in self.words
         variable.constant = "const" in self.words
 
@@ -73,7 +73,7 @@ class DeclaredType:
 class PythonTypeReader:
     """Reads types with the names of one module.
 
-    What a `#define` of this module wrote stands where it is used: at `use`.
+    `use`: the place where a `#define` of this module is used; it becomes the place of what is read.
     """
 
     def __init__(self, module: Module, use: Where | None = None) -> None:
@@ -82,18 +82,18 @@ class PythonTypeReader:
         self.lines = source_lines(module.text)
 
     def error(self, node: ast.AST, message: str) -> SourceError:
-        """A construct outside the language, with its place."""
+        """The error about a construct outside the language, with its place."""
         return SourceError.at(self.where(node), message)
 
     def text(self, node: ast.expr) -> str:
-        """A literal as it is written, in lower case."""
+        """The source text of a literal, in lower case."""
         line = self.lines[node.lineno - 1]
         if line.isascii():
             return line[node.col_offset : node.end_col_offset].lower()
         return line.encode()[node.col_offset : node.end_col_offset].decode(errors="replace").lower()
 
     def before(self, node: ast.expr) -> str:
-        """The character before a construct in its line; empty at the beginning."""
+        """The character before a construct in its line; empty at the start of the line."""
         octets = self.lines[node.lineno - 1].encode(errors="replace")
         return octets[max(0, node.col_offset - 1) : node.col_offset].decode(errors="replace")
 
@@ -107,14 +107,14 @@ class PythonTypeReader:
         return place if self.use is None else self.use._replace(macro=place)
 
     def try_type(self, node: ast.expr) -> CType | None:
-        """The C type that an expression means; None if it means none."""
+        """The C type that an expression names; None if it names none."""
         try:
             return self.ctype(node)
         except SourceError:
             return None
 
     def ctype(self, node: ast.expr) -> CType:
-        """The C type that an annotation means."""
+        """The C type that an annotation names."""
         match node:
             case ast.Constant(value=None):
                 return VOID
@@ -214,7 +214,7 @@ class PythonTypeReader:
         return declared, value
 
     def quoted(self, node: ast.expr, text: str) -> ast.expr:
-        """An annotation in quotation marks, at its own place."""
+        """The expression of an annotation in quotation marks, with the place of the annotation."""
         try:
             inner = ast.parse(text, mode="eval").body
             ast.unparse(inner)
@@ -225,7 +225,7 @@ class PythonTypeReader:
         return inner
 
     def complete(self, node: ast.expr) -> CType:
-        """The type of an object or member: not a structure that is declared further down."""
+        """The type of an object or member.  Raises SourceError for void, a block, or a structure without members."""
         ctype = element = self.ctype(node)
         while isinstance(element, ArrayType):
             element = element.element
@@ -238,7 +238,7 @@ class PythonTypeReader:
         return ctype
 
     def constant(self, node: ast.expr, known: Mapping[str, int] = MappingProxyType({})) -> int:
-        """A constant integer, for an array length or an enumeration (whose constants so far are `known`)."""
+        """A constant integer, for an array length or an enumeration; `known`: its constants so far."""
         match node:
             case ast.Constant(value=bool()):
                 pass
@@ -273,7 +273,7 @@ class PythonTypeReader:
         raise self.error(node, f"'{shown(node)}' is not an integer constant: write a number, or NAME = number")
 
     def computed(self, node: ast.BinOp, known: Mapping[str, int]) -> int:
-        """A constant with operators, as many as there are one after the other."""
+        """The value of a constant chain of operators."""
         steps = [node]
         while isinstance(steps[-1].left, ast.BinOp):
             steps.append(steps[-1].left)

@@ -1,4 +1,4 @@
-"""A constant of C-shaped Python as C text: for the headers that other C files include."""
+"""Constants of C-shaped Python as C text, for generated headers."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import ast
 from collections.abc import Sequence
 from typing import Final
 
-#: What Python writes as C does, and what it writes otherwise.
+#: Operator of Python -> operator of C.
 _OPERATORS: Final[dict[type, str]] = {
     ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.FloorDiv: "/", ast.Mod: "%", ast.LShift: "<<",
     ast.RShift: ">>", ast.BitOr: "|", ast.BitAnd: "&", ast.BitXor: "^", ast.USub: "-", ast.UAdd: "+", ast.Invert: "~",
@@ -15,7 +15,7 @@ _ESCAPES: Final = {"\\": "\\\\", '"': '\\"', "'": "\\'", "\n": "\\n", "\r": "\\r
 
 
 def replacement(node: ast.expr, lines: Sequence[str]) -> str | None:
-    """The text behind a `#define`, in parentheses where it is an operation; None if C has no such constant."""
+    """The text of a `#define`, in parentheses if it is an operation; None if C has no such constant."""
     try:
         value = expression(node, lines)
     except RecursionError:  # a sum of very many terms
@@ -24,7 +24,7 @@ def replacement(node: ast.expr, lines: Sequence[str]) -> str | None:
 
 
 def expression(node: ast.expr, lines: Sequence[str]) -> str | None:
-    """A constant expression as C writes it: numbers as they stand in `lines`, because that decides their types."""
+    """A constant expression as C text.  Numbers keep their text from `lines`, because it decides their types."""
     match node:
         case ast.Constant(value=bool() | None | bytes() | complex()):
             return None
@@ -36,7 +36,7 @@ def expression(node: ast.expr, lines: Sequence[str]) -> str | None:
             return str(value) if not written or written.lower().startswith(("0b", "0o")) else written
         case ast.Name(id=name):
             return name
-        case ast.Attribute(value=ast.Name(), attr=constant):  # of an enumeration
+        case ast.Attribute(value=ast.Name(), attr=constant):  # a constant of an enumeration
             return constant
         case ast.UnaryOp(op=op, operand=operand) if type(op) in _OPERATORS:
             inner = expression(operand, lines)
@@ -54,7 +54,7 @@ def _nested(node: ast.expr, text: str) -> str:
 
 
 def _quoted(text: str) -> str:
-    """A character constant, as C-shaped Python writes one; a longer text is a string."""
+    """A character of C-shaped Python as a C character constant; a longer text as a string."""
     quote = "'" if len(text) == 1 else '"'
     return quote + "".join(_character(c) for c in text) + quote
 
