@@ -34,7 +34,7 @@ from emulator.c28x.tree import Function
 #: How many programs the folder keeps: the most recently used ones.
 KEPT: Final = 64
 PACKAGE: Final = Path(__file__).resolve().parent.parent
-#: Folders that a translation depends on besides the firmware, and whether their subfolders count too.
+#: Folders that a translation depends on in addition to the firmware, and whether their subfolders count too.
 TRANSLATOR: Final = (("", False), ("c28x", True), ("registers", False), ("sysbios", False))
 
 
@@ -110,7 +110,7 @@ def _folder() -> Path | None:
     base = os.environ.get("XDG_CACHE_HOME")
     try:
         return (Path(base) if base else Path.home() / ".cache") / "c2000-hil"
-    except RuntimeError:  # nobody's home
+    except RuntimeError:  # the user has no home folder
         return None
 
 

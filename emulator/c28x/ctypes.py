@@ -25,7 +25,7 @@ class CType:
 
     @cached_property
     def align(self) -> int:
-        """The alignment in 16-bit words: 32-bit objects stand at even addresses."""
+        """The alignment in 16-bit words: 32-bit objects have even addresses."""
         return 2 if self.words > 1 else 1
 
     @cached_property

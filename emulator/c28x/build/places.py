@@ -66,7 +66,7 @@ class RegisterPath:
     unmodelled: bool = False
 
 
-#: What an expression can designate.
+#: The places that an expression can designate.
 Place = LValue | RegisterRef | RegisterAt | RegisterPath
 
 

@@ -23,11 +23,11 @@ T = TypeVar("T")
 EXPRESSION_NESTING: Final = 100
 #: How deep blocks may nest, and loops and switches in them.
 BLOCK_NESTING: Final = 64
-#: How deep an `else if` may stand within others and within blocks; a longer chain is not nested.
+#: How deep an `else if` may nest in others and in blocks.  A longer chain is translated without nesting.
 CHAIN_NESTING: Final = 48
 #: How many statements a function may have.
 STATEMENTS: Final = 20_000
-#: How many `#define`s may stand within one, and how many in a function.
+#: How many `#define`s may be used within one, and how many in a function.
 EXPANSIONS: Final = 1000
 EXPANSIONS_OF_FUNCTION: Final = 50_000
 #: Beyond this nesting, the depth of operands is checked (`depth.py`).
@@ -82,7 +82,7 @@ class Builder:
     # Names
 
     def look_up(self, name: str) -> Symbol | None:
-        """What a name means here."""
+        """The meaning of a name here; None: it has none."""
         known = self.scope.get(name)
         return known if known is not None else self.module.symbols.get(name)
 
@@ -174,7 +174,7 @@ class Builder:
             self.out = outer
 
     def apart(self, build: Callable[[], T]) -> tuple[list[Stmt], T]:
-        """What `build` returns, and the effects that come before it."""
+        """The effects of `build`, collected apart, and the value that it returns."""
         with self.aside() as effects:
             value = build()
         return effects, value

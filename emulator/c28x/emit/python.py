@@ -373,7 +373,7 @@ class PythonWriter:
         if any(isinstance(inner, LeaveSwitch | FallThrough) for _, body in s.cases for inner in own_statements(body)):
             self.switch_at_large(s)
             return
-        # Closed cases may stand in any order: the default comes last.
+        # Cases that do not fall through may come in any order: the default is last.
         none = f"_c_no_case(_w, {self.number(s.guard)})" if s.guard is not None else ""
         self.choice(sorted(s.cases, key=lambda case: case[0] is None), none)
 

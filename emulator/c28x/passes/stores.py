@@ -32,7 +32,7 @@ from emulator.c28x.tree_queries import OBSERVABLE, bare, blocks, calls, parts, r
 #: Blocks in which a second write to the same field is a second event: it sends, sets, clears or acknowledges.
 _EVENTS = ("Sci", "Spi", "I2c", "Mcb", "Can", "Usb", "Gpio", "Pie", "Lin")
 
-#: If more than so many cases end with a break, a single case that does not is an exception.
+#: If more cases than this end with a break, a single case that does not is suspicious.
 LEAST_ENDED: Final = 2
 
 

@@ -40,7 +40,7 @@ from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Where
 
-#: What TI's compiler defines for this chip (SPRU514, "Predefined Macro Names"), version 22.6.0.LTS.
+#: The macros that TI's compiler predefines for this chip (SPRU514, "Predefined Macro Names"), version 22.6.0.LTS.
 PREDEFINED: Final = {
     "__STDC__": "1", "__STDC_VERSION__": "199901L", "__STDC_HOSTED__": "1", "__STDC_NO_THREADS__": "1",
     "__DATE__": '"Jan  1 2020"', "__TIME__": '"00:00:00"',
@@ -95,7 +95,7 @@ class PreprocessorOptions:
 
 @dataclass(frozen=True, slots=True)
 class Pragma:
-    """A `#pragma` or `_Pragma`: its text, its place, and how many tokens of the unit stand before it."""
+    """A `#pragma` or `_Pragma`: its text, its place, and the number of tokens of the unit before it."""
 
     text: str
     where: Where

@@ -109,7 +109,7 @@ class CStatementReader:
             self.statement(item)
 
     def expression(self, node: c_ast.Node) -> None:
-        """An expression statement; a call stands for itself."""
+        """An expression statement; a call becomes a statement directly."""
         b = self.b
         if isinstance(node, c_ast.FuncCall) and not (isinstance(node.name, c_ast.ID) and node.name.name == "__asm"):
             value = self.expressions.value(node)

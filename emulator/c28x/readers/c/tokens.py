@@ -151,7 +151,7 @@ class SourceText:
 
 
 class Token:
-    """One token: its kind, its text, and where it stands.
+    """One token: its kind, its text, and its place.
 
     A token from a macro has its place in the macro's definition (`source`, `at`); `use` is the token in the file that
     named the macro.  A token of an argument is in the file itself: it has no `use`.

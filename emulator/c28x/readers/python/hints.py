@@ -92,7 +92,7 @@ _CONSTRUCTS: Final = {
     "Starred": "p[0] for what p points to", "Slice": "a loop over the elements, or memcpy",
     "NamedExpr": "the assignment as a statement",
 }  # fmt: skip
-#: What stands at file scope besides declarations.
+#: What to do with other statements than declarations at file scope.
 _AT_FILE_SCOPE: Final = "only declarations are allowed there: write it into a function"
 
 _OPERATORS: Final = {
