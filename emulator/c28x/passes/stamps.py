@@ -2,8 +2,8 @@
 
 A stamp is a value of a CPU timer, an eCAP, the IPC counter or the kernel's clock, or of an object that an interrupt
 routine only counts up.  A copy, a complement or a shift of a stamp is a stamp too, also as the result of a function.  A
-stamp plus a number is a *deadline*; the difference of two stamps is a number.  Objects and members are followed through
-the whole image, whatever the order of statements.
+stamp plus or minus a number is a *deadline*; the difference of two stamps is a number.  Objects and members are
+followed through the whole image, whatever the order of statements.
 
 The result are suspicions, by node.  The running code checks whether the counter has wrapped between the two stamps
 (`Guards`, `Runtime`).
