@@ -1,8 +1,8 @@
-"""Every register block of the chip, a line a block: name in C, address, registers, clock gate, interrupts.
+"""Every register block of the chip, one line per block: name in C, address, registers, clock gate, interrupts.
 
-Whatever has to know that a block exists reads this table.  `chip.py` makes the registers, joins clock gates, soft
-resets and interrupts, and wires what is particular; `device_h.py` gives the names to firmware; the headers in C are
-made of it.  What a line can say: `registers/instance.py`.
+All code that needs the list of blocks reads this table.  `chip.py` creates the registers, connects clock gates, soft
+resets and interrupts, and does the wiring that only some blocks need.  `device_h.py` gives the names to firmware.  The
+C headers are generated from it.  `registers/instance.py` describes the fields of a line.
 Sources: DS memory map and PIE channel table; HDR (names of blocks; F2837xS_sysctrl.h: what gates and resets them).
 """
 
@@ -41,7 +41,7 @@ from emulator.registers.instance import Instance, at
 if TYPE_CHECKING:
     from emulator.c28x.language import unmodelled
 
-# What is modelled
+# Blocks that are modelled
 
 # `pie`: ADCINT1 to 4, the event of the PPBs
 AdcaRegs = at(
@@ -137,7 +137,7 @@ Flash1CtrlRegs = at(0x5FC00, flash.FlashCtrlRegs)
 Flash1EccRegs = at(0x5FF00, flash.FlashEccRegs)
 FlashPumpSemaphoreRegs = at(0x50024, flash.FlashPumpSemaphoreRegs)
 
-# What the chip has besides, and the emulator does not
+# Blocks that the chip has and the emulator does not model
 
 AccessProtectionRegs: unmodelled
 Cla1Regs: unmodelled

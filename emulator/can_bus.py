@@ -1,4 +1,4 @@
-"""A CAN bus: frames as bits, the arbitration of who sends, and what becomes of a frame.
+"""A CAN bus: frames as bits, arbitration, and whether a frame arrives or ends in an error.
 
     bus = CanBus(clock, "CAN-A")
     node = CanPart(bit_rate=500_000)
@@ -31,22 +31,22 @@ from emulator.signal import Signal
 #: Generator of the CRC: x^15 + x^14 + x^10 + x^8 + x^7 + x^4 + x^3 + 1.
 CRC_POLYNOMIAL: Final = 0x4599
 CRC_BITS: Final = 15
-#: Equal bits behind which a stuff bit comes.
+#: A stuff bit follows after this many equal bits.
 STUFF_AFTER: Final = 5
-#: Bits behind the CRC: its delimiter, acknowledge slot and delimiter, end of frame.
+#: Bits after the CRC: its delimiter, acknowledge slot and delimiter, end of frame.
 EOF_BITS: Final = 7
 TAIL_BITS: Final = 3 + EOF_BITS
 INTERMISSION_BITS: Final = 3
-#: What an error passive node waits for longer after it has sent.
+#: Bits that an error passive node waits longer after it has sent.
 SUSPEND_BITS: Final = 8
-#: Recessive bits after which a node takes part.
+#: After this many recessive bits a node takes part in the traffic.
 IDLE_BITS: Final = 11
-#: An error flag, those of the others behind it, and the delimiter.
+#: Bits of an error flag, of the flags of the other nodes after it, and of the delimiter.
 ERROR_FLAG_BITS: Final = 6
 ERROR_DELIMITER_BITS: Final = 8
-#: Where a node of another bit rate finds its error.
+#: The bit at which a node of another bit rate detects its error.
 FOREIGN_BIT: Final = 13
-#: Who understands whom: bit times that differ by no more than a hundredth.
+#: Two nodes understand each other if their bit times differ by no more than this part.
 TOLERANCE: Final = 100
 MAX_DATA: Final = 8
 STANDARD_BITS: Final = 11
@@ -56,7 +56,7 @@ _ARBITRATION_PRIORITY: Final = 4
 
 
 class CanError(enum.IntEnum):
-    """What went wrong with a frame, numbered as controllers tell it."""
+    """The error of a frame, with the number that controllers use for it."""
 
     STUFF = 1
     FORM = 2
@@ -94,7 +94,7 @@ class CanFrame:
 
     @property
     def arbitration(self) -> tuple[int, ...]:
-        """The bits that decide who goes on, RTR (SRR) and IDE included: the least tuple wins."""
+        """The bits that decide the arbitration, RTR (SRR) and IDE included.  The least tuple wins."""
         rtr = int(self.remote)
         if not self.extended:
             return (*_bits(self.identifier, STANDARD_BITS), rtr, 0)
@@ -107,7 +107,7 @@ def _bits(value: int, width: int) -> Iterator[int]:
 
 
 def crc15(bits: Sequence[int]) -> int:
-    """The CRC of bits that are not stuffed."""
+    """The CRC of bits without stuff bits."""
     crc = 0
     for bit in bits:
         turned = bit ^ crc >> CRC_BITS - 1
@@ -118,7 +118,7 @@ def crc15(bits: Sequence[int]) -> int:
 
 
 def stuffed(bits: Sequence[int]) -> list[int]:
-    """The bits with one of the other level behind each five equal ones, stuff bits counted too."""
+    """Insert a bit of the other level after every five equal bits; stuff bits count among the five."""
     out: list[int] = []
     last, run = -1, 0
     for bit in bits:
@@ -161,11 +161,11 @@ class CanNode(Protocol):
 
     @property
     def hears_itself(self) -> bool:
-        """Whether it takes its own frames as received and acknowledged: a loopback."""
+        """Whether it is in loopback: it takes its own frames as received and acknowledged."""
 
     @property
     def unheard(self) -> bool:
-        """Whether it does not even see its own bits: its pins are not connected."""
+        """Whether its pins are not connected.  Then it does not even see its own bits."""
 
     def joined(self, now: int) -> bool:
         """Whether it follows a frame that begins now."""
@@ -177,7 +177,7 @@ class CanNode(Protocol):
         """The frame that it begins now."""
 
     def lost(self) -> None:
-        """Another frame has won."""
+        """Another frame has won the arbitration."""
 
     def sent(self) -> None:
         """Its frame has arrived."""
@@ -186,17 +186,17 @@ class CanNode(Protocol):
         """A frame of another has arrived, or of itself if it hears itself."""
 
     def failed(self, error: CanError, sending: bool) -> None:
-        """The frame that it sent, or was receiving, has ended in an error frame."""
+        """The frame that it was sending (`sending`) or receiving has ended in an error frame."""
 
 
 class CanPort:
-    """What pins a controller has: `connected` while one carries each of its lines, else `missing` says why not."""
+    """The pins of a controller: `connected` while a pin carries each of its lines, else `missing` says why not."""
 
     def __init__(self, name: str) -> None:
         self.name = name
         self.missing = ""
         self._connected = True
-        #: (): the pins are given to it, or taken from it.
+        #: (): pins were connected to it or disconnected from it.
         self.changed: Signal[[]] = Signal()
 
     @property
@@ -220,7 +220,7 @@ class CanBus:
         self._nodes: list[CanNode] = []
         #: (frame): at the end of every frame that arrives.
         self.arrived: Signal[CanFrame] = Signal()
-        #: Who sends the present frame (several, if they send the same one), and who follows it.
+        #: The nodes that send the present frame (several if they send the same one), and those that follow it.
         self._senders: list[CanNode] = []
         self._receivers: list[CanNode] = []
         self._frame: CanFrame | None = None
@@ -231,19 +231,19 @@ class CanBus:
         #: The first cycle at which a frame may begin.
         self.free_at = 0
         self._spoilt: list[int] = []
-        #: What the present frame will end in, if it does not arrive.
+        #: The error in which the present frame will end; None if it will arrive.
         self._failure = CanError.STUFF
 
-    # Who is on it
+    # Nodes
 
     def attach(self, node: CanNode) -> None:
-        """Hang a node on the bus."""
+        """Connect a node to the bus."""
         if node not in self._nodes:
             self._nodes.append(node)
             self.request()
 
     def detach(self, node: CanNode) -> None:
-        """Take it off; the frame that it was sending alone breaks off, and the others see an error."""
+        """Disconnect a node.  A frame that it alone was sending breaks off, and the other nodes see an error."""
         if node not in self._nodes:
             return
         self._nodes.remove(node)
@@ -255,7 +255,7 @@ class CanBus:
                 self._end_badly(CanError.STUFF)
 
     def join(self, other: CanBus) -> None:
-        """Solder its wires to those of another bus: nodes and listeners are there from now on."""
+        """Join this bus to another one: its nodes and listeners are on the other bus from now on."""
         for node in self.nodes:
             self.detach(node)
             if isinstance(node, CanPart):
@@ -266,15 +266,15 @@ class CanBus:
 
     @property
     def nodes(self) -> tuple[CanNode, ...]:
-        """Who hangs on the bus now."""
+        """The nodes that are on the bus now."""
         return tuple(self._nodes)
 
     def witness(self, frame: CanFrame) -> None:
-        """Tell listeners of a frame that a controller in loopback has put on its pin, which no node takes."""
+        """Report a frame to listeners that a controller in loopback has put on its pin.  No node takes it."""
         self.arrived.emit(frame)
 
     def spoil(self, frames: int = 1, bit: int = 20) -> None:
-        """Turn bit number `bit` of each of the next frames, as a disturbance on the line does."""
+        """Invert bit number `bit` of each of the next `frames` frames, as a disturbance on the line does."""
         if bit < 1 or frames < 0:
             raise ValueError(f"spoil bit {bit} of {frames} frames: want a bit behind the start of frame")
         self._spoilt += [bit] * frames
@@ -297,7 +297,7 @@ class CanBus:
     # Arbitration
 
     def request(self) -> None:
-        """Somebody may have a frame to send, or one that is due earlier than before."""
+        """A node may have a frame to send, or its next frame may be due earlier than before."""
         if self._frame is not None:
             return
         first = min((node.sends_from() for node in self._nodes), default=NEVER)
@@ -331,7 +331,7 @@ class CanBus:
             self._after_bits(at, self._fail)
 
     def _fate(self, frames: Sequence[CanFrame]) -> tuple[int, CanError | None]:
-        """How many bits of the frame there are until it has arrived, or until its error shows; and which error."""
+        """How many bits pass until the frame has arrived or its error shows, and the error (None: it arrives)."""
         assert self._frame is not None
         bits = frame_bits(self._frame)
         ends: list[tuple[int, CanError]] = []
@@ -363,10 +363,10 @@ class CanBus:
     def _after_bits(self, bits: int, callback: Callable[[], None]) -> None:
         self._event = self._clock.schedule(self._begun + bits * self._bit, callback)
 
-    # What becomes of a frame
+    # The end of a frame
 
     def _arrive(self) -> None:
-        """The last but one bit of the end of frame is over: receivers have it."""
+        """The last but one bit of the end of frame is over: the receivers have the frame."""
         frame = self._frame
         assert frame is not None
         self._event = self._clock.after(self._bit, self._complete)
@@ -405,8 +405,8 @@ class CanBus:
 class CanPart:
     """A node for boards and tests: sends what it is given, keeps what it receives in `frames`.
 
-    A part of one's own overrides `received(frame)`.  It has no error counters: it is always error active, and repeats a
-    frame until it has arrived.
+    To build your own node, override `received(frame)`.  It has no error counters: it is always error active, and
+    repeats a frame until it has arrived.
     """
 
     error_passive: bool = False
@@ -424,7 +424,7 @@ class CanPart:
         self._bus: CanBus | None = None
 
     def connect(self, bus: CanBus) -> None:
-        """Hang it on a bus, and on no other."""
+        """Connect it to a bus, and disconnect it from any other."""
         if self._bus is not None:
             self._bus.detach(self)
         self._bus = bus
@@ -442,7 +442,7 @@ class CanPart:
         return True
 
     def sends_from(self) -> int:
-        """At once, if there is something."""
+        """At once, if there is a frame to send."""
         return 0 if self.waiting else NEVER
 
     def offer(self) -> CanFrame:
@@ -461,5 +461,5 @@ class CanPart:
         self.frames.append(frame)
 
     def failed(self, error: CanError, sending: bool) -> None:
-        """Keep what went wrong; it tries again."""
+        """Keep the error; it tries again."""
         self.errors.append(error)

@@ -1,7 +1,8 @@
 """The TMS320F28377S: its register blocks at their addresses, its peripherals, and the wiring between them.
 
-Which instance stands where: DS memory map and HDR.  What leaves the chip are pins (`pins[n]` is GPIOn), analog inputs
-and the buses behind the pin multiplexer; what is soldered to them is a board (`hil/board.py`).
+The addresses of the instances come from the DS memory map and HDR.  The chip's connections to the outside are pins
+(`pins[n]` is GPIOn), analog inputs and the buses behind the pin multiplexer.  A board (`hil/board.py`) connects devices
+to them.
 """
 
 from __future__ import annotations
@@ -91,7 +92,7 @@ CAN_PIE: Final = {x: BLOCKS[f"Can{x.lower()}Regs"].pie for x in "AB"}
 XINT_PIE: Final = dict(enumerate(BLOCKS["XintRegs"].pie, 1))
 #: External interrupt -> its input of the Input X-BAR (DS).
 XINT_INPUT: Final = {1: 4, 2: 5, 3: 6, 4: 13, 5: 14}
-#: The input that is ADCEXTSOC too (DS).
+#: The input of the Input X-BAR that is also ADCEXTSOC (DS).
 EXTSOC_INPUT: Final = 5
 #: eCAP -> its input of the Input X-BAR (DS).
 ECAP_INPUT: Final = {n: 6 + n for n in range(1, ECAP_COUNT + 1)}
@@ -110,7 +111,7 @@ INPUT_TRIPINS: Final = (1, 2, 3, 6)
 DMA_ADC: Final = {letter: 1 + 5 * x for x, letter in enumerate("ABCD")}
 DMA_XINT: Final = {n: 28 + n for n in XINT_PIE}
 DMA_SPI: Final = {letter: 109 + 2 * x for x, letter in enumerate("ABC")}
-#: Those that trigger ADCs too, by their TRIGSEL: CPU timers, SOCA and SOCB.
+#: The triggers of the DMA that trigger ADCs too: TRIGSEL -> number.  They are CPU timers, SOCA and SOCB.
 DMA_TRIGSEL: Final = {1 + n: 68 + n for n in range(3)} | {5 + n: 36 + n for n in range(2 * EPWM_COUNT)}
 DMA_SOURCES: Final = frozenset((
     *(first + n for first in DMA_ADC.values() for n in range(5)), *DMA_XINT.values(), *DMA_TRIGSEL.values(),
@@ -132,11 +133,11 @@ CMPSS_INPUT: Final = {
 class Chip:
     """One F28377S.
 
-    `vdda_v` is the analog supply.  `ideal` switches the noise of the ADCs off; `board_pulls` are resistors of the
-    board, GPIO -> level; `spi_pins` are the pins (SIMO, SOMI, CLK) that a board has as the bus of an SPI, `i2c_pins`
-    those (SDA, SCL) of an I2C, with its
-    pull-ups; else every pin that carries a signal is one.  Out of reset the start-up code of the C run-time has run:
-    the watchdog is disabled and SYSCLK is 200 MHz; every peripheral's clock is still off (TRM: off until enabled).
+    `vdda_v` is the analog supply.  `ideal` switches the noise of the ADCs off.  `board_pulls` are pull resistors of the
+    board, GPIO -> level.  `spi_pins` are the pins (SIMO, SOMI, CLK) of the board's SPI bus, `i2c_pins` those (SDA, SCL)
+    of its I2C bus, with pull-ups.  Without them, every pin that carries such a signal reaches the bus.  Out of reset
+    the start-up code of the C run-time has run: the watchdog is disabled and SYSCLK is 200 MHz.  The clock of every
+    peripheral is still off (TRM: off until enabled).
     """
 
     def __init__(
@@ -161,9 +162,9 @@ class Chip:
         core.bind("IER", read=lambda: cpu.ier, write=lambda word, _lanes: cpu.write_ier(word))
         core.bind("IFR", read=lambda: cpu.ifr, write=lambda word, _lanes: cpu.write_ifr(word))
         self.vectors = VectorTable(cpu, self.pie, vectors)
-        #: What C names and no word of memory holds.
+        #: Blocks that C names and whose registers are not words of the memory here.
         self._named: dict[str, Block] = {"CPU": core, "PieVectTable": vectors}
-        #: Blocks that are not modelled, those that somebody names.
+        #: Blocks that are not modelled; only those that have been used are created.
         self._unmodelled: dict[str, UnmodelledBlock] = {}
         self.sysctrl = SysCtrl(
             cpu, self._block("CpuSysRegs", CpuSysRegs), self._block("ClkCfgRegs", ClkCfgRegs),
@@ -176,9 +177,9 @@ class Chip:
             clock, cpu, self._block("GpioCtrlRegs", GpioCtrlRegs), self._block("GpioDataRegs", GpioDataRegs), self.pins
         )
         self.crossbar = Crossbar(clock, self.gpio, self.pins)
-        #: What ends that somebody of the chip listens: made when a setting wants it, by who listens.
+        #: Listener -> the function that disconnects it.  A setting of the registers connects it.
         self._stops: dict[Hashable, Callable[[], None]] = {}
-        #: The hardware triggers by TRIGSEL.  Who hears one: the ADCs in which it starts something, the DMA if it waits.
+        #: The hardware triggers by TRIGSEL.  ADCs in which one starts something listen to it; so does a DMA that waits.
         self.triggered: dict[int, Signal[[]]] = {trigsel: Signal() for trigsel in TRIGSELS}
         self.triggered[ADCEXTSOC] = Signal(self._listen_to_external_soc)
         self.input_xbar = InputXbar(
@@ -198,11 +199,11 @@ class Chip:
         self.can = {letter: self._can(letter) for letter in CAN_PIE}
         self.serial_pins: dict[int, SerialLine] = {}
         self.sci = {letter: self._sci(letter) for letter in SCI_PIE}
-        #: What the blocks do that are joined to nothing particular.
+        #: The behaviours of blocks that need no wiring of their own.
         self._uniform = {name: self._behaviour(name) for name in BLOCKS if BLOCKS[name].behaviour}
         self.timers: list[CpuTimer] = [self._uniform[f"CpuTimer{n}Regs"] for n in range(3)]
         self.sysctrl.timer2_changed.connect(self.timers[2].set_tick)
-        #: Pairs of pins (A, B) that stand side by side in the pin table.
+        #: Pairs of pins (A, B) that are neighbours in the pin table.
         self.encoder_pins: dict[tuple[int, int], QuadratureWire] = {}
         self._eqep_errors = 0
         self.eqep = {n: self._eqep(n) for n in range(1, EQEP_COUNT + 1)}
@@ -250,14 +251,14 @@ class Chip:
     # Instances
 
     def _behaviour(self, name: str) -> Any:
-        """What block `name` does: it needs time, core, its registers, and what the table of blocks says."""
+        """Create the behaviour of block `name` from the clock, the core, its registers and the table of blocks."""
         instance = BLOCKS[name]
         assert instance.behaviour is not None
         trigger = {"trigger": self.triggered[instance.trigsel].emit} if instance.trigsel else {}
         return instance.behaviour(self.clock, self.cpu, self.blocks[name], *self._interrupts(name), **trigger)
 
     def _interrupts(self, name: str) -> list[Callable[[], None]]:
-        """The interrupts of block `name`, in the order of its line in the table: call one for a pulse."""
+        """The interrupts of block `name`, in the order of its line in the table.  Call one for a pulse."""
         instance = BLOCKS[name]
         own = [partial(self.cpu.raise_line, instance.line)] if instance.line else []
         return [*(self.pie.line(*interrupt) for interrupt in instance.pie), *own]
@@ -293,7 +294,7 @@ class Chip:
         )  # fmt: skip
 
     def _awaits(self, letter: str, n: int) -> bool:
-        """Whether anybody has a use for ADCINT(n+1): if a missing acknowledge holds it back, that is what is told."""
+        """Whether anything uses ADCINT(n+1).  If a missing acknowledge holds the interrupt back, that is reported."""
         interrupt = ADC_PIE[letter][n]
         to_cpu = self.pie.enabled(*interrupt) and not self.pie.held_back(*interrupt)
         return to_cpu or DMA_ADC[letter] + n in self._dma_sources
@@ -312,7 +313,7 @@ class Chip:
         )  # fmt: skip
 
     def _xbar_signals(self) -> dict[str, Level]:
-        """What the ePWM and Output X-BARs can choose, by name."""
+        """The signals that the ePWM and Output X-BARs can choose, by name."""
         signals: dict[str, Level] = {f"INPUT{n}": self.input_xbar.signal(n) for n in XBAR_INPUTS}
         signals |= {f"ECAP{n}.OUT": ecap.output for n, ecap in self.ecap.items()}
         for cmpss in self.cmpss.values():
@@ -321,15 +322,15 @@ class Chip:
         return signals
 
     def _listen_to_sync(self, n: int, epwm: int, on: bool) -> None:
-        """CMPSS `n` wants EPWMSYNCPER of an ePWM from now on, or no more."""
+        """Connect EPWMSYNCPER of an ePWM to CMPSS `n` (`on`), or disconnect it."""
         self._listen(("EPWMSYNCPER", n), self.epwm[epwm].synced, self.cmpss[n].sync, on)
 
     def _adc_obeys(self, letter: str, trigsel: int, on: bool) -> None:
-        """A hardware trigger begins or ceases to start something in an ADC."""
+        """A hardware trigger starts conversions of an ADC from now on (`on`), or no longer."""
         self._listen((letter, trigsel), self.triggered[trigsel], partial(self.adc[letter].trigger, trigsel), on)
 
     def _listen(self, who: Hashable, signal: Signal[P], listener: Callable[P, object], on: bool) -> None:
-        """Let `listener` hear a signal for `who`, or no longer; who hears it already goes to the end."""
+        """Connect `listener` to a signal for `who` (`on`), or disconnect it.  A connected one moves to the end."""
         stop = self._stops.pop(who, None)
         if stop is not None:
             stop()
@@ -368,12 +369,12 @@ class Chip:
         return can
 
     def _can_held(self, letter: str, line: int) -> None:
-        """A line of a CAN that is active, and whose global flag still stands."""
+        """An interrupt line of a CAN is active while its global flag is still set."""
         flag = f"Can{letter.lower()}Regs.CAN_GLB_INT_FLG.INT{line}_FLG"
         self.pie.flag_left(*CAN_PIE[letter][line], flag)
 
     def join_can(self) -> None:
-        """Solder the transceivers of CAN-A and CAN-B to one bus, that of CAN-A."""
+        """Connect the transceivers of CAN-A and CAN-B to one bus, that of CAN-A."""
         self.can["B"].connect(self.can_bus["A"])
         if self.can_bus["B"] is not self.can_bus["A"]:
             self.can_bus["B"].join(self.can_bus["A"])
@@ -403,7 +404,7 @@ class Chip:
         self._listen(("XINT", n), self.input_xbar.changed[XINT_INPUT[n]], self.xint[n].edge, on)
 
     def _listen_to_external_soc(self, on: bool) -> None:
-        """ADCEXTSOC begins to start something in an ADC, or does so in none any more."""
+        """ADCEXTSOC starts conversions of some ADC from now on (`on`), or of none any more."""
         self._listen("ADCEXTSOC", self.input_xbar.changed[EXTSOC_INPUT], self._external_soc, on)
 
     def _external_soc(self, level: int) -> None:
@@ -426,7 +427,7 @@ class Chip:
         return None if found is None else Region(found.base, found.words, found.declaration.path)
 
     def _bus_read(self, address: int, words: int) -> int:
-        """What the DMA reads: a register of 32 bits in one access."""
+        """A read by the DMA.  A 32-bit register is read in one access."""
         register, half = self._bus_register(address)
         if register is not None and words == 2 and register.bits == 32 and not half:
             return register.bus_read()
@@ -435,7 +436,7 @@ class Chip:
         return self.memory.read_word(address) if register is None else register.bus_read() >> 16 * half & 0xFFFF
 
     def _bus_write(self, address: int, words: int, value: int) -> None:
-        """What the DMA writes, likewise."""
+        """A write by the DMA.  A 32-bit register is written in one access."""
         register, half = self._bus_register(address)
         if register is not None and words == 2 and register.bits == 32 and not half:
             register.bus_write(value, ALL)
@@ -452,11 +453,11 @@ class Chip:
             register.bus_write(register.value & HIGH | value, LOW)
 
     def _bus_register(self, address: int) -> tuple[Cell | None, int]:
-        """The register at an address where no object lies, and which half of it."""
+        """The register at an address where no object lies, and the half of it that the address names."""
         return self._registers_at.get(address, (None, 0)) if self.memory.find(address) is None else (None, 0)
 
     def _dma_listens(self, sources: frozenset[int]) -> None:
-        """Bring the DMA the triggers that it waits for, and no others."""
+        """Connect the triggers that the DMA waits for, and disconnect all others."""
         self._dma_sources = sources
         for letter, first in DMA_ADC.items():
             for source, pulsed in enumerate(self.adc[letter].pulsed, first):
@@ -469,13 +470,13 @@ class Chip:
             self._listen(("DMA", source), self.triggered[trigsel], partial(self.dma.trigger, source), source in sources)
 
     def _pulse(self, line: Callable[[], None], source: int) -> None:
-        """An interrupt of a module that triggers the DMA too."""
+        """An interrupt of a module that also triggers the DMA."""
         line()
         if source in self._dma_sources:
             self.dma.trigger(source)
 
     def _level_stands(self, source: int) -> bool:
-        """Whether a trigger is a level of an SPI's FIFO, and stands."""
+        """Whether a trigger is a level of an SPI FIFO that is active now."""
         for letter, transmit in DMA_SPI.items():
             if source in (transmit, transmit + 1):
                 return self.spi[letter].at_level(receive=source != transmit)
@@ -512,7 +513,7 @@ class Chip:
         )  # fmt: skip
 
     def _listen_to_capture(self, n: int, on: bool) -> None:
-        """The input of eCAP `n` matters from now on, or no more."""
+        """Connect the input of eCAP `n` (`on`), or disconnect it."""
         self._listen(("eCAP", n), self.input_xbar.changed[ECAP_INPUT[n]], self.ecap[n].edge, on)
 
     def _sync_after(self, n: int) -> None:
@@ -540,7 +541,7 @@ class Chip:
         )  # fmt: skip
 
     def _listen_to_trip(self, n: int, k: int, on: bool) -> None:
-        """TZk of ePWM `n` matters from now on, or no more.
+        """Connect TZk of ePWM `n` (`on`), or disconnect it.
 
         TZ5 and TZ6 are never low: this clock does not fail, and no debugger stops this CPU.
         """
@@ -552,7 +553,7 @@ class Chip:
             hear(self.input_xbar.input(k))
 
     def _listen_to_tripin(self, n: int, k: int, on: bool) -> None:
-        """TRIPINk of ePWM `n` matters from now on, or no more; those that are no input and no X-BAR's are low."""
+        """Connect TRIPINk of ePWM `n` (`on`), or disconnect it.  One that comes from no X-BAR is low."""
         if k not in (*INPUT_TRIPINS, *TRIPS):
             return
         source: Level = self.input_xbar.signal(k) if k in INPUT_TRIPINS else self.epwm_xbar.trips[k]
@@ -562,7 +563,7 @@ class Chip:
             hear(source.level)
 
     def _behaviours(self) -> dict[str, Any]:
-        """What the blocks with a clock gate do, by name."""
+        """The behaviours of blocks with a clock gate, by name."""
         return {
             **self._uniform, "DmaRegs": self.dma,
             **{f"Adc{x.lower()}Regs": adc for x, adc in self.adc.items()},
@@ -578,7 +579,7 @@ class Chip:
         }
 
     def _gates(self) -> None:
-        """What each clock gate and soft reset acts on: as the table of blocks says, and what is particular."""
+        """Connect each clock gate and soft reset as the table of blocks says; then the special cases."""
         gate, soft_reset = self.sysctrl.gate, self.sysctrl.soft_reset
         behaviours = self._behaviours()
         for name, instance in BLOCKS.items():
@@ -594,10 +595,10 @@ class Chip:
             self.sysctrl.dividers_changed.connect(epwm.clock_changed)
 
     def _watchdog_reset(self) -> None:
-        """CHOICE: the watchdog tells that it resets the device, and what is called without a kernel goes on."""
+        """CHOICE: the watchdog's reset is reported.  Functions that are called without a kernel go on."""
 
     def reset_peripherals(self, cause: str) -> None:
-        """Peripherals and pins as a reset leaves them, X-BARs and XINTs left out; `cause` is a field of RESC."""
+        """Reset peripherals and pins, except X-BARs and XINTs.  `cause` is a field of RESC."""
         self.cpu.intm = True
         self.gpio.reset()
         for behaviour in self._behaviours().values():
@@ -622,12 +623,12 @@ class Chip:
         return registers[name]
 
     def in_vain(self, name: str) -> bool:
-        """A wait for the register that C calls `name` never ends: whether it does if its peripheral is not modelled."""
+        """Whether a wait for the register `name` that never ends does so because its peripheral is not modelled."""
         block, _, register = name.partition(".")
         return block in self._unmodelled and self._unmodelled[block].in_vain(register)
 
     def signal_of(self, pin: int) -> str:
-        """The signal of a module that GPIO`pin` is set to; empty: none of a modelled one."""
+        """The module signal that GPIO`pin` is set to; empty if no modelled module has it."""
         function = self.gpio.mux(pin)
         return next((signal for signal, pins in PIN_FUNCTIONS.items() if pins.get(pin) == function), "")
 
@@ -657,7 +658,7 @@ class Chip:
         return True
 
     def _read_vector(self, addr: int) -> int | None:
-        """Half of an entry of the vector table: of the address of its routine."""
+        """Read half of an entry of the vector table: half of the address of its routine."""
         vector = self._vectors_at.get(addr & ~1)
         if vector is None:
             return None
@@ -665,7 +666,7 @@ class Chip:
         return (self.memory.code_address(routine) if routine else 0) >> 16 * (addr & 1) & 0xFFFF
 
     def _write_vector(self, addr: int, word: int) -> bool:
-        """Half of an entry; with the upper half the address is whole."""
+        """Write half of an entry of the vector table.  Writing the upper half completes the address."""
         vector = self._vectors_at.get(addr & ~1)
         if vector is None:
             return False

@@ -1,7 +1,7 @@
 """Virtual time: integer SYSCLK cycles and one queue of events.
 
 One cycle is 5 ns (SYSCLK 200 MHz, F2837xS data sheet).  Time passes in two ways only: the CPU executes
-(`charge`), or the CPU is idle and time is carried to the next event (`advance_to`).
+(`charge`), or the CPU is idle and time moves on to the next event (`advance_to`).
 
 What happens within one charge::
 
@@ -42,17 +42,17 @@ def event_time(event: Event) -> int:
 
 
 def event_callback(event: Event | None) -> Callable[[], None] | None:
-    """What an event will run; None if it has run, was cancelled, or is no event."""
+    """The callback of an event; None if it has run, was cancelled, or is not an event."""
     callback: Callable[[], None] | None = None if event is None else event[3]
     return callback
 
 
 def _never() -> None:
-    """What the event at NEVER would run."""
+    """The callback of the event at NEVER, which never runs."""
 
 
 def nobody() -> None:
-    """Nobody has the CPU: no interrupt is taken."""
+    """The attention callback when nothing has the CPU: no interrupt is taken."""
 
 
 class Clock:
@@ -69,15 +69,15 @@ class Clock:
     def __init__(self) -> None:
         self.now = 0
         self.next = NEVER
-        #: The cycles of polls, delays and idling, which are carried over and not executed one by one.
+        #: The cycles of polls, delays and idling.  Time skips them; they are not executed one by one.
         self.waited = 0
-        #: Whether somebody wants the CPU to look (`request_attention`).
+        #: Whether the CPU must look for interrupts or task switches (`request_attention`).
         self.need_attention = False
         self._attention: Callable[[], None] = nobody
         #: The first event is kept apart while that is cheap: what is scheduled as the next thing to happen (a
         #: conversion, a transfer) never enters the heap.  It sorts before all of the heap; None: nothing is kept apart.
         self._soonest: Event | None = None
-        #: Closed by an event that never comes, so that there is always a first one.
+        #: Contains an event that never comes, so that there is always a first one.
         self._heap: list[Event] = [[NEVER, 0, 0, _never]]
         self._sequence = 0
         self._cancelled = 0
@@ -132,19 +132,19 @@ class Clock:
         return event_time(heap[0]) if soonest is event else min(map(event_time, heap[1:3]))
 
     def serve_with(self, attention: Callable[[], None]) -> None:
-        """Who has the CPU from now on: `attention` is called, with the CPU's time, after events that requested it.
+        """Give the CPU to a new owner: `attention` is called, at the CPU's time, after events that requested it.
 
-        There is one at a time: the core, then the kernel that takes it over, `nobody` when the program has ended.
+        There is one owner at a time: the core, then a kernel that takes the CPU over, `nobody` after the program's end.
         """
         self._attention = attention
 
     @property
     def server(self) -> Callable[[], None]:
-        """Who has the CPU."""
+        """The attention callback of the CPU's owner."""
         return self._attention
 
     def request_attention(self) -> None:
-        """Have the CPU look as soon as it can (interrupt latched, task made ready)."""
+        """Have the CPU look as soon as it can for a latched interrupt or a ready task."""
         self.need_attention = True
         # A request from a register access is seen at the next charge.
         if self.next > self.now:
@@ -183,7 +183,7 @@ class Clock:
             self._attention()
 
     def advance_to(self, time: int) -> None:
-        """Carry an idle CPU to `time`, stopping at each event on the way."""
+        """Move the time of an idle CPU to `time`.  It stops at each event on the way."""
         while self.next <= time:
             if self.next > self.now:
                 self.waited += self.next - self.now
@@ -205,7 +205,7 @@ class Clock:
                 self.run_due()
 
     def poll(self, iteration_cycles: int) -> int:
-        """Carry a loop that only polls a flag to its first iteration at or after the next event.
+        """Move the time of a loop that only polls a flag to its first iteration at or after the next event.
 
         Equal to running the iterations one by one, because between events no register changes.
         Returns the time then; NEVER, without moving, when no event is left: then nothing can end the poll.
@@ -213,7 +213,7 @@ class Clock:
         now, due = self.now, self.next
         event = self._soonest
         if event is not None and due > now:
-            # What is polled for is nearly always the event kept apart, and alone: it runs as in `run_due`.
+            # The poll nearly always waits for the event that is kept apart, and it alone: it runs as in `run_due`.
             cpu_time = due + (now - due) % iteration_cycles
             self.waited += cpu_time - now
             self._soonest = None

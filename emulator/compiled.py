@@ -1,9 +1,9 @@
 """Uses the compiled build of these sources, if there is one that belongs to them.
 
-`hil build` translates the modules where most of the time goes into extension modules: same names, same bytes, two to
-three times as fast.  They lie in a folder of their own with a manifest that names every source they may depend on, by
-its SHA-256.  One source that differs, and the whole build is left alone: what runs is always what is written.
-`HIL_PURE=1` leaves it alone too.
+`hil build` compiles the modules that take most of the time into extension modules.  Names and results are the same, at
+two to three times the speed.  They lie in a folder of their own.  A manifest there names every source that they may
+depend on, with its SHA-256.  If one source differs, the whole build is ignored: so the program always runs the sources
+as they are.  `HIL_PURE=1` ignores the build too.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pathlib import Path
 from sysconfig import get_config_var
 from typing import Any, Final
 
-#: Where the packages lie; sources are named relative to it.
+#: The folder of the packages.  Sources are named relative to it.
 ROOT: Final = Path(__file__).parent.parent
 #: The build for this interpreter; another one has its own beside it.
 STORE: Final = Path(__file__).with_name("_compiled") / str(get_config_var("SOABI"))
@@ -38,12 +38,12 @@ class Finder(MetaPathFinder):
 
 
 def digest(source: Path) -> str:
-    """What identifies a source."""
+    """The digest that identifies a source."""
     return sha256(source.read_bytes()).hexdigest()
 
 
 def look(store: Path = STORE, root: Path = ROOT) -> tuple[str, dict[str, str]]:
-    """What the build in `store` is ("none", "stale", "fresh"), and where its modules lie if it is fresh."""
+    """The state of the build in `store` ("none", "stale", "fresh"), and the paths of its modules if it is fresh."""
     try:
         manifest = json.loads((store / "manifest.json").read_text("utf-8"))
         fresh = all(digest(root / name) == known for name, known in manifest["sources"].items())
@@ -56,7 +56,10 @@ def look(store: Path = STORE, root: Path = ROOT) -> tuple[str, dict[str, str]]:
 
 
 def install() -> str:
-    """Put the build before the sources; returns how this process runs: "compiled", "pure", or "stale" (pure, too)."""
+    """Import from the build before the sources.
+
+    Returns how this process runs: "compiled", "pure", or "stale" (pure, because the build does not fit the sources).
+    """
     if os.environ.get("HIL_PURE", "0") not in ("", "0"):
         return "pure"
     state, files = look()

@@ -4,8 +4,8 @@ SPRU430: on interrupt entry ST1 is pushed, then INTM and DBGM are set and EALLOW
 them.  An interrupt is taken between two charges of the CPU, runs as a nested call on the interrupted Python
 stack, and is masked while INTM is set.
 
-Interrupts that leave what they interrupt not a single cycle, one behind the other, for long, are a storm: a finding and
-the end of the run, which would be nothing else any more.
+If interrupts follow each other for long, and the interrupted code does not get a single cycle, that is a storm.  It is
+a finding and ends the run, because nothing else would run any more.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ INTERRUPT_ENTRY_CYCLES: Final = 14
 INTERRUPT_EXIT_CYCLES: Final = 8
 #: Words pushed on the interrupted stack by the core itself.
 INTERRUPT_CONTEXT_WORDS: Final = 14
-#: CHOICE: a storm is as many interrupts in a row, over as many cycles, in which nothing else was executed.  A routine
-#: of 100 cycles that takes each sample of a buffer has taken 20,000 of them in that time.
+#: CHOICE: a storm is this many interrupts in a row, over at least this many cycles, while nothing else was executed.
+#: In that time a routine of 100 cycles that takes each sample of a buffer has taken 20,000 samples.
 STORM_INTERRUPTS: Final = 1000
 STORM_CYCLES: Final = 10 * CYCLES_PER_MS
 
 
-#: What waits at a line of the CPU: its vector, what asks for it, where its routine begins.
+#: The interrupt at a line of the CPU: its vector, its source, and where its routine begins.
 Description = Callable[[], tuple[str, str, Place | None]]
 
 
@@ -51,7 +51,7 @@ class Cpu:
     def __init__(self, clock: Clock, findings: Findings) -> None:
         self.clock = clock
         self.findings = findings
-        #: Where the firmware is.
+        #: The position of the firmware.
         self.position = findings.position
         #: Power-on state (ST1 = 0x080B: INTM set, EALLOW clear).
         self.eallow = False
@@ -68,23 +68,23 @@ class Cpu:
         self._described: dict[int, Description] = {}
         #: Lines that firmware has latched itself.
         self._forced = 0
-        #: At this level of nesting: when the last interrupt was left, how many came in a row, since when.
+        #: At this level of nesting: when the last interrupt ended, how many came in a row, and since when (cycles).
         self._left = -1
         self._row = 0
         self._began = 0
         clock.serve_with(self.service)
 
     def connect(self, line: int, handler: Callable[[], None], described: Description | None = None) -> None:
-        """What runs when interrupt `line` (1..14) is taken: the PIE's fetch, or a timer's ISR.
+        """Set the handler of interrupt `line` (1..14): the PIE's fetch, or a timer's ISR.
 
-        `described` says what waits there; another handler of the line leaves it.
+        `described` returns what waits at the line.  A later handler without one keeps it.
         """
         self._handlers[line] = handler
         if described is not None:
             self._described[line] = described
 
     def raise_line(self, line: int) -> None:
-        """Latch interrupt `line` in IFR and have it looked at."""
+        """Latch interrupt `line` in IFR, and request the CPU's attention."""
         self.ifr |= 1 << (line - 1)
         if not self.intm and self.ifr & self.ier:
             self.clock.request_attention()
@@ -108,7 +108,7 @@ class Cpu:
             self.clock.request_attention()
 
     def write_ifr(self, mask: int) -> None:
-        """Load IFR: a bit that is set is as good as an interrupt that has come."""
+        """Load IFR.  A bit that is set counts as an interrupt that has come."""
         self._forced |= mask & ~self.ifr
         self.ifr = mask & 0xFFFF
         if not self.intm and self.ifr & self.ier:
@@ -133,7 +133,7 @@ class Cpu:
             self._enter(line)
 
     def _storm(self, line: int) -> NoReturn:
-        """Nothing but interrupts has run for long, and the next one waits at `line`."""
+        """Report a storm: only interrupts have run for long, and the next one waits at `line`."""
         described = self._described.get(line)
         unknown = f"interrupt {line} of the CPU", "its source", None
         vector, source, begins = unknown if described is None else described()

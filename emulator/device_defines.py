@@ -1,7 +1,7 @@
-"""TI's names for values of bit fields: what the headers `F2837xS_*_defines.h` define for the blocks modelled here.
+"""TI's names for values of bit fields, from the headers `F2837xS_*_defines.h`, for the blocks modelled here.
 
-Above each group stands the field that it is for, `Block.REGISTER.FIELD`, or the register where the value is a whole
-word; several fields, where a group serves several.  Source: HDR, the header named in each section.
+A comment above each group names its field or fields (`Block.REGISTER.FIELD`), or the register where the value is a
+whole word.  Source: HDR, the header named in each section.
 """
 
 from __future__ import annotations

@@ -1,13 +1,12 @@
-"""What the device header and TI's start-up files give a C program besides registers: `device_h.py` declares it.
+"""TI's C functions from the device header and the start-up files; `device_h.py` declares them.
 
-Each function does to the modelled registers what TI's does, in its order, through the registers' own access: protected
-ones between EALLOW and an EDIS that does not nest.  What those files do to modules that are not modelled (trims,
-unbonded pins) is left out.
-Time.  CHOICE: a call takes what TI's C takes by the prices of `c28x/passes/costs.py`: a field is read, modified and
-written, a loop takes its turns.  Functions that reach their registers through pointers are priced too high by that;
-where TI's compiler's output for this part was counted (optimised, with call and return), its instructions count, and
-two wait states an access: GPIO_WritePin 36, GPIO_SetupPinMux 75, GPIO_SetupPinOptions 105.  Waits for the PLL take what
-the PLL takes (`peripherals/sysctrl.py`): five locks, and 2048 periods of its oscillator.
+Each function accesses the modelled registers as TI's function does, and in the same order; protected registers between
+EALLOW and an EDIS that does not nest.  Accesses to modules that are not modelled (trims, unbonded pins) are left out.
+Time.  CHOICE: a call takes the time of TI's C code at the prices of `c28x/passes/costs.py`: a field is read, modified
+and written, a loop takes its turns.  For functions that reach their registers through pointers, this is too high.
+Where the instructions of TI's compiler for this part were counted (optimised, with call and return), that count is
+used, with two wait states an access: GPIO_WritePin 36, GPIO_SetupPinMux 75, GPIO_SetupPinOptions 105.  Waits for the
+PLL take the PLL's time (`peripherals/sysctrl.py`): five locks, and 2048 periods of its oscillator.
 Sources: HDR F2837xS_SysCtrl.c, F2837xS_PieCtrl.c, F2837xS_PieVect.c, F2837xS_Gpio.c, F2837xS_CpuTimers.c,
 F2837xS_Adc.c, F2837xS_can.c, F2837xS_Dma.c, F2837xS_ECap.c, F2837xS_EPwm.c, F2837xS_EQep.c, F2837xS_Spi.c,
 F2837xS_TempSensorConv.c, F2837xS_usDelay.asm.
@@ -48,8 +47,8 @@ _CAN_BUSY: Final = 1 << 15
 # F28x_usDelay, in cycles
 _LOOP: Final = 5
 _LOOP_CALL: Final = 9
-#: Nobody else has the flash, every pin is bonded, no trim is missing, no debugger stops, and TI leaves two functions
-#: empty.  Function -> its time.
+#: Functions that do nothing here, with their time: nothing else owns the flash, every pin is bonded, no trim is
+#: missing, no debugger stops, and TI leaves two functions empty.
 _WITHOUT_EFFECT: Final = {
     **dict.fromkeys(("SeizeFlashPump", "SeizeFlashPump_Bank0", "SeizeFlashPump_Bank1", "ReleaseFlashPump"), 22),
     **dict.fromkeys(("GPIO_EnableUnbondedIOPullups", "GPIO_EnableUnbondedIOPullupsFor100Pin"), 44),
@@ -57,10 +56,10 @@ _WITHOUT_EFFECT: Final = {
 }  # fmt: skip
 #: A field assignment.
 _FIELD: Final = 2 * costs.REGISTER + costs.REGISTER_FIELD
-#: A turn of a loop that writes a word through a pointer, and of one that copies a vector.
+#: Cycles of one turn of a loop that writes a word through a pointer, and of one that copies a vector.
 _CLEAR_TURN: Final = costs.TURN + costs.POINTER
 _COPY_TURN: Final = _CLEAR_TURN + costs.POINTER + 2 * costs.LOAD_MEMORY
-#: What functions take besides call and register accesses: what TI's compiler was counted to make of them, less those.
+#: Cycles of functions besides call and register accesses: the counted instructions of TI's compiler, less those.
 _WORK: Final = {
     "GPIO_WritePin": 36 - costs.CALL - costs.REGISTER,
     "GPIO_SetupPinMux": 75 + 2 * 8 - costs.CALL - 4 * _FIELD,
@@ -74,7 +73,7 @@ _LOCKS: Final = 5
 _MEASURED: Final = 0x800
 #: NOPs between two writes of CLKSRCCTL1.
 _OSCILLATOR_DELAY: Final = 300
-#: 0 C, as TI's conversion has it, and CHOICE: what the conversion takes, of which nothing was counted.
+#: The code at 0 C in TI's conversion, and CHOICE: the time of the conversion, which was not counted.
 _KELVIN: Final = 273
 _TEMPERATURE: Final = 60
 _VREADST, _RWAIT, _BANK_ACTIVE, _ECC_ON = 0x14, 3, 3, 0xA
@@ -82,7 +81,7 @@ _VREADST, _RWAIT, _BANK_ACTIVE, _ECC_ON = 0x14, 3, 3, 0xA
 
 @dataclass(frozen=True)
 class _Pins:
-    """Pins that get one function, their pull-up, and the qualification of inputs (None: left as it is)."""
+    """Pins that get one function; their pull-up, and the qualification of inputs (None: unchanged)."""
 
     pins: range
     function: int
@@ -107,7 +106,7 @@ class DeviceFunctions:
     def __init__(self, chip: Chip) -> None:
         self._chip = chip
         self._cpu, self._clock, self._findings = chip.cpu, chip.clock, chip.findings
-        #: Of InitTempSensor; a global of TI's file, 0 before.
+        #: The argument of InitTempSensor; a global of TI's file, 0 before the call.
         self._sensor_vrefhi_v = 0.0
         names = (n for n in dir(type(self)) if not n.startswith("_"))
         timers = {
@@ -131,21 +130,21 @@ class DeviceFunctions:
         self.externs = functions | timers | inputs | pins | without_effect | self._dma_functions()
 
     def _nothing(self, cycles: int, *_arguments: int) -> None:
-        """What a function does that has nothing to do here."""
+        """A function that only takes time."""
         self._clock.charge(cycles)
 
     # The core
 
     def EALLOW(self) -> None:
-        """Protected registers may be written."""
+        """Allow writes to protected registers."""
         self._cpu.eallow = True
 
     def EDIS(self) -> None:
-        """They may not."""
+        """Forbid writes to protected registers."""
         self._cpu.eallow = False
 
     def EINT(self) -> None:
-        """Clear INTM: what is latched and enabled is taken at once."""
+        """Clear INTM.  Latched and enabled interrupts are taken at once."""
         self._cpu.enable_interrupts()
 
     def DINT(self) -> None:
@@ -165,37 +164,37 @@ class DeviceFunctions:
         delay_us(self._clock, microseconds)
 
     def InitTempSensor(self, vrefhi_voltage: float) -> None:
-        """Switch the sensor on, wait for it, and keep the reference that its results will have."""
+        """Switch the sensor on, wait for it, and store the reference voltage for the conversions of its results."""
         with self._unprotected():
             self._assign("AnalogSubsysRegs", "TSNSCTL", "ENABLE", 1)
             self.DELAY_US(1000.0)
         self._sensor_vrefhi_v = vrefhi_voltage
 
     def GetTemperatureC(self, sensorSample: int) -> int:
-        """A result in degrees Celsius: half a degree is added, then it is truncated towards 0."""
+        """Convert a result to degrees Celsius: add half a degree, then truncate towards 0."""
         return int(f32(self._kelvin(sensorSample) - _KELVIN))
 
     def GetTemperatureK(self, sensorSample: int) -> int:
-        """A result in Kelvin, rounded."""
+        """Convert a result to Kelvin, rounded."""
         return int(self._kelvin(sensorSample))
 
     def _kelvin(self, sample: int) -> float:
-        """Half a Kelvin more than a result means, in the floats of the C, the sample scaled to 2.5 V before."""
+        """The temperature of a result in Kelvin plus 0.5, in the C's floats; the sample is scaled to 2.5 V first."""
         self._clock.charge(_TEMPERATURE)
         code = int(f32(f32(self._sensor_vrefhi_v / 2.5) * sample))
         degrees_q15 = f32((code - OFFSET) * SLOPE_Q15)
         return f32(f32(f32(degrees_q15 + 16384) + 32768 * _KELVIN) / 32768)
 
     def DELAY_US(self, microseconds: float) -> None:
-        """A busy wait, of fractions too."""
+        """A busy wait; fractions of a microsecond count."""
         delay_us(self._clock, microseconds)
 
     def F28x_usDelay(self, loops: int) -> None:
-        """A busy wait of five cycles a loop and nine around them; a count below 0 is as short as 0."""
+        """A busy wait of five cycles a loop, and nine around them.  A count below 0 counts as 0."""
         self._clock.delay(_LOOP * max(loops, 0) + _LOOP_CALL)
 
     def SysCtl_delay(self, count: int) -> None:
-        """The same, of driverlib."""
+        """driverlib's function for the same wait as F28x_usDelay."""
         self.F28x_usDelay(count)
 
     # Start-up
@@ -219,9 +218,9 @@ class DeviceFunctions:
                 self._write("CpuSysRegs", name, 0)
 
     def InitSysPll(self, clock_source: int, imult: int, fmult: int, divsel: int) -> None:
-        """Have the PLL make SYSCLK of an oscillator: lock it five times, and measure what it makes.
+        """Set up the PLL to make SYSCLK from an oscillator: lock it five times, and measure the result.
 
-        Nothing of it changes SYSCLK here.
+        SYSCLK does not change here.
         """
         clocks = self._chip.blocks["ClkCfgRegs"].registers
         source, multiplier, divider = clocks["CLKSRCCTL1"], clocks["SYSPLLMULT"], clocks["SYSCLKDIVSEL"]
@@ -327,9 +326,9 @@ class DeviceFunctions:
                 self._write("PieCtrlRegs", f"{kind}{group}", 0)
 
     def InitPieVectTable(self) -> None:
-        """A routine that only stops in every vector, and the PIE on.
+        """Write a routine that only stops the program into every vector, and switch the PIE on.
 
-        CHOICE: one that is taken is reported, and the program goes on.
+        CHOICE: if such a routine runs, that is reported, and the program goes on.
         """
         self._chip.vectors.clear()
         self._cpu.eallow = False
@@ -537,7 +536,7 @@ class DeviceFunctions:
             self._modify("DmaRegs", "DEBUGCTRL", 1 << 15, 1 << 15)
 
     def _dma_functions(self) -> dict[str, Callable[..., Any]]:
-        """Those that each channel has, by their names in C."""
+        """The functions of every channel, by their names in C."""
         found: dict[str, Callable[..., Any]] = {}
         for n in range(1, CHANNELS + 1):
             prefix = f"DMACH{n}"
@@ -559,7 +558,7 @@ class DeviceFunctions:
         return found
 
     def _dma_addresses(self, n: int, destination: Pointer, source: Pointer) -> None:
-        """Source and destination, and where they wrap to."""
+        """Set source and destination, and the addresses that they wrap to."""
         with self._unprotected():
             for side, pointer in (("SRC", source), ("DST", destination)):
                 for name in ("BEG_ADDR", "ADDR"):
@@ -625,7 +624,7 @@ class DeviceFunctions:
         self._modify("GpioCtrlRegs", name, mask, bits)
 
     def _pin(self, n: int) -> tuple[str, int] | None:
-        """The prefix of a pin's port, and its bit there.  Of a pin that does not exist nothing is touched."""
+        """The prefix of a pin's port, and the pin's bit there; None for a pin that does not exist."""
         if n >= PIN_COUNT:
             message = f"GPIO{n} does not exist: pins are 0 to {PIN_COUNT - 1}, and the access goes beyond the last port"
             self._findings.report("index", message, object=f"GPIO{n}", value=n)

@@ -1,10 +1,10 @@
-"""F2837xS_Device.h: what the device header gives a C file, under the names that C uses.
+"""F2837xS_Device.h: the contents of the device header, under the names that C uses.
 
-The register blocks are those of `blocks.py`, typed for editors and type checkers; the translator resolves
-`AdcaRegs.ADCCTL1.bit.F` when an image is linked to a board.  Before that they are placeholders: touching one says so.
-EALLOW, EDIS, EINT, DINT, ERTM and DRTM are statements in C and calls here.  The functions are those of TI's start-up
-files that drivers call; what each does stands in `device_functions.py`.  A routine in `PieVectTable` counts as declared
-`interrupt`.
+The register blocks are those of `blocks.py`, typed for editors and type checkers.  The translator resolves
+`AdcaRegs.ADCCTL1.bit.F` when an image is linked to a board.  Before that they are placeholders, and touching one raises
+an error that says so.  EALLOW, EDIS, EINT, DINT, ERTM and DRTM are statements in C and calls here.  The functions are
+those of TI's start-up files that drivers call; `device_functions.py` implements them.  A routine in `PieVectTable`
+counts as declared `interrupt`.
 Sources: HDR (F2837xS_Device.h, F2837xS_Adc_defines.h, F2837xS_Gpio_defines.h, F2837xS_GlobalPrototypes.h,
 F2837xS_CpuTimers.h).
 """

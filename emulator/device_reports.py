@@ -1,4 +1,6 @@
-"""What devices report, as findings of a board: at the statement that executes, or at the call of both accesses."""
+"""Turns reports of devices into findings of a board.
+
+The place is the statement that executes, or the call that made both accesses."""
 
 from __future__ import annotations
 
@@ -40,7 +42,7 @@ class Reports:
         return self._findings.position.calls or ()
 
     def _path_of_both(self, earlier: Mark) -> tuple[Place, ...]:
-        """From the innermost call of both accesses outwards; nothing if they share none."""
+        """The call path from the innermost call that made both accesses outwards; empty if there is none."""
         position = self._findings.position
         both = shared(earlier, position.calls or ())
         if not both:

@@ -42,7 +42,7 @@ from emulator.system import System
 
 
 class LinkedFunction:
-    """A function of the firmware: called from Python with plain numbers."""
+    """A function of the firmware, which Python calls with plain numbers."""
 
     __slots__ = ("_call", "_function", "_linked")
 
@@ -87,7 +87,7 @@ class LinkedFunction:
 
     @property
     def text(self) -> str:
-        """The Python that the translator made of it."""
+        """The Python source that the translator made of it."""
         return self._linked.sources[self._function.path]
 
 
@@ -199,7 +199,7 @@ class Firmware:
         return known
 
     def initial(self, path: str, value: Any) -> None:
-        """The value that a never-written object starts from, whatever the fill; None gives it back to the fill."""
+        """Set the initial value of a never-written object, in place of the fill.  None restores the fill."""
         known = self.runtime.initials.setdefault(path, {})
         if value is None:
             known.pop("value", None)
@@ -207,11 +207,11 @@ class Firmware:
             known["value"] = value
 
     def plant(self, path: str, index: int, value: Any) -> None:
-        """What the cell holds that `path[index]`, outside the object, designates."""
+        """Set the value of the memory cell at `path[index]`, where the index lies outside of the object."""
         self.runtime.planted.setdefault(path, {})[index] = value
 
     def planted(self, path: str, index: int) -> Any:
-        """What that cell holds now."""
+        """The present value of such a cell."""
         return self.runtime.planted[path][index]
 
     def last_locals(self, path: str) -> dict[str, Any]:
@@ -225,7 +225,7 @@ def runtime_of(
     system: System, *, fill: str = "zero", divide: str = "ieee", float_to_int: str = "saturate",
     driven: Callable[[], bool] | None = None,
 ) -> Runtime:  # fmt: skip
-    """What an image on `system` runs with.
+    """The run-time of an image on `system`.
 
     `fill` says what never-written objects hold (`zero`, `ones`, `nan`, `random:SEED`, `stack`, `trap`); `divide`
     selects the float divider (`ieee`, `nr`), `float_to_int` what a conversion out of range gives (`saturate`,
@@ -272,13 +272,13 @@ def link(
     """Translate `modules` and bind them to `system`.
 
     `fill`, `divide` and `float_to_int` are those of `runtime_of`, `externs` that of `bind`.  `room` gives arrays
-    (`module.function.name`) more elements than the C does.  `watch` looks for what only shows between tasks
-    (`emulator.sysbios.watch`); `static` reports what the typed tree shows without running; `entries` are functions that
-    are called from outside of the image (`us.Read_Distance`, or a pattern: `us.*`), for what `static` says of functions
-    never called.  `include`, `defines` and `abi` are for modules that are C files.  `float_division` says how long a
-    division takes (`calibrated`, `tmu`, `fast`, `standard`); it, `calibration`, `coverage`, `keep_locals` and `steps`
-    are those of `CompileOptions`.
-    `asked` is what else `Program` is told; `keep`: see `emulator.c28x.cache`.
+    (`module.function.name`) more elements than the C does.  `watch` looks for errors that show only between threads
+    (`emulator.sysbios.watch`).  `static` reports errors that the typed tree shows without a run.  `entries` are
+    functions that are called from outside of the image (`us.Read_Distance`, or a pattern: `us.*`): `static` does not
+    report them as never called.  `include`, `defines` and `abi` are for modules that are C files.  `float_division`
+    says how long a division takes (`calibrated`, `tmu`, `fast`, `standard`).  It, `calibration`, `coverage`,
+    `keep_locals` and `steps` are those of `CompileOptions`.
+    `asked` holds further arguments for `Program`; for `keep` see `emulator.c28x.cache`.
 
     Raises ValueError for an unknown policy and for source outside the language, with file and line.
     """

@@ -1,8 +1,8 @@
-"""Which pins carry each signal of a modelled module, and as which function of the pin.
+"""The pins that can carry each signal of a modelled module, and the pin function for it.
 
-A function is (GMUX << 2) + MUX, as the pin's two registers hold it.  Of several pins a message names the first: where
-the LaunchPad brings the signal out, else the lowest.
-Trips and other inputs of the Input X-BAR take any pin.
+A function is (GMUX << 2) + MUX, as the pin's two registers hold it.  Of several pins, messages name the first one.  It
+is the pin where the LaunchPad brings the signal out, else the lowest.
+The Input X-BAR takes trips and other inputs from any pin.
 Sources: DS, signal multiplexing; HDR pin_map.h.
 """
 

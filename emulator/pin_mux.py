@@ -1,7 +1,7 @@
 """The pin multiplexer between peripherals and pins: a signal passes while the pin is set to it.
 
-GPIO writes the mux registers; `Gpio` tells who listens.  Mux numbers are (GMUX << 2) + MUX, as in the pin table of
-the data sheet (DS, signal multiplexing; HDR pin_map).
+The GPIO module holds the mux registers; `Gpio` reports their changes.  Mux numbers are (GMUX << 2) + MUX, as in the pin
+table of the data sheet (DS, signal multiplexing; HDR pin_map).
 """
 
 from __future__ import annotations
@@ -15,14 +15,15 @@ from emulator.clock import Clock, Event
 from emulator.signal import Signal
 from emulator.signals import DutyWire, I2cBus, PwmWire, QuadratureWire, SerialFrame, SerialLine, SpiBus, Wire
 
-#: After everything that changes a pin in this cycle.
+#: Priority of an event that runs after all changes of pins in the same cycle.
 _LOOK_PRIORITY: Final = 3
 #: The pins that can carry a signal, each with its mux number there.
 Routes: TypeAlias = Mapping[int, int]
 
 
 class Pads(Protocol):
-    """What GPIO offers: the setting of each pin, and its input behind inversion and qualification."""
+    """The GPIO module as the multiplexer sees it: each pin's function, and its input after inversion and qualification.
+    """
 
     def mux(self, pin: int) -> int:
         """The function of a pin."""
@@ -36,11 +37,11 @@ class Pads(Protocol):
 
     @property
     def input_changed(self) -> Sequence[Signal[int]]:
-        """Of each pin, (level): every change of that level."""
+        """A signal for each pin, (level): every change of the level that a module sees."""
 
 
 class Crossbar:
-    """Routes of one chip, by pin and mux number.  `pads` has the present setting."""
+    """Connects the module signals of one chip with its pins, by pin and mux number.  `pads` has the present setting."""
 
     def __init__(self, clock: Clock, pads: Pads, pins: Sequence[Wire]) -> None:
         self._clock = clock
@@ -48,7 +49,7 @@ class Crossbar:
         self._mux = pads.mux
         self._pins = pins
         self._duties: dict[int, list[tuple[int, PwmWire, DutyWire]]] = {}
-        #: What follows the function of a pin, by pin.
+        #: Pin -> the functions to call when its mux changes.
         self._followers: dict[int, list[Callable[[], None]]] = {}
         pads.mux_changed.connect(self._changed)
 
@@ -57,7 +58,7 @@ class Crossbar:
         return any(self._mux(pin) == mux for pin, mux in routes.items())
 
     def _nowhere(self, routes: Routes, what: str) -> str:
-        """Why no pin carries `what`: of the first what it has instead; empty when one does."""
+        """Why no pin carries `what`: the function of its first pin instead; empty if a pin carries it."""
         if self._carried(routes):
             return ""
         pin, mux = next(iter(routes.items()))
@@ -69,9 +70,9 @@ class Crossbar:
         follow()
 
     def bus(self, bus: SpiBus | I2cBus | CanPort, lines: Sequence[Routes], wired: Sequence[int]) -> None:
-        """A module reaches its bus while each of `lines` (SIMO, SOMI and CLK; SDA and SCL; CANTX and CANRX) has a pin.
+        """Connect a module with its bus while each of `lines` (SIMO, SOMI, CLK; SDA, SCL; CANTX, CANRX) has a pin.
 
-        `wired` are the pins of the bus; on others words go somewhere, but not there.  Empty: all pins are.
+        `wired` are the pins that lead to the bus; words on other pins do not reach it.  Empty: all pins lead to it.
         """
         on_bus = [{pin: routes[pin] for pin in wired if pin in routes} or routes for routes in lines]
 
@@ -83,7 +84,7 @@ class Crossbar:
             self._follow(routes, follow)
 
     def level_out(self, routes: Routes, driver: str, level: int) -> Callable[[int], None]:
-        """What puts the level of a module's output, `level` at first, on the pins that are muxed to it."""
+        """A function that puts the level of a module's output on the pins muxed to it; `level` is the first level."""
         pins: list[Wire] = []
 
         def put(new: int) -> None:
@@ -102,7 +103,7 @@ class Crossbar:
         return put
 
     def serial_out(self, source: SerialLine, routes: Routes, pin_lines: dict[int, SerialLine]) -> None:
-        """Frames of a transmitter appear on each pin muxed to it."""
+        """Put the frames of a transmitter on each pin that is muxed to it."""
         lines: list[SerialLine] = []
 
         def forward(frame: SerialFrame) -> None:
@@ -117,7 +118,7 @@ class Crossbar:
         self._follow_line(source, routes)
 
     def serial_in(self, target: SerialLine, routes: Routes, pin_lines: dict[int, SerialLine]) -> None:
-        """Frames on a pin reach the receiver while the pin is muxed to it."""
+        """Give the frames on a pin to the receiver while the pin is muxed to it."""
         for pin, mux in routes.items():
             line = pin_lines[pin]
 
@@ -144,9 +145,9 @@ class Crossbar:
     def quadrature_in(
         self, target: QuadratureWire, a: Routes, b: Routes, sources: Mapping[tuple[int, int], QuadratureWire]
     ) -> None:
-        """Edges of an encoder on a pair of pins (A, B) reach the module while both are muxed to it.
+        """Give the edges of an encoder on a pair of pins (A, B) to the module while both are muxed to it.
 
-        So do those of the levels of pins, A and B each on any of its pins.
+        Edges of plain pin levels reach it too, with A and B each on any of its pins.
         """
         stops: list[Callable[[], None]] = []
         lines = QuadratureLevels(self._clock, self._pads, target)
@@ -165,7 +166,7 @@ class Crossbar:
         self._follow({**a, **b}, follow)
 
     def level_in(self, routes: Routes, listener: Callable[[int], None]) -> None:
-        """Call `listener(level)` at every change of the pin that carries an input.  To be given another pin is none."""
+        """Call `listener(level)` at every change of the pin that carries an input.  A new pin is no change."""
         carrier: int | None = None
         stop: Callable[[], None] | None = None
 
@@ -180,18 +181,18 @@ class Crossbar:
         self._follow(routes, follow)
 
     def _carrier(self, routes: Routes) -> int | None:
-        """The pin that carries an input; the first, if there are several."""
+        """The pin that carries an input (the first of several); None if no pin does."""
         return next((pin for pin, mux in routes.items() if self._mux(pin) == mux), None)
 
     def duty_out(self, source: PwmWire, routes: Routes, targets: Mapping[int, DutyWire]) -> None:
-        """A PWM output on its pins while they are muxed to it: its level on the pin, its duty on the target.
+        """Put a PWM output on the pins muxed to it: its level on the pin, its duty on the target.
 
-        Otherwise, and in high impedance, the target has the level of the pin.
+        If a pin is not muxed to it, or is in high impedance, the target has the level of the pin.
         """
         for pin, mux in routes.items():
             self._duties.setdefault(pin, []).append((mux, source, targets[pin]))
             route = partial(self._route, pin)
-            # Told afterwards, because a listener that comes before the change would still see the old duty.
+            # Report it after the change: before it, a listener would still see the old duty.
             source.duty_changed.connect(route)
             self._pins[pin].noticed.connect(route)
             route()
@@ -215,10 +216,10 @@ class Crossbar:
 
 
 class QuadratureLevels:
-    """The levels of the pins A and B as edges of a pair: what a square wave on a pin does to an eQEP.
+    """Turns the levels of the pins A and B into quadrature edges, for square waves on the pins of an eQEP.
 
-    The decoder looks once a cycle: both lines changed in one cycle are a clash.  The levels are those that GPIO hands
-    to modules, behind inversion and qualification.
+    The decoder samples once a cycle.  If both lines change in one cycle, that is a clash.  The levels are those that
+    GPIO gives to modules, after inversion and qualification.
     """
 
     #: (A, B) -> quarter of a line: A leads B going forward.
@@ -232,7 +233,7 @@ class QuadratureLevels:
         self._look_event: Event | None = None
 
     def connect(self, a: int | None, b: int | None) -> None:
-        """Take A and B from these pins; None: no pin carries the line, it is low (CHOICE)."""
+        """Take A and B from these pins.  None: no pin carries the line, so it is low (CHOICE)."""
         if (a, b) == self._lines:
             return
         for stop in self._stops:
@@ -240,7 +241,7 @@ class QuadratureLevels:
         self._lines = a, b
         changed = self._pads.input_changed
         self._stops = [changed[pin].connect(self._changed) for pin in self._lines if pin is not None]
-        # CHOICE: to be given other pins is no edge.
+        # CHOICE: a change to other pins is no edge.
         self._quarter = self._now()
 
     def _now(self) -> int:
@@ -256,7 +257,7 @@ class QuadratureLevels:
         before, self._quarter = self._quarter, self._now()
         steps = (self._quarter - before) & 3
         target, now = self._target, self._clock.now
-        # The pair stands where the pins are: it knew nothing of their levels until one moved.
+        # Take the pair's position from the pins.  Their levels were not known here before one of them changed.
         target.position += (before - target.position) & 3
         if steps == 2:
             target.clash(now)

@@ -1,16 +1,17 @@
-"""One way to listen: what happens is a `Signal`, and whoever wants to know of it connects to it.
+"""One way to listen: each kind of event is a `Signal`, and listeners connect to it.
 
     disconnect = wire.changed.connect(listener)    # listener(level) at every change from now on
     disconnect()                                   # and no more
 
-The owner tells: `emit(...)`, or its loop written out where that is hot.
+The owner calls `emit(...)`.  Where speed matters, it writes out the loop of `emit` itself.
 
     for listener in self.changed.listeners:
         listener(level)
 
-Listeners are told in the order in which they connected.  An emission is to those who listened when it began: who
-connects meanwhile hears the next one, who disconnects meanwhile may still hear this one.  The same function connected
-twice is told twice, and each `disconnect` ends its own connection; to call it again does nothing.
+Listeners are called in the order in which they connected.  An emission goes to those that were connected when it began.
+A listener that connects meanwhile gets the next emission; one that disconnects meanwhile may still get this one.  A
+function that is connected twice is called twice.  Each `disconnect` ends its own connection; calling it again does
+nothing.
 """
 
 from __future__ import annotations
@@ -23,23 +24,23 @@ P = ParamSpec("P")
 
 
 class Signal(Generic[P]):
-    """Something that happens, told to any number of listeners.
+    """A kind of event, reported to any number of listeners.
 
-    `wanted(True)` is called before the first one connects, `wanted(False)` when the last one has gone: for an owner to
-    whom it costs something to know.
+    `wanted(True)` is called before the first listener connects, `wanted(False)` when the last one has gone.  So an
+    owner can do work for the signal only while there are listeners.
     """
 
     __slots__ = ("_connected", "_latest", "_wanted", "listeners")
 
     def __init__(self, wanted: Callable[[bool], None] | None = None) -> None:
-        #: Who is told, in their order; another tuple after every connection and disconnection.
+        #: The listeners in their order.  It is a new tuple after every connection and disconnection.
         self.listeners: tuple[Callable[P, object], ...] = ()
         self._wanted = wanted
         self._connected: dict[int, Callable[P, object]] = {}
         self._latest = 0
 
     def connect(self, listener: Callable[P, object]) -> Callable[[], None]:
-        """Call `listener` whenever it happens from now on; what is returned ends that."""
+        """Call `listener` at every emission from now on.  Returns a function that ends this."""
         if self._wanted is not None and not self._connected:
             self._wanted(True)
         self._latest += 1
@@ -48,7 +49,7 @@ class Signal(Generic[P]):
         return partial(self._disconnect, self._latest)
 
     def emit(self, *args: P.args, **kwargs: P.kwargs) -> None:
-        """It happened: tell it."""
+        """Call all listeners."""
         for listener in self.listeners:
             listener(*args, **kwargs)
 

@@ -1,8 +1,9 @@
 """Named wires: the only way in which peripherals, devices and the bench meet.
 
 A wire carries what its kind of signal needs and no more: a logic level with tri-state drivers, a voltage, a
-PWM duty (with edges for who wants them), quadrature edges, UART frames, SPI words, I2C bytes.  Who drives and who
-listens is decided by a board.  What happens on a wire is a `Signal` named after it: `wire.changed.connect(listener)`.
+PWM duty (with edges for listeners that want them), quadrature edges, UART frames, SPI words, I2C bytes.  A board
+decides which part drives a wire and which listens.  Each kind of event on a wire is a `Signal`:
+`wire.changed.connect(listener)`.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ class Edges(Protocol):
 
 
 class Level(Protocol):
-    """A level inside of the chip, as a wire has one: it can be asked at any time, and tells its changes."""
+    """A logic level inside of the chip, like that of a wire: it can be read at any time, and reports its changes."""
 
     @property
     def level(self) -> int:
@@ -37,7 +38,7 @@ class Level(Protocol):
 
 
 class LevelDriver(Protocol):
-    """What may drive a wire with a level of its own: asked when somebody looks, with edges while somebody wants them.
+    """A computed level that can drive a wire.  It is read on demand, and makes edges only while a listener wants them.
     """
 
     @property
@@ -58,8 +59,8 @@ class Wire:
     `level` is 0 or 1.  Drivers that disagree give 0 (the stronger pull-down of a push-pull stage) and are
     visible as `contention`.  With nobody driving, `pull` decides.
 
-    A driver may be a `LevelDriver` (`follow`).  Its level is asked when somebody looks, and it makes edges only while
-    somebody wants them: a listener of `changed`, or an `attend` without its `leave`.
+    A driver may be a `LevelDriver` (`follow`).  Its level is read on demand.  It makes edges only while `changed` has a
+    listener, or between `attend` and `leave`.
     """
 
     __slots__ = (
@@ -72,12 +73,12 @@ class Wire:
         self.contention = False
         self._level = pull
         self._drivers: dict[str, int] = {}
-        #: Drivers that are computed, each with what ends to hear its edges, if they are wanted.
+        #: Drivers with a computed level, each with the function that stops listening to its edges, if they are wanted.
         self._sources: dict[str, tuple[LevelDriver, Callable[[], None] | None]] = {}
         self._attention = 0
         #: (level): every change of the level.
         self.changed: Signal[int] = Signal(self._wanted)
-        #: (level): the changes that come to light anyway; computed levels make no edges for it.
+        #: (level): the changes that are noticed anyway.  Computed levels make no edges for its listeners.
         self.noticed: Signal[int] = Signal()
         #: (on): True when a first source begins to drive the wire, False when the last ends.
         self.computed: Signal[bool] = Signal()
@@ -104,7 +105,7 @@ class Wire:
         self._resolve()
 
     def follow(self, driver: str, source: LevelDriver | None) -> None:
-        """`driver` puts the level of `source` on the wire, whatever that is at each instant; None ends it.
+        """Let `driver` put the level of `source` on the wire at every instant; None ends it.
 
         Raises ValueError for a wire that follows this one: neither would have a level of its own.
         """
@@ -126,7 +127,7 @@ class Wire:
             self.computed.emit(computed)
 
     def depends_on(self, other: Wire) -> bool:
-        """Whether the level of `other` is one that this wire follows, through any number of wires."""
+        """Whether this wire follows the level of `other`, directly or through other wires."""
         return other is self or any(
             isinstance(source, Wire) and source.depends_on(other) for source, _ in self._sources.values()
         )
@@ -137,7 +138,7 @@ class Wire:
         self._resolve()
 
     def attend(self) -> None:
-        """Somebody wants every edge from now on, and hears them in another way than by `changed`."""
+        """Make computed levels produce every edge from now on, for code that does not listen to `changed`."""
         self._attention += 1
         if self._attention == 1 and self._sources:
             for driver, (source, _) in list(self._sources.items()):
@@ -158,7 +159,7 @@ class Wire:
         return bool(self._drivers)
 
     def drivers(self) -> set[str]:
-        """Who drives the wire now."""
+        """The names of the drivers that drive the wire now."""
         return set(self._drivers)
 
     def _wanted(self, wanted: bool) -> None:
@@ -177,7 +178,7 @@ class Wire:
     def _resolve(self) -> None:
         drivers = self._drivers
         if len(drivers) == 1:
-            # The usual wire: one driver, nobody to contend with.
+            # The usual wire has one driver, so there is no contention.
             (level,) = drivers.values()
             self.contention = False
         else:
@@ -193,11 +194,11 @@ class Wire:
 
 
 class AnalogWire:
-    """A voltage.  `source(cycles) -> volts` is asked when somebody samples: what drives the wire, told to listeners.
+    """A voltage.  The source that drives the wire, `source(cycles) -> volts`, is called at every sample.
 
-    Outside of the chip one source can be on the wire; while the chip itself drives it, that one does not count.
-    A source that is `steady` gives one voltage until another one replaces it, which `stepped` tells; any other
-    may change from one cycle to the next without a word.
+    Outside of the chip one source can be on the wire.  While the chip itself drives it, that one does not count.
+    A `steady` source gives one voltage until another source replaces it, which `stepped` reports.  Any other source may
+    change from one cycle to the next without a report.
     """
 
     __slots__ = (
@@ -214,15 +215,15 @@ class AnalogWire:
         self._chip_steady = False
         self._heard = False
         self.source: Callable[[int], float] = self._outside
-        #: (cycles, volts): somebody samples; without a listener it costs nothing.
+        #: (cycles, volts): every sample.  It costs nothing without a listener.
         self.sampled: Signal[int, float] = Signal(self._wanted)
         #: Something else drives the wire from now on.
         self.stepped: Signal[[]] = Signal()
 
     def follow(self, driver: str, source: Callable[[int], float] | None, *, steady: bool = False) -> None:
-        """`driver`, outside of the chip, puts `source(cycles) -> volts` on the wire from now on; None ends it.
+        """Let `driver`, outside of the chip, put `source(cycles) -> volts` on the wire from now on; None ends it.
 
-        Raises ValueError while somebody else does: two sources of one voltage are a short circuit.
+        Raises ValueError while another driver does: two sources on one wire are a short circuit.
         """
         if self._who not in ("", driver):
             raise ValueError(f"{self.name} has two sources: {self._who} and {driver}")
@@ -235,7 +236,7 @@ class AnalogWire:
     def replace(
         self, driver: str, source: Callable[[int], float], *, steady: bool = False
     ) -> Callable[[], None]:
-        """`driver` takes the place of what is on the wire from outside of the chip; what is returned puts that back."""
+        """Let `driver` replace the source outside of the chip.  Returns a function that puts the old source back."""
         before, was, was_steady = self._who, self._outside, self._outside_steady
         self._who = ""
         self.follow(driver, source, steady=steady)
@@ -246,22 +247,22 @@ class AnalogWire:
         self.follow(who, source, steady=steady)
 
     def unplug(self) -> None:
-        """Take off whatever is on the wire from outside of the chip: another source may be put there."""
+        """Remove the source outside of the chip, so that another one can be put on the wire."""
         self.follow(self._who, None)
 
     def drive(self, source: Callable[[int], float] | None, *, steady: bool = False) -> None:
-        """What the chip drives the wire with; None: it lets go."""
+        """Let the chip drive the wire with `source`; None releases it."""
         self._chip, self._chip_steady = source, steady
         self._choose()
         self.stepped.emit()
 
     @property
     def steady(self) -> bool:
-        """Whether the voltage stays as it is until `stepped` tells that it does not."""
+        """Whether the voltage cannot change without `stepped`."""
         return self._outside_steady if self._chip is None else self._chip_steady
 
     def volts(self, cycles: int) -> float:
-        """The voltage, for a part that always sees it: no sample, of which anybody is told."""
+        """The voltage, for a part that sees it all the time.  It does not count as a sample: no listener is called."""
         return (self._chip or self._outside)(cycles)
 
     def _wanted(self, wanted: bool) -> None:
@@ -314,7 +315,7 @@ class DutyWire:
 
 
 class PwmSource(Protocol):
-    """What drives a `PwmWire`."""
+    """A source that drives a `PwmWire`."""
 
     def level(self) -> int | None:
         """The level of the output now; None: high impedance."""
@@ -323,14 +324,14 @@ class PwmSource(Protocol):
         """The cycle of the next edge."""
 
     def watch(self) -> None:
-        """`watched` of the wire has changed: whether it wants the edges, by `tell`."""
+        """`watched` of the wire has changed.  While it is true, the source must report edges by `tell`."""
 
 
 class PwmWire(DutyWire):
-    """An output of an ePWM: its duty for what is slower than its period, its level and edges for what is not.
+    """An output of an ePWM: its duty for parts that are slower than its period, its level and edges for others.
 
-    Its `PwmSource` is asked for the level, and told whenever `watched` has changed: whether somebody wants the edges,
-    which it then reports by `tell`.  `released`: the output is in high impedance, its duty means nothing.
+    The level is read from its `PwmSource`.  The source is called whenever `watched` changes: while a listener wants
+    edges, the source reports them by `tell`.  `released`: the output is in high impedance, and its duty has no meaning.
     """
 
     __slots__ = ("_source", "_told", "changed", "released", "watched")
@@ -345,7 +346,7 @@ class PwmWire(DutyWire):
         self.changed: Signal[int | None] = Signal(self._wanted)
 
     def follow(self, source: PwmSource) -> None:
-        """`source` drives the output.  Raises ValueError if another one does."""
+        """Let `source` drive the output.  Raises ValueError if another source does."""
         if self._source is not None:
             raise ValueError(f"{self.name} has two sources: {self._source} and {source}")
         self._source = source
@@ -367,7 +368,7 @@ class PwmWire(DutyWire):
             self._source.watch()
 
     def tell(self, level: int | None) -> None:
-        """The output has this level now; who wants edges is told if that is one."""
+        """The output has this level now.  Report it to listeners if it is a change."""
         if level != self._told:
             self._told = level
             for listener in self.changed.listeners:
@@ -386,9 +387,9 @@ class PwmWire(DutyWire):
 class QuadratureWire:
     """The A/B pair of an incremental encoder, in whole edges (4 a line).
 
-    The source reports `move(edges, start, end)`: `edges` equally spaced between two times; positive means A
-    leads B.  A reader calls `sync` first, so that a lazily integrated plant (a listener of `looked_at`) has moved up to
-    now.  `missing` says why no pins carry the pair, while none do.
+    The source calls `move(edges, start, end)`: `edges` equally spaced edges between two times; positive means A
+    leads B.  A reader calls `sync` first, so that a plant that is integrated on demand (a listener of `looked_at`) has
+    moved up to now.  `missing` says why no pins carry the pair, while none do.
     """
 
     __slots__ = ("clashed", "looked_at", "missing", "moved", "name", "position")
@@ -399,13 +400,13 @@ class QuadratureWire:
         self.missing = ""
         #: (edges, start_cycles, end_cycles): every movement.
         self.moved: Signal[int, int, int] = Signal()
-        #: (cycles): both lines changed at once, nobody can say which way.
+        #: (cycles): both lines changed at once, so the direction is not known.
         self.clashed: Signal[int] = Signal()
-        #: (): somebody is about to look where the shaft stands.
+        #: (): a reader is about to read the position of the shaft.
         self.looked_at: Signal[[]] = Signal()
 
     def sync(self) -> None:
-        """Who turns the shaft brings it up to now."""
+        """Have the plant that turns the shaft move it up to now."""
         for listener in self.looked_at.listeners:
             listener()
 
@@ -444,8 +445,8 @@ class SerialFrame:
     def rates_differ(self, bit_cycles: float) -> str:
         """Both speeds in words, if a receiver of `bit_cycles` a bit cannot follow the sender; else empty.
 
-        The stop bit (the tenth) is looked at 9.5 bits behind the edge that begins the frame: half a bit off there is
-        too much.  What an oscillator's drift does to the bits is no fault of the rates that were set.
+        The stop bit (the tenth) is sampled 9.5 bits after the edge that begins the frame: half a bit off there is too
+        much.  The drift of an oscillator does not count here, because the rates that were set are not at fault.
         """
         set_cycles = self.bit_cycles / self.drift
         stop_at = 1.5 + self.data_bits + (self.parity is not None)
@@ -473,13 +474,13 @@ class SerialLine:
         self.break_changed: Signal[bool] = Signal()
         #: (pin): a frame came to a pin of this line while none carried it.
         self.missed: Signal[int] = Signal()
-        #: What is done to a frame on its way, in turn; nothing, usually.
+        #: The disturbances that each frame passes through, in this order; usually none.
         self._disturbers: tuple[Callable[[SerialFrame], Iterable[SerialFrame]], ...] = ()
 
     def disturb(self, by: Callable[[SerialFrame], Iterable[SerialFrame]]) -> Callable[[], None]:
-        """Each frame that is sent becomes those that `by` makes of it, from now on; what is returned ends that.
+        """Replace each frame that is sent by the frames that `by` returns for it.  Returns a function that ends this.
 
-        A frame that ends later is not among them: whoever made it calls `deliver` then.
+        `by` must not return a frame that ends later.  It calls `deliver` itself when that frame ends.
         """
         self._disturbers = (*self._disturbers, by)
         return partial(self._undisturb, by)
@@ -488,7 +489,7 @@ class SerialLine:
         self._disturbers = tuple(each for each in self._disturbers if each is not by)
 
     def miss(self, pin: int) -> None:
-        """A frame came to GPIO`pin`, which is not set to this line."""
+        """Report that a frame came to GPIO`pin`, which is not set to this line."""
         self.missed.emit(pin)
 
     def send(self, frame: SerialFrame) -> None:
@@ -504,7 +505,7 @@ class SerialLine:
             listener(frame)
 
     def deliver(self, frame: SerialFrame) -> None:
-        """A frame has come to the other end, whatever disturbs the line."""
+        """Deliver a frame to the other end, past all disturbances."""
         for listener in self.sent.listeners:
             listener(frame)
 
@@ -516,9 +517,9 @@ class SerialLine:
 
 
 class SpiSlave(Protocol):
-    """What an SPI device offers to a bus.
+    """An SPI device as a bus sees it.
 
-    One that has a greatest clock says it in an attribute `greatest_clock_hz`.
+    A device with a maximum clock has an attribute `greatest_clock_hz`.
     """
 
     def select(self, level: int) -> None:
@@ -529,10 +530,10 @@ class SpiSlave(Protocol):
 
 
 class SpiBus:
-    """SIMO, SOMI and CLK with the slaves hung on it; chip selects are `Wire`s.
+    """SIMO, SOMI and CLK with the slaves on them; chip selects are `Wire`s.
 
-    `connected` is False while the pins belong to somebody else (`missing` says which): then words reach no slave, and
-    nobody answers.
+    `connected` is False while the pins have another function (`missing` says which).  Then words reach no slave, and no
+    slave answers.
     """
 
     __slots__ = (
@@ -545,10 +546,10 @@ class SpiBus:
         self.idle_in = idle_in
         self.connected = True
         self.missing = ""
-        #: Whether somebody was selected at the end of the latest word (or nobody could be).
+        #: Whether a slave was selected at the end of the latest word (or none could be).
         self.addressed = True
         self._slaves: list[tuple[Wire, SpiSlave]] = []
-        #: What the slowest slave takes.
+        #: The maximum clock of the slowest slave, in Hz.
         self.greatest_clock_hz = inf
         #: (chip_select): a chip select has risen.
         self.deselected: Signal[Wire] = Signal()
@@ -556,27 +557,27 @@ class SpiBus:
         self.exchanged: Signal[int, int] = Signal()
 
     def attach(self, chip_select: Wire, slave: SpiSlave) -> None:
-        """Hang `slave` on the bus, selected by a low level of `chip_select`."""
+        """Connect `slave` to the bus; a low level of `chip_select` selects it."""
         self._slaves.append((chip_select, slave))
         self.greatest_clock_hz = min(self.greatest_clock_hz, getattr(slave, "greatest_clock_hz", inf))
         chip_select.changed.connect(slave.select)
         chip_select.changed.connect(partial(self._selected, chip_select))
 
     def replace(self, slave: SpiSlave, by: SpiSlave) -> None:
-        """Words for `slave` go to `by` from now on; its chip select stays its own.  Raises ValueError."""
+        """Send words for `slave` to `by` from now on; the chip select stays the same.  Raises ValueError."""
         if all(known is not slave for _, known in self._slaves):
             raise ValueError(f"{self.name}: that slave is not on this bus")
         self._slaves = [(select, by if known is slave else known) for select, known in self._slaves]
 
     def too_fast(self, clock_hz: float) -> Iterator[SpiSlave]:
-        """The slaves that are selected and take no such clock."""
+        """The selected slaves whose maximum clock is below `clock_hz`."""
         for chip_select, slave in self._slaves:
             if chip_select.level == 0 and clock_hz > getattr(slave, "greatest_clock_hz", inf):
                 yield slave
 
     @property
     def slaves(self) -> list[SpiSlave]:
-        """Who gets the words."""
+        """The slaves that get the words."""
         return [slave for _, slave in self._slaves]
 
     def _selected(self, chip_select: Wire, level: int) -> None:
@@ -589,7 +590,7 @@ class SpiBus:
         return list({id(select): select for select, _ in self._slaves}.values())
 
     def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int:
-        """One word; what nobody drives reads as `idle_in` on every bit."""
+        """Transfer one word.  If no slave drives SOMI, every bit reads as `idle_in`."""
         answer = (1 << length) - 1 if self.idle_in else 0
         self.addressed = not self._slaves
         if self.connected:
@@ -605,16 +606,16 @@ class SpiBus:
 
 
 class I2cTarget(Protocol):
-    """What an I2C device offers to a bus.  Every device of a bus sees its STARTs and STOPs."""
+    """An I2C device as a bus sees it.  Every device of a bus sees all STARTs and STOPs."""
 
     def start(self) -> None:
-        """A START, or a repeated one: whoever was addressed is so no more."""
+        """A START, or a repeated one.  A device that was addressed is no longer addressed."""
 
     def addressed(self, reading: bool) -> bool:
-        """Its address with R/W = `reading`; whether it acknowledges."""
+        """The device's address, with R/W = `reading`.  Returns whether it acknowledges."""
 
     def write(self, byte: int) -> bool:
-        """A byte from the controller; whether it is acknowledged."""
+        """A byte from the controller.  Returns whether the device acknowledges."""
 
     def read(self) -> int:
         """The byte that it puts on SDA."""
@@ -629,10 +630,10 @@ LAST_I2C_ADDRESS: Final = 0x77
 
 
 class I2cBus:
-    """SDA and SCL, both open drain with their pull-ups, and the targets hung on them by their 7-bit addresses.
+    """SDA and SCL, both open drain with their pull-ups, and the targets on them by their 7-bit addresses.
 
-    `connected` is False while the pins belong to somebody else (`missing` says which): then no target sees anything,
-    and nobody acknowledges.  `taken` tells that a second controller, which is none of the modelled ones, has the bus.
+    `connected` is False while the pins have another function (`missing` says which).  Then no target sees anything, and
+    none acknowledges.  `taken`: a second controller, which is not one of the modelled ones, has the bus.
     """
 
     __slots__ = ("_addressed", "_targets", "connected", "missing", "name", "taken", "taken_changed")
@@ -648,7 +649,7 @@ class I2cBus:
         self.taken_changed: Signal[bool] = Signal()
 
     def attach(self, address: int, target: I2cTarget) -> None:
-        """Hang `target` on the bus under its 7-bit `address`.  Raises ValueError for one that no device can have."""
+        """Connect `target` to the bus with its 7-bit `address`.  Raises ValueError for one that no device can have."""
         if not FIRST_I2C_ADDRESS <= address <= LAST_I2C_ADDRESS:
             raise ValueError(f"I2C address {address:#04x}: want {FIRST_I2C_ADDRESS:#04x}..{LAST_I2C_ADDRESS:#04x}")
         self._targets.append((address, target))
@@ -667,20 +668,20 @@ class I2cBus:
                 target.start()
 
     def address(self, address: int, reading: bool) -> bool:
-        """The byte behind a START; whether somebody acknowledges."""
+        """The address byte after a START.  Returns whether a target acknowledges."""
         if self.connected:
             self._addressed += [target for own, target in self._targets if own == address and target.addressed(reading)]
         return bool(self._addressed)
 
     def write(self, byte: int) -> bool:
-        """A byte to who was addressed; whether one of them acknowledges."""
+        """A byte to the addressed targets.  Returns whether one of them acknowledges."""
         acknowledged = False
         for target in self._addressed:
             acknowledged |= target.write(byte)
         return acknowledged
 
     def read(self) -> int:
-        """The byte on SDA: each one addressed can pull its bits low, and with nobody they stay high."""
+        """The byte on SDA.  Each addressed target can pull bits low; with no target all stay high."""
         byte = 0xFF
         for target in self._addressed:
             byte &= target.read()

@@ -1,4 +1,4 @@
-"""A chip with SYS/BIOS and the detectors: what firmware is linked to.  Nothing is soldered to it."""
+"""A chip with SYS/BIOS and the detectors.  Firmware is linked to it.  It has no devices."""
 
 from __future__ import annotations
 
@@ -53,15 +53,15 @@ class System(Chip):
             cost_scale=kernel_cost_scale, heap_words=heap_words, start_up=self._start_up,
         )  # fmt: skip
 
-        #: The look at what is connected to nothing, of an image that is watched.
+        #: The check for missing connections (`not-connected`), if an image is watched.
         self.connections: Connections | None = None
 
     def _started_up(self) -> None:
-        """Behind BIOS_start nothing of `main` comes any more."""
+        """`main` has called BIOS_start: none of its statements run any more."""
         if self.connections is not None and self.kernel.started:
             self.connections.started_up = True
 
-    # What the kernel needs of the chip
+    # Functions of the chip that the kernel needs
 
     def _start_up(self) -> None:
         """The start-up of SYS/BIOS enables the PIE before main; firmware without it does so itself."""
@@ -83,7 +83,7 @@ class System(Chip):
         self.register("PieCtrlRegs", "PIEACK").write(1 << group - 1, ALL)
 
     def _watchdog_reset(self) -> None:
-        """CHOICE: what runs under the kernel ends here.  Its pins are as after a reset; to begin anew is a new run."""
+        """CHOICE: a program under the kernel ends here.  Its pins are as after a reset.  A restart is a new run."""
         if self.kernel.started:
             self.reset_peripherals("WDRSn")
             self.kernel.stop()
@@ -101,11 +101,11 @@ class System(Chip):
     # Externs of device_h.py
 
     def externs(self) -> Mapping[str, Callable[..., Any]]:
-        """What the headers declare and this chip and its kernel implement."""
+        """The functions that the headers declare, as this chip and its kernel implement them."""
         return {**self.kernel.externs, **self.device_functions.externs}
 
     def watch(self, linked: Linked) -> KernelWatch:
-        """Watch what only shows between the tasks of an image that was linked with `watch`."""
+        """Watch an image that was linked with `watch`, for errors that show only between threads."""
         watch = KernelWatch(self.kernel, linked, transfers=self.dma.moving)
         self.connections = connections = Connections(self, linked)
         self.kernel.ending.connect(self._started_up)
@@ -137,7 +137,10 @@ class System(Chip):
         return watch
 
     def _beginnings(self) -> Iterator[tuple[Cell, Callable[[int], bool], int]]:
-        """Registers by which a program begins what ends in an interrupt: which words do, and its vector."""
+        """Registers by which a program starts an operation that ends in an interrupt.
+
+        Each with a test for the words that start it, and the interrupt's vector.
+        """
         for letter, lines in SPI_PIE.items():
             for line in lines:
                 yield self.register(f"Spi{letter.lower()}Regs", "SPITXBUF"), lambda word: True, vector_id(*line)
@@ -155,7 +158,7 @@ class System(Chip):
             yield self.register(f"CpuTimer{n}Regs", "TCR"), lambda word: not word & TCR.TSS.mask, number
 
     def _gate(self, watch: KernelWatch, pie: tuple[int, int], *enables: tuple[str, str, int]) -> None:
-        """An interrupt comes through if one of its enables is set, and its PIEIER bit."""
+        """Register the enables of an interrupt: it comes through if its PIEIER bit and one of them are set."""
         group, n = pie
         bits = [(self.register(block, name), mask) for block, name, mask in enables]
         ier = self.register("PieCtrlRegs", f"PIEIER{group}")

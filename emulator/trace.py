@@ -1,7 +1,7 @@
 """The event list of a run: task switches, ready, block, post, Clock ticks, interrupts, with their cycle.
 
-Everything that draws a timeline, measures a task or compares two runs reads this one stream.  With nobody
-listening an event costs one attribute test.
+All code that draws a timeline, measures a task or compares two runs reads this one stream.  Without a listener an
+event costs one attribute test.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ from typing import Final
 from emulator.clock import Clock
 from emulator.signal import Signal
 
-#: Gets an event: its cycle, kind and name.
+#: A listener; it gets the cycle, kind and name of an event.
 Listener = Callable[[int, str, str], None]
 
-#: Lines that are hashed together.
+#: The number of lines that are hashed together.
 _TOGETHER: Final = 4096
 
 
 class Trace:
-    """`trace.emit(kind, name)` tells every listener `(cycles, kind, name)`."""
+    """`trace.emit(kind, name)` calls every listener with `(cycles, kind, name)`."""
 
     __slots__ = (
         "_clock", "_every", "_hash", "_latest", "_lines", "_listening", "_of_kind", "_read", "_told", "active",
@@ -34,31 +34,35 @@ class Trace:
         self._every: Signal[int, str, str] = Signal()
         self._of_kind: dict[str, Signal[int, str, str]] = {}
         self._read: Signal[int, str, str] = Signal()
-        #: Who listens: what ends it, and whether it wants the events of every tick.
+        #: The connections: the function that ends each, and whether it wants the events of every tick.
         self._listening: dict[int, tuple[list[Callable[[], None]], bool]] = {}
         self._latest = 0
-        #: (count, interrupt_cycles, swi_cycles): ticks have passed that nobody was told of.  Each found the CPU idle,
-        #: and occupied it for so many cycles by its interrupt and by the Clock Swi.
+        #: (count, interrupt_cycles, swi_cycles): ticks have passed without trace events.  Each found the CPU idle.  Its
+        #: interrupt and the Clock Swi occupied the CPU for so many cycles each.
         self.ticks_joined: Signal[int, int, int] = Signal()
-        #: Lines of the digest that are not hashed yet; None if nobody wants a digest.
+        #: Lines of the digest that are not hashed yet; None if no digest is kept.
         self._lines: list[str] | None = None
         self._hash = hashlib.sha256()
-        #: Whether events are wanted at all; whether somebody is told of them.
+        #: Whether events are needed at all; whether there is a listener.
         self.active = False
         self._told = False
-        #: Whether somebody wants the events of every tick, also of one that finds the CPU idle and calls nothing.
+        #: Whether a listener wants the events of every tick, even of one that finds the CPU idle and calls nothing.
         self.each_tick = False
 
     def listen(self, listener: Listener, *kinds: str, each_tick: bool = True) -> Callable[[], None]:
         """Call `listener(cycles, kind, name)` for every event from now on, or only for those of some kinds.
 
-        What is returned ends that.  `each_tick` False: not for those of ticks that are taken together (`ticks_joined`).
+        Returns a function that ends this.  With `each_tick` False, the events of ticks that are taken together are left
+        out (`ticks_joined`).
         """
         signals = [self._of_kind.setdefault(kind, Signal()) for kind in kinds] or [self._every]
         return self._begin([signal.connect(listener) for signal in signals], each_tick)
 
     def read(self, reader: Listener) -> Callable[[], None]:
-        """The same for every event and one that looks at nothing else: of ticks taken together it hears afterwards."""
+        """Call `reader` for every event; it must only read the event itself.
+
+        It gets the events of ticks that are taken together after these have passed.  Returns a function that ends this.
+        """
         return self._begin([self._every.connect(reader), self._read.connect(reader)], False)
 
     def _begin(self, stops: list[Callable[[], None]], each_tick: bool) -> Callable[[], None]:

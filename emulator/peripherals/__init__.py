@@ -1,1 +1,1 @@
-"""What the registers do: one module a peripheral, named as in `emulator/registers`."""
+"""The behaviour of the registers: one module per peripheral, named as in `emulator/registers`."""

@@ -44,7 +44,7 @@ ADCPWDNZ: Final = 0x0080
 #: INT1E and INT1SEL of ADCINTSEL1N2; INT2 lies 8 bits higher.
 ENABLE: Final = 0x20
 SELECT: Final = 0x0F
-#: What ADCINTFLGCLR does in the cycle of the EOC.
+#: The options for what ADCINTFLGCLR does in the cycle of the EOC.
 Collision = Literal["cleared", "erratum", "overflow"]
 
 
@@ -139,19 +139,19 @@ class Adc:
         `flag_collision`: what ADCINTFLGCLR does in the cycle of the EOC: `erratum` leaves the flag set (ERR),
         `overflow` clears it and sets ADCINTOVF (TRM), `cleared` only clears it (CHOICE: the default, because the CPU is
         charged a block of statements at a time, so that one cycle of its time means little).
-        `left_by(n)` is where the routine of ADCINT(n+1) stands, if it has run since the last pulse; `awaited(n)` is
-        whether anybody has a use for that interrupt.
-        `obeys(trigsel, on)`: from now on that hardware trigger starts something here, or no more.
+        `left_by(n)` returns where the routine of ADCINT(n+1) is in the source, if it has run since the last pulse.
+        `awaited(n)` tells whether anything uses that interrupt.
+        `obeys(trigsel, on)` is called when that hardware trigger begins (or ceases) to start conversions here.
         """
         if len(interrupts) != 4:
             raise ValueError(f"{regs.name}: {len(interrupts)} interrupts: want the 4 pulses ADCINT1..4")
         self._clock, self._findings, self._position = clock, cpu.findings, cpu.position
         self._regs, self._result_regs = regs, results
         registers = regs.registers
-        #: ADCINT1 to 4 and ADCxEVT, for who listens beside the PIE.
+        #: ADCINT1 to 4 and ADCxEVT, for listeners besides the PIE.
         self.pulsed: tuple[Signal[[]], ...] = tuple(Signal(partial(self._heard, n)) for n in range(5))
         self._interrupts = (*interrupts, event)
-        #: What a pulse calls: the PIE alone as long as nobody else listens.
+        #: The function that a pulse calls: the PIE's input itself, as long as nothing else listens.
         self._pulses, self._adcint1 = list(self._interrupts), interrupts[0]
         self._left_by, self._awaited = left_by, awaited
         self._collision, self._notes_collisions = flag_collision, flag_collision != "cleared"
@@ -159,13 +159,13 @@ class Adc:
         self._intsel12, self._intsel34 = registers["ADCINTSEL1N2"], registers["ADCINTSEL3N4"]
         self._socsel1, self._socsel2 = registers["ADCINTSOCSEL1"], registers["ADCINTSOCSEL2"]
         self._results = tuple(results.registers[f"ADCRESULT{n}"] for n in range(16))
-        #: For each result, what says whether its SOC has begun a conversion.
+        #: For each result, the function to tell that its SOC has begun a conversion.
         self._mark_begun = tuple(map(self._bind_ADCRESULTx, range(16)))
         self._ppb = PostProcessing(
             clock, cpu, regs, results, partial(self._pulse, 4), self._configure, self._result_of_soc0
         )  # fmt: skip
         self._at_end: Callable[[], None] = self._end  # bound once
-        #: What forced the conversions under way.
+        #: The statement that forced the conversions under way.
         self._cause: Cause | None = None
         self._converter = converter = Converter(regs.name, pins, vrefhi_v, vreflo_v, noise_lsb, random)
         self._vreflo_v, self._span_v = converter.vreflo_v, converter.span_v
@@ -174,12 +174,12 @@ class Adc:
         self._dead = False
         self._killers = 0
         self._obeys = obeys
-        #: The hardware triggers that start something.
+        #: The hardware triggers that start a conversion.
         self._obeyed: frozenset[int] = frozenset()
         #: Conversions ended since the object was made.
         self.conversions = 0
         self._socs = Socs(regs, cpu.findings, converter, self._results, any_write_resets_pointer)
-        #: ADCSOCFRC1 -> the SOC that it forces, where that one begins at once if nothing is under way.
+        #: Word of ADCSOCFRC1 -> the SOC that it forces, if this SOC begins at once when no conversion is under way.
         self._single: dict[int, Soc] = {}
         self._ctl1, self._ctl2 = registers["ADCCTL1"], registers["ADCCTL2"]
         for name, read, write in (
@@ -218,7 +218,7 @@ class Adc:
         self._by_hardware = 0
         for mark_begun in self._mark_begun:
             mark_begun(False)
-        #: When a flag rose last, and what that cycle has set.
+        #: The cycle when a flag rose last, and the flags that this cycle has set.
         self._flag_at = self._flags_then = self._overflows_then = -1
         self._socs.reset()
         self._ppb.reset()
@@ -234,7 +234,7 @@ class Adc:
         self._frozen_step: Callable[[], None] | None = None
         self._configure()
 
-    # --- world and test face -------------------------------------------------------------------------------------
+    # --- for the world and tests ---------------------------------------------------------------------------------
 
     def force_codes(self, codes: Iterable[int] | Callable[[int], int] | None) -> None:
         """Make conversions yield `codes` (16 bits) whatever the volts: in order, or `codes(soc)`.  None: volts again.
@@ -245,7 +245,7 @@ class Adc:
         self._configure()
 
     def spoil(self, by: Callable[[int, int, int], int]) -> Callable[[], None]:
-        """Something is broken: each code becomes `by(soc, channel, code)`; what is returned mends it."""
+        """Inject a fault: each code becomes `by(soc, channel, code)`.  Returns a function that ends the fault."""
         self._converter.spoil(by)
         self._configure()
         return partial(self._mend, by)
@@ -255,7 +255,7 @@ class Adc:
         self._configure()
 
     def kill(self) -> Callable[[], None]:
-        """It is `dead` until what is returned is called; of several all must be."""
+        """Make the converter `dead` until the returned function is called; after several calls, all of them."""
         self._killers += 1
         self.dead = True
 
@@ -267,7 +267,7 @@ class Adc:
 
     @property
     def dead(self) -> bool:
-        """A broken converter: SOCs stay pending and no conversion ends.  Mended, it goes on with what waits."""
+        """Whether the converter is broken: SOCs stay pending and no conversion ends.  Afterwards the SOCs go on."""
         return self._dead
 
     @dead.setter
@@ -335,7 +335,7 @@ class Adc:
             else:
                 self._begin(self._clock.now + self._sync_cycles)
         elif self._clock.now < self._start:
-            # The window has not opened: its SOC is pending still, and the arbiter has not chosen yet.
+            # The window has not opened.  So its SOC is still pending, and the arbiter has not chosen yet.
             self._socs.give_back(self._soc)
             self._socs.add(socs)
             self._soc = self._last_soc
@@ -364,7 +364,7 @@ class Adc:
             self._event = self._clock.schedule(sample + 1, self._early)
 
     def _attend(self, n: int, start: int) -> None:
-        """SOC `n` begins for the first time, or a post-processing block takes the delay of its hardware trigger."""
+        """Extra work when SOC `n` begins: its first conversion, or the delay stamp of its hardware trigger."""
         soc = 1 << n
         if not self._begun & soc:
             self._begun |= soc
@@ -376,7 +376,10 @@ class Adc:
             self._attended &= ~soc
 
     def _doubt(self, n: int, acqps: int, powered: bool) -> None:
-        """Told where the conversion was forced; a trigger has no statement: where its ADCSOCxCTL was written."""
+        """Report doubts about a conversion at the statement that forced it.
+
+        A hardware trigger has no statement.  Then the place is the write to ADCSOCxCTL.
+        """
         findings = self._findings
         by_hardware = self._by_hardware >> n & 1
         findings.cause = self._socs.settings.get(n) if by_hardware else self._cause
@@ -391,7 +394,7 @@ class Adc:
         """One SYSCLK after the window: with INTPULSEPOS = 0 the flag rises here."""
         soc = self._soc
         self._code = self._converter.code(soc.n, soc.channel, self._sample, self._start >= self._ready_at)
-        # Before the flags, so that a SOC which they trigger finds the conversion under way.
+        # Do it before the flags, so that a SOC that they trigger finds the conversion under way.
         self._event = self._clock.schedule(self._sample + self._t_eoc, self._at_end)
         self._eoc(soc.n, self._sel_then)
 
@@ -434,21 +437,21 @@ class Adc:
             findings.cause = None
 
     def _processed(self, n: int, code: int) -> int:
-        """What the post-processing blocks make of the code of SOC `n`."""
+        """The result that the post-processing blocks make from the code of SOC `n`."""
         return self._ppb.process(n, code, self._converter.full_scale, self._latch_at) if self._ppb.in_use else code
 
     def _configure(self) -> None:
-        """Follow the registers that say how conversions are made."""
+        """Follow the registers that configure conversions."""
         converter = self._converter
         converter.configure(self._ctl2.value)
         self._t_eoc, self._latch_delay = converter.t_eoc, converter.t_lat - converter.t_eoc
         self._acqps_min = converter.acqps_min
         self._late = bool(self._ctl1.value & 0x0004)
-        #: A float: what is converted is one, and a comparison of an int with a float takes twice as long.
+        #: A float, because the voltage is one: comparing an int with a float takes twice as long.
         self._full_scale = float(converter.full_scale)
-        #: A window opened from here on yields the scaled voltage of its pin.
+        #: A window that opens at this cycle or later yields the scaled voltage of its pin.
         self._plain_from = self._ready_at if converter.plain and not self._ppb.in_use else NEVER
-        #: An EOC does nothing beyond ADCINT1 and ADCINT2.
+        #: Whether an EOC drives only ADCINT1 and ADCINT2.
         self._eoc_is_plain = not (
             self._intsel34.value or self._socsel1.value or self._socsel2.value or self._notes_collisions
         )
@@ -481,13 +484,13 @@ class Adc:
                 self._raise(3, sel & 0x4000)
 
     def _pulse(self, n: int) -> None:
-        """A pulse that more than the PIE may hear."""
+        """A pulse to the PIE and to other listeners."""
         self._interrupts[n]()
         for listener in self.pulsed[n].listeners:
             listener()
 
     def _heard(self, n: int, heard: bool) -> None:
-        """Somebody begins to listen to a pulse beside the PIE, or nobody does any more."""
+        """A first listener besides the PIE connects to a pulse (`heard`), or the last one has gone."""
         self._pulses[n] = partial(self._pulse, n) if heard else self._interrupts[n]
         self._adcint1 = self._pulses[0]
 
@@ -529,7 +532,7 @@ class Adc:
 
     def _not_cleared(self, n: int) -> None:
         if not (self._awaited(n) or self._intflg.is_read or self._triggered_by(n)):
-            return  # a flag that nobody looks at may stand
+            return  # nothing uses the flag, so it may stay set
         path = f"{self._regs.name}.ADCINTFLG.ADCINT{n + 1}"
         message = f"{path} was still set when the next conversion ended: no interrupt is given for it, and "
         message += "ADCINTOVF is set"
@@ -554,15 +557,15 @@ class Adc:
     # --- results -----------------------------------------------------------------------------------------------------
 
     def _still_latching(self) -> None:
-        """A conversion begins, maybe before the last result has latched."""
+        """Keep track of the last result when a conversion begins: it may not have latched yet."""
         if self._latch_at != NEVER:
             self._latched = self._latch_at
             self._latch_at = NEVER
 
     def _bind_ADCRESULTx(self, n: int) -> Callable[[bool], None]:
-        """What ADCRESULTn reads; returns what to call when its SOC begins a conversion, and at a reset.
+        """Define what ADCRESULTn reads.  Returns a function to call when its SOC begins a conversion, and at a reset.
 
-        A closure, because it is read behind every conversion.
+        It is a closure for speed: the register is read after every conversion.
         """
         register = self._results[n]
         clock = self._clock
@@ -581,7 +584,7 @@ class Adc:
         return mark_begun
 
     def _read_early(self, n: int) -> int:
-        """A read while a conversion is under way or latches; nobody but the one who forced it is told."""
+        """A read while a conversion is under way or latches.  It is reported only if software forced the conversion."""
         register = self._results[n]
         if register is self._latch and self._clock.now < (self._latched if self._latch_at == NEVER else self._latch_at):
             return self._unlatched
@@ -626,7 +629,10 @@ class Adc:
         return "is converting" if self._event is not None and self._soc.n == soc else ""
 
     def _set_flag(self, soc: int) -> str:
-        """The name of a flag that the EOC of `soc` drives and that is set from before; its own early pulse is none."""
+        """The name of a flag that the EOC of `soc` drives and that an earlier EOC has set.
+
+        A flag from this conversion's own early pulse does not count.
+        """
         if self._code is not None and self._soc.n == soc:
             return ""
         for n in range(4):
@@ -685,7 +691,7 @@ class Adc:
         if self._event is None and word in self._single:
             start = self._clock.now + self._sync_cycles
             if start >= self._ready_at:
-                # `_begin` where there is nothing to arbitrate and nothing to doubt: a round-robin SOC alone.
+                # `_begin` for a round-robin SOC alone: there is nothing to arbitrate and nothing to report.
                 soc = self._single[word]
                 socs = self._socs
                 socs.before = socs.pointer
@@ -712,7 +718,7 @@ class Adc:
         return 0
 
     def _result_of_soc0(self) -> int:
-        """What the post-processing blocks, which watch SOC0 out of reset, have seen last."""
+        """The last result of SOC0.  The post-processing blocks watch SOC0 out of reset."""
         return self._results[0].value
 
     def _write_ADCINTFLGCLR(self, word: int, lanes: int = ALL) -> None:

@@ -1,4 +1,4 @@
-"""The analog half of an ADC module: volts at a pin become a code, after the times of the data sheet.
+"""The analog half of an ADC module: it converts the voltage of a pin to a code, with the times of the data sheet.
 
 Modelled: 12-bit single-ended and 16-bit differential transfer (and the two combinations that are not supported, by the
 same formulas), clamping, noise in LSB, the garbage of an unpowered core, codes forced by a test or spoilt by a fault.
@@ -31,7 +31,7 @@ ACQPS_MIN_12_BIT: Final = 14
 ACQPS_MIN_16_BIT: Final = 63
 #: DS: ADCCLK is at most 50 MHz, so at 200 MHz the divider is at least 4.
 PRESCALE_MIN: Final = 6
-#: An `acqps_min` that no window reaches: every conversion is looked at.
+#: An `acqps_min` that no window reaches, so that every conversion is checked.
 ALWAYS: Final = 512
 
 
@@ -68,7 +68,7 @@ class Converter:
         #: The noise of the next code, in LSB.
         self.noise: Callable[[], float] = gaussian(self._random, noise_lsb).__next__
         self._forced: Callable[[int], int] | None = None
-        #: What is broken: each makes of (soc, channel, code) the code that comes out.
+        #: Injected faults.  Each returns the new code for (soc, channel, code).
         self._faults: tuple[Callable[[int, int, int], int], ...] = ()
         self.configure(0)
 
@@ -87,21 +87,21 @@ class Converter:
         self._simplify()
 
     def _simplify(self) -> None:
-        """Whether a code is nothing but the scaled voltage of one pin, and noise."""
+        """Determine whether a code is just the scaled voltage of one pin plus noise."""
         self.plain = self._forced is None and not self.differential and not self._faults
 
     def spoil(self, by: Callable[[int, int, int], int]) -> None:
-        """Each code becomes `by(soc, channel, code)` from now on, after what spoils it already."""
+        """Replace each code by `by(soc, channel, code)` from now on, after the faults that are active already."""
         self._faults = (*self._faults, by)
         self._simplify()
 
     def unspoil(self, by: Callable[[int, int, int], int]) -> None:
-        """That is over."""
+        """Remove a fault that `spoil` has added."""
         self._faults = tuple(each for each in self._faults if each is not by)
         self._simplify()
 
     def doubt(self, findings: Findings, soc: int, acqps: int, powered: bool) -> None:
-        """Report what makes the conversion that begins worthless, and that no chip would say."""
+        """Report errors that spoil the conversion that begins and that no chip detects."""
         name, ctl2 = f"{self.name}.ADCSOC{soc}CTL", f"{self.name}.ADCCTL2"
         bits16 = bool(self._ctl2 & 0x40)
         shortest = ACQPS_MIN_16_BIT if bits16 else ACQPS_MIN_12_BIT
@@ -144,7 +144,7 @@ class Converter:
         return code
 
     def _sound(self, soc: int, channel: int, cycles: int, powered: bool) -> int:
-        """The code of a converter that nothing is wrong with."""
+        """The code of a converter without injected faults."""
         if self._forced is not None:
             return self._forced(soc) & 0xFFFF
         if not powered:

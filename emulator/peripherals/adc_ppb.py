@@ -1,4 +1,4 @@
-"""The four post-processing blocks (PPB) of an ADC module: what they make of a result, and the events that they raise.
+"""The four post-processing blocks (PPB) of an ADC module: they change results, and raise events.
 
 Each block watches the SOC in its CONFIG; out of reset all four watch SOC0.
 
@@ -43,7 +43,7 @@ def signed(word: int, bits: int) -> int:
 
 
 class _Block:
-    """One block: its registers, and its result as long as that has not latched."""
+    """One block: its registers, and its result while that has not latched."""
 
     __slots__ = ("before", "config", "latched_at", "number", "offcal", "offref", "result", "stamp", "triphi", "triplo")
 
@@ -54,7 +54,7 @@ class _Block:
         self.offcal, self.offref = registers[f"{name}OFFCAL"], registers[f"{name}OFFREF"]
         self.triphi, self.triplo = registers[f"{name}TRIPHI"], registers[f"{name}TRIPLO"]
         self.result: Cell = results.registers[f"{name}RESULT"]
-        #: What the result reads until `latched_at`.
+        #: The value that the result register shows until `latched_at`.
         self.before = self.latched_at = 0
 
 
@@ -85,7 +85,7 @@ class PostProcessing:
         self._clock, self._cpu, self._event = clock, cpu, event
         self._woken, self._soc0 = woken, soc0
         self._blocks = tuple(_Block(number, regs, results) for number in (1, 2, 3, 4))
-        #: Of the registers that were written: by which statement.  What comes of a setting is told there.
+        #: Register -> the statement that wrote it.  Findings about a setting are reported there.
         self._set_by: dict[Cell, Cause | None] = {}
         self._flags, self._enabled = regs.registers["ADCEVTSTAT"], regs.registers["ADCEVTINTSEL"]
         for block in self._blocks:
@@ -101,7 +101,7 @@ class PostProcessing:
         self.reset()
 
     def reset(self) -> None:
-        """The owner has reset the registers."""
+        """Reset the state; the owner has reset the registers."""
         #: Whether results have to pass `process`.
         self.in_use = False
         #: The blocks that get delay stamps: one, as long as all have the same.
@@ -134,7 +134,7 @@ class PostProcessing:
     # --- results -----------------------------------------------------------------------------------------------------
 
     def process(self, soc: int, code: int, full_scale: int, latch_at: int) -> int:
-        """What ADCRESULT gets for the `code` of a conversion that ends now; each block of the SOC does its work."""
+        """The value of ADCRESULT for the `code` of a conversion that ends now.  Each block of the SOC processes it."""
         blocks = [block for block in self._blocks if block.config.value & 0xF == soc]
         if blocks:
             offset = blocks[-1].offcal.value
@@ -191,7 +191,7 @@ class PostProcessing:
         )  # fmt: skip
 
     def _report(self, register: Cell, rule: str, message: str, object: str, value: int) -> None:
-        """Tell what comes of a register's setting, at the statement that set it."""
+        """Report an effect of a register's setting at the statement that set it."""
         findings = self._cpu.findings
         before, findings.cause = findings.cause, self._set_by.get(register)
         findings.report(rule, message, object=object, value=value)
@@ -200,7 +200,7 @@ class PostProcessing:
     # --- register handlers -------------------------------------------------------------------------------------------
 
     def _wake(self) -> None:
-        """From here on every result is processed; what SOC0 has given so far, out of reset's settings."""
+        """Process every result from now on.  The last result of SOC0 is processed now, with the reset settings."""
         self.in_use = True
         self._woken()
         result, first = self._soc0(), self._blocks[0]

@@ -1,4 +1,4 @@
-"""The sixteen SOCs of an ADC module: what their registers ask, which of them wait, and which one is converted next.
+"""The sixteen SOCs of an ADC module: their settings, which of them wait, and which one is converted next.
 
 Part of `adc.py`, whose docstring says what is modelled.
 """
@@ -16,22 +16,22 @@ from emulator.signals import AnalogWire
 
 #: TRM: RRPOINTER when no round-robin SOC has been converted.
 NO_POINTER: Final = 16
-#: TRIGSEL of what is not software, and of a pin, INPUT5 of the Input X-BAR.
+#: TRIGSEL of the hardware triggers, and of ADCEXTSOC, which is INPUT5 of the Input X-BAR.
 TRIGSELS: Final = range(1, 29)
 ADCEXTSOC: Final = 4
 
 
 class Soc:
-    """What the registers ask of one SOC, followed at every write to them: nothing is decoded during a conversion."""
+    """The decoded settings of one SOC.  They are updated at every write, so that a conversion decodes nothing."""
 
     __slots__ = ("adcint1", "channel", "cycles", "n", "pin", "result", "window")
 
     def __init__(self, n: int, pin: AnalogWire, result: Cell) -> None:
         self.n, self.pin, self.result = n, pin, result
         self.channel = 0
-        #: Cycles of the window, and from its opening to the end of the conversion.
+        #: Cycles of the window, and cycles from its opening to the end of the conversion.
         self.window = self.cycles = 1
-        #: What INT1E and INT1SEL read when the EOC of this SOC drives ADCINT1, and nothing drives ADCINT2.
+        #: The value of INT1E and INT1SEL if the EOC of this SOC drives ADCINT1, and nothing drives ADCINT2.
         self.adcint1 = 0x20 | n
 
 
@@ -49,13 +49,13 @@ class Socs:
         self._any_write_resets = any_write_resets_pointer
         registers = regs.registers
         self._ctl = tuple(registers[f"ADCSOC{n}CTL"] for n in range(16))
-        #: What wrote ADCSOCnCTL last.
+        #: The statement that wrote ADCSOCnCTL last.
         self.settings: dict[int, Cause] = {}
         self.every = tuple(Soc(n, converter.pins[n], results[n]) for n in range(16))
         self._burst, self._pri = registers["ADCBURSTCTL"], registers["ADCSOCPRICTL"]
         self._overflows = registers["ADCSOCOVF1"]
         regs.bind("ADCSOCOVFCLR1", write=self._write_ADCSOCOVFCLR1)
-        #: How many SOCs from SOC0 on have high priority; the others go round.
+        #: How many SOCs from SOC0 on have high priority; the others are converted in round robin.
         self.high = 0
         #: How many SOCs from SOC0 on obey their TRIGSEL, and TRIGSEL -> those that obey it.
         self._obeying = 16
@@ -63,7 +63,7 @@ class Socs:
         self.reset()
 
     def reset(self) -> None:
-        """Nothing waits, and RRPOINTER is that of reset; the owner resets the registers and calls `configure`."""
+        """Clear all pending SOCs and reset RRPOINTER.  The owner resets the registers and calls `configure`."""
         #: SOCs that were triggered and have not got the S/H.
         self.pending = 0
         #: RRPOINTER, and as it was before the last `choose`.
@@ -86,7 +86,7 @@ class Socs:
             self._triggered[trigsel] = self._triggered.get(trigsel, 0) | 1 << n
 
     def triggered_by(self, trigsel: int) -> int:
-        """The SOCs that a hardware trigger starts: those that select it, and in burst mode the next that go round."""
+        """The SOCs that a hardware trigger starts: those that select it; in burst mode the next round-robin ones too."""
         socs = self._triggered.get(trigsel, 0)
         burst, low = self._burst.value, self._obeying
         if low < 16 and burst & 0x3F == trigsel:
@@ -102,7 +102,7 @@ class Socs:
         return frozenset(self._triggered.keys() | burst).intersection(TRIGSELS)
 
     def add(self, socs: int) -> None:
-        """Set pending flags; ADCSOCOVF1 where a trigger finds the one before it waiting still."""
+        """Set pending flags.  Set ADCSOCOVF1 for a SOC that is still pending from an earlier trigger."""
         again = self.pending & socs
         self.pending |= socs
         if again:
@@ -131,7 +131,7 @@ class Socs:
         return self.every[n]
 
     def give_back(self, soc: Soc) -> None:
-        """`soc`, chosen last, has not been sampled: it waits again, and nobody was chosen."""
+        """Undo the last `choose`: `soc` has not been sampled, so it is pending again."""
         self.pending |= 1 << soc.n
         self.pointer = self.before
 

@@ -58,7 +58,7 @@ RX: Final = 1 << 7
 EXL: Final = 1 << 8
 #: INT0ID of a status interrupt.
 STATUS: Final = 0x8000
-#: CAN_RAM_INIT: its key, the key that begins, and what stands when it is over.
+#: CAN_RAM_INIT: its key, the key that starts the initialisation, and the value after its end.
 KEY: Final = 0xF
 BEGIN: Final = 0xA
 RAM_INIT: Final = 1 << 4
@@ -68,7 +68,7 @@ IDLE_KEY: Final = 0x5
 RAM_CYCLES: Final = 4 * OBJECTS
 #: Clocks of the module that a transfer between an interface and the message RAM takes.
 TRANSFER_CLOCKS: Final = 3
-#: So long after a command nobody takes what it fetches for there without a look at Busy (CHOICE).
+#: A read of the fetched data sooner after the command than this, without reading Busy, is reported (CHOICE).
 HASTY_CLOCKS: Final = 40
 #: Bits of CAN_IFxCMD.
 BUSY: Final = 1 << 15
@@ -84,12 +84,12 @@ WRITE: Final = 1 << 23
 #: Register of an interface -> the bit of its command that fetches it.
 FETCHES: Final = {"MSK": MASK, "ARB": ARBITRATION, "MCTL": CONTROL, "DATA": DATA_A, "DATB": DATA_B}
 CONTROL_BITS: Final = 0xFF8F
-#: Registers of an interface behind its first one.
+#: Registers of an interface after its first one.
 PARTS: Final = ("MSK", "ARB", "MCTL", "DATA", "DATB")
 IF3_UPDATED: Final = 1 << 15
 IF3_OBSERVED: Final = 0x1F
 IF3_UNREAD: Final = IF3_OBSERVED << 8
-#: What a software reset leaves.
+#: Registers that a software reset does not change.
 KEPT: Final = ("CAN_RAM_INIT", "CAN_GLB_INT_EN", "CAN_GLB_INT_FLG")
 #: Error counters: warning, error passive, bus-off; REC comes back from above 127 to this.
 WARNING: Final = 96
@@ -97,7 +97,7 @@ PASSIVE: Final = 128
 BUS_OFF: Final = 256
 REC_AFTER_PASSIVE: Final = 119
 SENDER_PENALTY: Final = 8
-#: Times 11 recessive bits from bus-off to error active.
+#: The way from bus-off to error active takes this many times 11 recessive bits.
 RECOVERY: Final = 129
 
 
@@ -129,16 +129,16 @@ class Can:
         self._on = False
         self._joined_at = NEVER
         self._suspended_until = 0
-        #: The object that is on the bus, or was offered to it.
+        #: The number of the object whose frame is on the bus or was offered to it.
         self._sending = 0
         self._offered: CanFrame | None = None
         self._tec = self._rec = 0
         self._status_pending = False
         #: The object whose update waits until interface 3 has been read.
         self._next_update = 0
-        #: Transfers under way, by interface; the other things that take time.
+        #: Transfers under way, by interface; other events that are under way.
         self._transfers: dict[int, Event | None] = {1: None, 2: None}
-        #: When each began, until somebody has seen its end.
+        #: When each began, until the program has seen its end.
         self._commanded = {1: -NEVER, 2: -NEVER}
         self._recovery: Event | None = None
         self._recovered = 0
@@ -179,11 +179,11 @@ class Can:
         self._settle()
 
     def clock_changed(self) -> None:
-        """Its bit clock is another one."""
+        """The bit clock has changed."""
         self._settle()
 
     def connect(self, bus: CanBus) -> None:
-        """Solder its transceiver to another bus."""
+        """Connect its transceiver to another bus."""
         self._bus = bus
         self._settle()
 
@@ -211,7 +211,7 @@ class Can:
         return self._test.value if self._ctl.value & TEST else 0
 
     def _settle(self) -> None:
-        """Go to the bus that pins, test mode and Init want, or leave it."""
+        """Join the bus that pins, test mode and Init select, or leave the bus."""
         active = self._on and not self._ctl.value & INIT and self._clock_cycles() > 0
         outside = self._port.connected and not self.hears_itself
         at = None if not active else self._bus if outside else self._inside
@@ -229,7 +229,7 @@ class Can:
             at.attach(self)
 
     def _ask(self) -> None:
-        """Something may be to send."""
+        """Request the bus: there may be a frame to send."""
         if self._at is not None and self.ram.next_request():
             self._at.request()
 
@@ -262,7 +262,7 @@ class Can:
         return self._at is self._inside and not self.hears_itself
 
     def joined(self, now: int) -> bool:
-        """Eleven recessive bits after Init was cleared."""
+        """Whether eleven recessive bits have passed since Init was cleared."""
         return self._joined_at <= now
 
     def sends_from(self) -> int:
@@ -308,7 +308,7 @@ class Can:
             self._bus.witness(self._offered)
 
     def received(self, frame: CanFrame) -> None:
-        """A frame has arrived, for one of the objects or for none."""
+        """A frame has arrived.  Store it in the object that accepts it, if there is one."""
         if self._rec >= PASSIVE:
             self._rec = REC_AFTER_PASSIVE
         elif self._rec:
@@ -375,7 +375,7 @@ class Can:
         self._settle()
 
     def _recover(self) -> None:
-        """Eleven recessive bits more."""
+        """Eleven more recessive bits have passed on the way back from bus-off."""
         self._clock.cancel(self._recovery)
         self._recovery = self._clock.after(IDLE_BITS * self.bit_cycles, self._recover_step)
 
@@ -396,7 +396,7 @@ class Can:
     # --- interrupts --------------------------------------------------------------------------------------------------
 
     def _tell(self) -> None:
-        """CAN_INT, and the lines behind it."""
+        """Update CAN_INT and the interrupt lines."""
         pending, second = self.ram.flags(INTPND), self._mux.value
         ids = [_first(pending & ~second), _first(pending & second)]
         if self._status_pending:
@@ -430,7 +430,7 @@ class Can:
 
     @staticmethod
     def _groups(flags: Callable[[], int]) -> int:
-        """A bit for each eight objects."""
+        """One bit for each group of eight objects that has a flag set."""
         word = flags()
         return sum(1 << n for n in range(OBJECTS // 8) if word >> 8 * n & 0xFF)
 
@@ -577,7 +577,7 @@ class Can:
         self._updates.store(word, lanes)
 
     def _update(self, number: int) -> None:
-        """Show an object that has received at interface 3, once what it shows has been read."""
+        """Copy an object that has received to interface 3, as soon as its last content has been read."""
         if self._observed.value & IF3_UNREAD:
             self._next_update = number
             return

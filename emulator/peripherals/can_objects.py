@@ -1,7 +1,7 @@
 """The 32 message objects of a CAN controller.  Part of `can.py`.
 
-Modelled: which object a frame is for (identifier, Xtd, mask, FIFO), what of it the object then holds, the object that
-is sent next, remote frames and their answers.
+Modelled: which object accepts a frame (identifier, Xtd, mask, FIFO), what the object stores of it, the object that is
+sent next, remote frames and their answers.
 CHOICE: data frames are stored in receive objects only, and remote frames concern transmit objects only, whatever MDir
 says.  CHOICE: a frame of 11 bits leaves the lower 18 bits of the object's identifier 0.  CHOICE: bytes of an object
 beyond the length of the frame stay as they were (the manual: not specified).
@@ -22,7 +22,7 @@ MSGVAL: Final = 1 << 31
 XTD: Final = 1 << 30
 DIR: Final = 1 << 29
 ID: Final = (1 << 29) - 1
-#: Where an identifier of 11 bits stands.
+#: The lowest bit of an identifier of 11 bits in the word.
 STANDARD_SHIFT: Final = 18
 STANDARD_ID: Final = 0x7FF << STANDARD_SHIFT
 #: Bits of the control word.
@@ -39,7 +39,7 @@ DLC: Final = 0xF
 
 
 class MessageObject:
-    """One object, as the interface registers show it."""
+    """One message object, in the format of the interface registers."""
 
     __slots__ = ("arbitration", "control", "data", "fresh", "mask", "read_again", "taken")
 
@@ -49,7 +49,7 @@ class MessageObject:
         self.control = 0
         #: Bytes 0 to 3, and 4 to 7, as words.
         self.data = [0, 0]
-        #: Whether nobody has read its message yet, and how often an old one was read that still passed for new.
+        #: Whether its message is still unread, and how often a message was read again because NewDat was still set.
         self.fresh = False
         self.read_again = 0
         #: Whether it has ever taken a frame.
@@ -62,7 +62,7 @@ class MessageObject:
 
     @property
     def identifier(self) -> int:
-        """Its identifier, of as many bits."""
+        """Its identifier, of 11 or 29 bits."""
         return self.arbitration & ID if self.extended else (self.arbitration & ID) >> STANDARD_SHIFT
 
     def matches(self, frame: CanFrame) -> bool:
@@ -73,12 +73,12 @@ class MessageObject:
         if frame.extended != self.extended and (not masked or self.mask & MXTD):
             return False
         bits = self.mask & ID if masked else ID
-        # CHOICE: what a frame of 11 bits does not have is not compared.
+        # CHOICE: bits that a frame of 11 bits does not have are not compared.
         bits &= ID if frame.extended else STANDARD_ID
         return not (_placed(frame) ^ self.arbitration) & bits
 
     def frame(self) -> CanFrame:
-        """What it sends: a data frame of a transmit object, a remote frame of a receive object."""
+        """The frame that it sends: a data frame from a transmit object, a remote frame from a receive object."""
         code = self.control & DLC
         if not self.arbitration & DIR:
             return CanFrame(self.identifier, b"", self.extended, remote=True, dlc=code)
@@ -98,7 +98,7 @@ class MessageObject:
         self.fresh = self.taken = True
 
     def take_remote(self, frame: CanFrame) -> bool:
-        """A remote frame for a transmit object; whether anything changes."""
+        """Take a remote frame for a transmit object.  Returns whether it changes anything."""
         if self.control & RMTEN:
             self.control |= TXRQST
         elif self.control & UMASK:
@@ -145,9 +145,9 @@ class MessageRam:
         return 0
 
     def receive(self, frame: CanFrame) -> int:
-        """Give a frame to the first object that takes it; gives its number, or 0.
+        """Give a frame to the first object that takes it.  Returns the number of the object, or 0.
 
-        An object of a FIFO that is not its last one takes no frame while the one before is unread.
+        An object of a FIFO takes no frame while its last frame is unread, unless it is the last object of the FIFO.
         """
         for number, each in enumerate(self._objects, 1):
             if not each.matches(frame):

@@ -41,7 +41,7 @@ CODES: Final = 4096
 #: The typical hysteresis, in codes, and the most of them.
 HYSTERESIS_CODES: Final = 12
 MOST_HYSTERESIS: Final = 4
-#: Cycles from look to look at a voltage that may change without a word.
+#: Cycles between two comparisons of a voltage that may change without a report.
 LOOK_CYCLES: Final = 200
 #: The fields of the high comparator in COMPCTL; those of the low one lie 8 bits further up.
 _SOURCE: Final = COMPCTL.COMPHSOURCE.mask
@@ -58,7 +58,7 @@ class Half:
 
     def __init__(self, name: str, letter: str) -> None:
         self.letter = letter
-        #: Where its fields lie in COMPCTL, COMPSTS and COMPSTSCLR.
+        #: The shift of its fields in COMPCTL, COMPSTS and COMPSTSCLR.
         self.shift = 0 if letter == "H" else 8
         self.raw = 0
         #: Above it the comparator is high, as it is now, if its DAC and the registers stay as they are.
@@ -68,7 +68,7 @@ class Half:
         self.trip_out = Wire(f"{name}.CTRIPOUT{letter}")
 
     def put(self, control: int) -> None:
-        """Filter and latch have new outputs, or COMPCTL other choices: the outputs follow."""
+        """Update the outputs: filter and latch have new levels, or COMPCTL has changed."""
         control >>= self.shift
         level = self.filter.level
         latched = self.filter.latched | (level if control & _ASYNCHRONOUS else 0)
@@ -80,8 +80,9 @@ class Half:
 class Cmpss:
     """CMPSS`number` over its registers.
 
-    `high` and `low` have the output wires.  `sync_listen(n, on)`: EPWMSYNCPER of ePWM `n` is wanted from now on, or no
-    more; it comes by `sync`.  There are `epwms` of them.  References are in volts.  `look_cycles` may be changed.
+    `high` and `low` have the output wires.  `sync_listen(n, on)` is called when the module begins (or ceases) to need
+    EPWMSYNCPER of ePWM `n`; each pulse must call `sync`.  `epwms` is the number of ePWMs.  References are in volts.
+    `look_cycles` may be changed.
     """
 
     __slots__ = (
@@ -104,9 +105,9 @@ class Cmpss:
         self._both = (self.high, self.low)
         self._ramp = Ramp()
         self._event: Event | None = None
-        #: Nothing but the positive input can change an output.
+        #: Whether only the positive input can change an output.
         self._quiet = False
-        #: The ePWM whose EPWMSYNCPER is wanted; 0: none.
+        #: The ePWM whose EPWMSYNCPER the module needs; 0: none.
         self._sync_source = 0
         for name in LOCKS:
             regs.bind(name, write=partial(self._write_locked, name))
@@ -130,7 +131,7 @@ class Cmpss:
         self._refresh()
 
     def sync(self) -> None:
-        """EPWMSYNCPER of the ePWM that was asked for."""
+        """A pulse of the EPWMSYNCPER that the module needs."""
         registers = self._regs.registers
         control = registers["COMPDACCTL"].value
         self._settle()
@@ -157,7 +158,7 @@ class Cmpss:
 
     @property
     def _on_ramp(self) -> bool:
-        """Whether the high comparator's DAC has the code of the ramp."""
+        """Whether the DAC of the high comparator gets its code from the ramp."""
         return bool(self._regs.registers["COMPDACCTL"].value & COMPDACCTL.DACSOURCE.mask)
 
     @property
@@ -182,12 +183,12 @@ class Cmpss:
         return negative_v
 
     def _settle(self) -> None:
-        """The samples up to now, with the levels as they were."""
+        """Take the filter samples up to now, with the present levels of the comparators."""
         for half in self._both:
             half.filter.settle(self._clock.now)
 
     def _refresh(self) -> None:
-        """Look at the inputs, bring the filters up to now, and tell."""
+        """Read the inputs, bring the filters up to now, and update the outputs."""
         now, control = self._clock.now, self._control.value
         on = bool(control & COMPCTL.COMPDACE.mask)
         volts = self._positive.volts(now) if on else 0.0
@@ -208,7 +209,7 @@ class Cmpss:
         self._arrange(again)
 
     def _arrange(self, time: int) -> None:
-        """One event at the next cycle in which something may change, `time` at the latest; none if nothing can."""
+        """Schedule one event at the next cycle when something may change (at `time` at the latest), if anything can."""
         if self._event is not None:
             self._clock.cancel(self._event)
             self._event = None
@@ -230,7 +231,7 @@ class Cmpss:
             self._event = self._clock.schedule(time, self._due)
 
     def _crossing(self) -> int:
-        """When the falling ramp lets the high comparator change next, with steady inputs; NEVER: it does not."""
+        """The cycle when the falling ramp next changes the high comparator, with steady inputs; NEVER: it does not."""
         now, high = self._clock.now, self.high
         volts, late = self._positive.volts(now), max(self._ramp.end, now)
         if high.raw or volts <= self._limit(high, late):
@@ -255,7 +256,7 @@ class Cmpss:
         self._refresh()
 
     def _stepped(self) -> None:
-        """Something else drives one of the inputs."""
+        """Another source drives one of the inputs."""
         if self._on:
             self._refresh()
 
@@ -273,7 +274,7 @@ class Cmpss:
             registers[f"{name}A"].value = registers[f"{name}S"].value
 
     def _choose_sync(self) -> None:
-        """Want the EPWMSYNCPER that RAMPSOURCE names, if it does anything."""
+        """Listen to the EPWMSYNCPER that RAMPSOURCE names, if it has any effect."""
         registers = self._regs.registers
         control, clears = registers["COMPDACCTL"].value, registers["COMPSTSCLR"].value
         wanted = control & (COMPDACCTL.SWLOADSEL.mask | COMPDACCTL.DACSOURCE.mask)

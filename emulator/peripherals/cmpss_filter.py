@@ -1,8 +1,7 @@
 """The digital filter of a comparator: samples, a window, a majority; and the latch behind it.
 
-A sample is taken every CLKPRESCALE + 1 SYSCLK.  Of the newest SAMPWIN + 1 samples at least THRESH + 1 must differ from
-the output, then it changes.  The samples are computed when somebody asks: what goes in is a level that only changes
-when `take` says so.
+A sample is taken every CLKPRESCALE + 1 SYSCLK.  If at least THRESH + 1 of the newest SAMPWIN + 1 samples differ from
+the output, it changes.  The samples are computed on demand: the input level changes only by `take`.
 
 CHOICE: a new CLKPRESCALE starts the sample clock anew; a new window or threshold decides at the next sample.
 CHOICE: FILINIT decides the output at once, with all samples equal.
@@ -35,7 +34,7 @@ class DigitalFilter:
         self._samples = 0
         self._window = self._threshold = self.period = 1
         self._origin = now
-        #: How many sample times since `_origin` are done.
+        #: The number of samples that have been taken since `_origin`.
         self._last = 0
 
     def configure(self, window: int, threshold: int) -> None:
@@ -86,11 +85,11 @@ class DigitalFilter:
 
     @property
     def _settled(self) -> bool:
-        """Whether every sample is the input already and has had its effect."""
+        """Whether all samples equal the input and have had their effect."""
         return self.output == self.level and self._samples == (_ALL if self.level else 0)
 
     def _majority(self, samples: int) -> bool:
-        """Whether enough of the window differ from the output."""
+        """Whether enough samples of the window differ from the output."""
         window = samples & (1 << self._window) - 1
         ones = window.bit_count()
         return (self._window - ones if self.output else ones) >= self._threshold

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import Final
 
-#: Bits of RAMPSTS below those that the DAC has.
+#: The number of low bits of RAMPSTS that the DAC does not use.
 FRACTION_BITS: Final = 4
 
 
@@ -43,7 +43,7 @@ class Ramp:
         return max(self._start - self._step * (cycles - self._begin), 0)
 
     def code(self, cycles: int) -> int:
-        """The DAC's code then."""
+        """The code of the DAC at that time."""
         return self.value(cycles) >> FRACTION_BITS
 
     @property

@@ -56,7 +56,7 @@ class CpuTimer:
         self._regs.reset()
         self._psc = 0
         self._since = self._clock.now  # the counters stood at (TIM, PSC) at this time
-        #: The underflow behind the read that first saw TIF set: reading it set after that is a stale read.
+        #: The first underflow after the read that first saw TIF set.  A read that sees TIF set after that is stale.
         self._next_underflow: int | None = None
         self._clocked = self._regs.clocked
         self._plan()
@@ -84,7 +84,7 @@ class CpuTimer:
         return self._clocked and not self._tcr.value & TSS
 
     def _reload(self) -> int:
-        """What the prescaler starts from, in SYSCLK cycles."""
+        """The reload value of the prescaler, in SYSCLK cycles."""
         return (((self._tprh.value & 0xFF) << 8 | self._tpr.value & 0xFF) + 1) * self._tick - 1
 
     def _sync(self) -> None:
@@ -108,7 +108,7 @@ class CpuTimer:
             self._tim.value = period - 1 - (decrements - self._tim.value - 1) % period
 
     def _plan(self) -> None:
-        """Have the next underflow called, if it changes anything.  The counters are up to date."""
+        """Schedule the next underflow, if it changes anything.  The counters must be up to date."""
         self._clock.cancel(self._event)
         self._event = None
         if not self._running():
@@ -139,11 +139,13 @@ class CpuTimer:
             self._trigger()
 
     def skip(self, most: int, cycles: int) -> range:
-        """Take up to `most` underflows in one step, whose interrupts are known to do nothing but occupy an idle CPU for
-        `cycles`; the clock stands at the end of the last.  Returns when they were (cycles): those after which nothing
-        else happens for `cycles`, and none unless the next underflow is the next event.
+        """Take up to `most` underflows in one step and return when they were (cycles).
 
-        A trigger that starts something ends the step: the clock stands at its underflow, whose interrupt is pulsed.
+        The interrupt of each must do nothing but occupy an idle CPU for `cycles`.  An underflow is taken only if
+        nothing else happens for `cycles` after it; none is taken unless the next underflow is the next event.
+        Afterwards the clock is at the end of the last interrupt.
+
+        A trigger that starts a conversion ends the step: the clock is at its underflow, and its interrupt is pulsed.
         """
         clock, event = self._clock, self._event
         if event is None or event[0] != clock.next or not self._tcr.value & TIE:

@@ -19,7 +19,7 @@ from emulator.registers.core import ALL
 from emulator.registers.dac import DacRegs
 from emulator.signals import AnalogWire
 
-#: What DACLOCK wants in its upper four bits.
+#: The key that DACLOCK needs in its upper four bits.
 KEY: Final = 0xA
 #: Register -> its bit of DACLOCK.
 LOCKS: Final = {"DACCTL": 1 << 0, "DACVALS": 1 << 1, "DACOUTEN": 1 << 2}

@@ -63,16 +63,16 @@ HARDRESET: Final = 1 << 0
 #: the word is written.
 READ_AT: Final = 1
 WRITE_AFTER: Final = 3
-#: A read sees what everybody else does in its cycle.
+#: Priority of a read: it sees all other changes of its cycle.
 LATE: Final = 1
-#: The cycle in front of a burst, and behind an interruption by channel 1.
+#: The cycle before a burst, and after an interruption by channel 1.
 EXTRA: Final = 1
 
 #: Memory that the DMA reaches without a bridge: global shared RAM, results of the ADCs (DS memory map).
 REACHED: Final = ((0x0B00, 0x0B80), (0xC000, 0x1C000))
 #: Modules behind bridge 1 (ePWM, eCAP, eQEP, DAC, CMPSS, SDFM) and 2 (McBSP, SPI, uPP): addresses, field of SECMSEL.
 BRIDGES: Final = ((0x4000, 0x6000, "PF1SEL", 0), (0x6000, 0x7000, "PF2SEL", 2))
-#: What SECMSEL.PFxSEL is while the DMA has the bridge.
+#: The value of SECMSEL.PFxSEL while the DMA has the bridge.
 DMA_HAS_BRIDGE: Final = 1
 
 
@@ -97,7 +97,7 @@ def signed16(word: int) -> int:
 
 
 class _Channel:
-    """One channel: its registers by name, and the word that is on its way."""
+    """One channel: its registers by name, and the word that it is moving."""
 
     __slots__ = ("cause", "doubts", "interrupt", "n", "name", "registers", "stopping", "word")
 
@@ -110,11 +110,11 @@ class _Channel:
         self.registers: dict[str, Cell] = {
             name.removeprefix(prefix): cell for name, cell in regs.registers.items() if name.startswith(prefix)
         }
-        #: The word that has been read and not been written.
+        #: The word that has been read and not yet written.
         self.word = 0
-        #: A halt or reset that waits for the end of the present word.
+        #: Whether a halt or reset waits for the end of the present word.
         self.stopping = False
-        #: What switched the channel on.
+        #: The statement that switched the channel on.
         self.cause: Cause | None = None
         self.doubts = TransferDoubts(f"{regs.name}.{self.name}", self.registers, findings, region)
 
@@ -131,11 +131,11 @@ class _Channel:
 class Dma:
     """DMA behaviour over its registers.
 
-    `read(address, words)` and `write(address, words, value)` are the bus, where a register of 32 bits is one access;
-    `region(address)` is the object that the linker has put there; `bridges()` is SECMSEL.  `interrupts` are the
-    six pulses to the PIE.  `listen(sources)` is called with the numbers of all triggers that some channel waits for
-    whenever they change: from then on `trigger` (events) or `level` (levels, with `stands(source)`) bring them.
-    `known` are the triggers that there are.
+    `read(address, words)` and `write(address, words, value)` are the bus; a 32-bit register is one access.
+    `region(address)` returns the object that the linker has placed there.  `bridges()` returns SECMSEL.  `interrupts`
+    are the six pulses to the PIE.  `listen(sources)` is called with the numbers of all triggers that some channel waits
+    for, whenever this set changes.  From then on, `trigger` must be called for their events, and `level` for their
+    levels; `stands(source)` tells whether a level is active.  `known` are the numbers of all triggers that exist here.
     """
 
     def __init__(
@@ -155,7 +155,7 @@ class Dma:
         self._channels = tuple(
             _Channel(n, regs, pulse, cpu.findings, region) for n, pulse in enumerate(interrupts, 1)
         )  # fmt: skip
-        #: Channels that move words now which nothing but the program has asked for.
+        #: Channels that move words now and were triggered only by the program.
         self.moving: list[TransferDoubts] = []
         #: Trigger -> the channels that wait for it.
         self._heard: dict[int, list[_Channel]] = {}
@@ -175,7 +175,7 @@ class Dma:
         self.reset()
 
     def reset(self) -> None:
-        """Hard reset: registers, and whatever is on its way."""
+        """Hard reset: reset the registers, and drop all transfers under way."""
         self._clock.cancel(self._event)
         self._event = self._frozen = None
         self._regs.reset()
@@ -221,7 +221,7 @@ class Dma:
         self._serve()
 
     def level(self, source: int) -> None:
-        """The level of trigger `source` stands; a channel whose burst is under way looks when that has ended."""
+        """The level of trigger `source` is active.  A channel with a burst under way reads it again after the burst."""
         for channel in self._heard.get(source, ()) if self._clocked else ():
             control = channel.registers["CONTROL"]
             if not control.value & BURSTSTS:
@@ -248,7 +248,7 @@ class Dma:
         return register.value >> 8 * ((selector - 1) % 4) & 0xFF
 
     def _configure(self) -> None:
-        """Follow the registers that say who triggers whom."""
+        """Follow the registers that assign triggers to channels."""
         heard: dict[int, list[_Channel]] = {}
         for channel in self._channels:
             source = self._source(channel)
@@ -259,11 +259,12 @@ class Dma:
         if changed:
             self._listen(frozenset(heard))
 
-    # --- who has the bus ---------------------------------------------------------------------------------------------
+    # --- arbitration -------------------------------------------------------------------------------------------------
 
     def _waits(self, channel: _Channel) -> bool:
-        """Whether a channel could use the bus: it is on, and was triggered, or was halted within a burst or a one-shot
-        transfer.
+        """Whether a channel could use the bus.
+
+        It is on; and it was triggered, or halted within a burst or a one-shot transfer.
         """
         control = channel.value("CONTROL")
         if not control & RUNSTS or channel is self._held:
@@ -321,7 +322,7 @@ class Dma:
             self.moving.append(channel.doubts)
 
     def _state(self) -> None:
-        """PRIORITYSTAT: who has the bus, and from whom channel 1 took it."""
+        """Set PRIORITYSTAT: the channel that has the bus, and the channel that channel 1 took it from."""
         active = self._active.n if self._active is not None else 0
         self._status.value = active | (self._held.n if self._held is not None else 0) << 4
 
@@ -345,7 +346,7 @@ class Dma:
         self._advance(channel, words)
 
     def _advance(self, channel: _Channel, words: int) -> None:
-        """A word is written: what comes next."""
+        """A word has been written: go on with the next word or burst, or end the transfer."""
         control, count = channel.registers["CONTROL"], channel.registers["BURST_COUNT"]
         if channel.stopping and not control.value & BURSTSTS:  # a soft reset has waited for the word
             channel.stopping = False
@@ -425,7 +426,7 @@ class Dma:
     # --- the bus -----------------------------------------------------------------------------------------------------
 
     def _access(self, channel: _Channel, side: str, address: int, words: int, value: int | None) -> int:
-        """A read (`value` None) or write; what cannot be reached reads 0 and takes nothing."""
+        """A read (`value` None) or write.  An address that the DMA cannot reach reads 0, and writes there are lost."""
         findings = self._cpu.findings
         findings.cause = channel.cause
         try:
@@ -445,7 +446,7 @@ class Dma:
             findings.cause = None
 
     def _unreachable(self, address: int) -> str:
-        """Why the DMA does not come to an address; empty: it does."""
+        """Why the DMA cannot reach an address; empty if it can."""
         if self._region(address) is not None or any(low <= address < high for low, high in REACHED):
             return ""
         for low, high, field, shift in BRIDGES:
@@ -486,7 +487,7 @@ class Dma:
             self._look(channel)
 
     def _look(self, channel: _Channel) -> None:
-        """A level that stands already triggers a channel that begins to wait for it."""
+        """Trigger a channel that begins to wait for a level, if the level is active already."""
         source = self._source(channel)
         if source and self._clocked and self._stands(source) and not channel.value("CONTROL") & BURSTSTS:
             channel.registers["CONTROL"].value |= PERINTFLG
@@ -521,7 +522,7 @@ class Dma:
         self._serve()
 
     def _stop(self, channel: _Channel) -> None:
-        """The present word of a channel is its last for now."""
+        """Stop a channel after its present word."""
         if channel is self._active:
             channel.stopping = True
         elif channel is self._held:

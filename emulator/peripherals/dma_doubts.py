@@ -1,7 +1,7 @@
-"""What a driver of the DMA overlooks: steps that leave words out, transfers beyond an object, or read too early.
+"""Finds mistakes of DMA drivers: steps that leave words out, transfers beyond an object, data that is read too early.
 
-Part of `dma.py`.  Objects are what the linker has placed: what lies behind one belongs to somebody else.  Nothing here
-changes what is moved.
+Part of `dma.py`.  An object is one that the linker has placed; the memory after it belongs to other objects.  Nothing
+here changes the words that are moved.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from emulator.c28x.findings import Cause, Findings
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
 
-#: Registers whose last write is where a finding about them belongs.
+#: Registers whose last write is the place of findings about them.
 CAUSES: Final = (
     "BURST_SIZE", "TRANSFER_SIZE", "SRC_BURST_STEP", "DST_BURST_STEP", "SRC_TRANSFER_STEP", "DST_TRANSFER_STEP",
     "SRC_ADDR_SHADOW", "DST_ADDR_SHADOW",
@@ -46,11 +46,11 @@ class TransferDoubts:
         self._path, self._registers, self._findings, self._region = path, registers, findings, region
         self._causes: dict[str, Cause | None] = {}
         self._mode: Cause | None = None
-        #: Of the transfer under way: the object of each side.
+        #: The source and destination object of the transfer under way.
         self._regions: dict[str, Region | None] = {}
         #: The objects that transfers began in, each with the statement that gave its address.
         self.used: dict[str, Cause | None] = {}
-        #: Those of the transfer under way while words move that nothing but the program has asked for.
+        #: The objects of the transfer under way, while words move that only the program has triggered.
         self.moving: tuple[Region | None, Region | None] | None = None
 
     def write(self, name: str, word: int, lanes: int = ALL) -> None:
@@ -63,7 +63,7 @@ class TransferDoubts:
         self._mode = self._findings.mark()
 
     def started_again(self, left: int) -> None:
-        """RUN was set within a transfer without ONESHOT that has no trigger but the program's; `left` bursts follow."""
+        """RUN was set within a transfer without ONESHOT that only the program triggers; `left` bursts still follow."""
         bursts = self._registers["TRANSFER_SIZE"].value + 1
         self._report(
             self._mode, "dma-unfinished",
@@ -86,7 +86,7 @@ class TransferDoubts:
             self.moving = self._regions.get("SRC"), self._regions.get("DST")
 
     def _steps(self, side: str, words: int) -> None:
-        """Steps that are too small for accesses of so many words to a whole object."""
+        """Report steps that do not fit accesses of so many words to a whole object."""
         region, value = self._regions[side], self._signed
         if region is None or region.words <= words or self._registers["BURST_SIZE"].value < words:
             return
@@ -108,7 +108,7 @@ class TransferDoubts:
         )  # fmt: skip
 
     def beyond(self, side: str, address: int) -> bool:
-        """Whether an access has left the object in which its transfer began, which is told."""
+        """Whether an access has left the object in which its transfer began.  Then report it."""
         region = self._regions.get(side)
         if region is None or region.holds(address):
             return False

@@ -41,7 +41,7 @@ _OVF: Final = ECFLG.CTROVF.mask
 _PRD: Final = ECFLG.CTR_PRD.mask
 _CMP: Final = ECFLG.CTR_CMP.mask
 _SOURCES: Final = _CEVT | _OVF | _PRD | _CMP
-#: What an event does besides its flag.
+#: Bits of ECCTL1 that give an event an effect besides its flag.
 _ACTING: Final = (
     ECCTL1.CAPLDEN.mask | ECCTL1.CTRRST1.mask | ECCTL1.CTRRST2.mask | ECCTL1.CTRRST3.mask | ECCTL1.CTRRST4.mask
 )  # fmt: skip
@@ -53,8 +53,9 @@ _AT_PERIOD: Final = 1
 class ECap:
     """One eCAP module.
 
-    `interrupt` is pulsed on the module's PIE line; `listen(on)`: from now on the edges of the input matter, or no more;
-    `sync_out` is pulsed for the next module of the chain; `held` tells an enabled event that ECFLG.INT holds back.
+    `interrupt` is pulsed on the module's PIE line.  `listen(on)` is called when the module begins (or ceases) to need
+    the edges of its input.  `sync_out` is pulsed for the next module of the chain.  `held` is called for an enabled
+    event that ECFLG.INT holds back.
     """
 
     __slots__ = (
@@ -97,23 +98,23 @@ class ECap:
         self._clock.cancel(self._next_look)
         self._next_look = None
         self._regs.reset()
-        #: TSCTR and what the counting has done are told up to here.
+        #: TSCTR and the flags of counting are up to date for this cycle.
         self._since = self._clock.now
-        #: The event that comes next, 0 for event 1, unless a one-shot has stopped.
+        #: The number of the next event less 1, unless a one-shot has stopped.
         self._next, self._armed = 0, True
-        #: Behind the prescaler: the level, and the rising edges of the pin since it changed.
+        #: After the prescaler: the level, and the rising edges of the pin since the level changed.
         self._divided = self._rises = 0
-        #: Shadows of APWM mode that wait: bit 0 the period, bit 1 the compare value.
+        #: Shadows of APWM mode that wait to be loaded: bit 0 the period, bit 1 the compare value.
         self._shadows = 0
-        #: ECFLG was read, which may be a poll: since the last event, and ever in capture mode.
+        #: Whether ECFLG was read, maybe by a poll: since the last event; and at any time in capture mode.
         self._polled = self._edges_polled = False
         self._apply()
 
-    # -- world face ----------------------------------------------------------------------------------------------
+    # -- for the world -------------------------------------------------------------------------------------------
 
     @property
     def stopped(self) -> bool:
-        """Whether a one-shot has stopped behind its last event."""
+        """Whether a one-shot has stopped after its last event."""
         return not self._armed
 
     def set_clock(self, on: bool) -> None:
@@ -159,7 +160,7 @@ class ECap:
             self._next = n + 1 & 3
         self._raise(ECFLG.CEVT1.mask << n)
         if resets:
-            # An overflow that was planned comes too early, finds none, and plans anew.
+            # An overflow that was planned now comes too early.  It finds no overflow, and plans anew.
             self._counter.value = 0
 
     # -- counter -------------------------------------------------------------------------------------------------
@@ -221,7 +222,7 @@ class ECap:
         self._shadows = 0
 
     def _plan(self) -> None:
-        """An event where the counter next does what somebody waits for, or on the way there."""
+        """Schedule an event at the counter's next flag or edge that is waited for, or earlier on the way to it."""
         self._clock.cancel(self._event)
         self._event = None
         if self.output.heard:
@@ -235,7 +236,7 @@ class ECap:
                 self._event = self._clock.after(ticks, self._due)
 
     def _until_flag(self) -> int:
-        """The ticks to a flag that somebody waits for, or to the end of the period; 0: there is none."""
+        """Ticks to a flag that is waited for, or to the end of the period; 0: there is none."""
         wanted = (_SOURCES if self._polled else self._enabled.value) & ~self._flags.value
         if not wanted & (_OVF | _PRD | _CMP):
             return 0
@@ -275,7 +276,7 @@ class ECap:
         self._plan()
 
     def _apply(self) -> None:
-        """Listen, and plan, as the registers and the clock gate now say."""
+        """Listen to the input, and schedule the next event, as the registers and the clock gate now require."""
         control = self._control1.value
         set_up = control & _ACTING or self._enabled.value & _CEVT or self._edges_polled
         # The prescaler goes on while a one-shot has stopped.
@@ -289,7 +290,7 @@ class ECap:
     def _read_TSCTR(self) -> int:
         self._catch_up()
         if self._next_look is None and self._runs:
-            # Who polls the counter looks again a cycle later.
+            # A poll of the counter goes on a cycle later.
             self._next_look = self._clock.after(1, self._look_again)
         return self._counter.value
 

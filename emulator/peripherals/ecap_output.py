@@ -1,6 +1,6 @@
 """The output of an eCAP in APWM mode, as the X-BARs take it: ECAPn.OUT.
 
-Part of `ecap.py`, which tells it.
+Part of `ecap.py`, which reports changes to it.
 """
 
 from __future__ import annotations
@@ -11,16 +11,16 @@ from emulator.signal import Signal
 
 
 class ApwmOutput:
-    """The level now, by `look()`, and its changes, which `wanted(on)` requests while there are listeners."""
+    """The level of the output.  `look()` returns it; `wanted(on)` requests its changes while there are listeners."""
 
     __slots__ = ("_look", "_told", "_wanted", "changed", "heard")
 
     def __init__(self, look: Callable[[], int], wanted: Callable[[], None]) -> None:
         self._look, self._wanted = look, wanted
         self._told = 0
-        #: Somebody hears the changes.
+        #: Whether there are listeners to the changes.
         self.heard = False
-        #: (level): every change, while somebody hears it.
+        #: (level): every change, while there is a listener.
         self.changed: Signal[int] = Signal(self._listened)
 
     @property
@@ -29,7 +29,7 @@ class ApwmOutput:
         return self._look()
 
     def tell(self) -> None:
-        """The level may have changed."""
+        """The level may have changed: report a change to the listeners."""
         level = self._look()
         if level != self._told:
             self._told = level

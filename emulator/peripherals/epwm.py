@@ -49,12 +49,12 @@ class EPwm:
     """One ePWM module, EPWM`number`.
 
     `interrupt` is pulsed on the module's PIE line of group 3, `trip_interrupt` on that of group 2; `soc_a` and `soc_b`
-    are pulsed towards the ADC.  TZn comes by `trip_input`; `trip_listen(n, on)` is called when it begins and ceases to
-    matter, and is answered by the level that TZn has; `tripin` and `tripin_listen` are the same for TRIPINn.  `held()`
-    is called at an event that ETFLG.INT keeps from being an interrupt.  `epwmclk_divider()` is SYSCLK / EPWMCLK
-    (CLKCFG.PERCLKDIVSEL): call `clock_changed` when it changes.
-    CHOICE: `stopped_loads`: a counter that stands at 0 while TBCLK runs loads what waits for 0, one TBCLK later, so
-    that TI's example, which sets period and compare up before it starts the counter, has its first SOC where it says.
+    are pulsed towards the ADC.  Call `trip_input` with the level of TZn.  `trip_listen(n, on)` is called when the
+    module begins (or ceases) to need TZn; answer with a call of `trip_input`.  `tripin` and `tripin_listen` are the
+    same for TRIPINn.  `held()` is called for an event that gives no interrupt because ETFLG.INT is set.
+    `epwmclk_divider()` is SYSCLK / EPWMCLK (CLKCFG.PERCLKDIVSEL): call `clock_changed` when it changes.
+    CHOICE: `stopped_loads`: a counter that stands at 0 while TBCLK runs loads what waits for 0, one TBCLK later.  So
+    TI's example, which sets up period and compare before it starts the counter, has its first SOC where it says.
     """
 
     __slots__ = (
@@ -108,7 +108,7 @@ class EPwm:
         self._triggers = EventTrigger(
             clock, regs, self._time_base, self._phases, interrupt, held, soc_a, soc_b
         )  # fmt: skip
-        #: What else follows the path of the counter, while it is used.
+        #: Functions to call when the path of the counter changes, while they are needed.
         self._on_path: list[Callable[[], None]] = []
         self._sync_pulse = SyncPulse(clock, regs, self._next_point, self._follow_path)
         self._digital_compare = DigitalCompare(
@@ -151,7 +151,7 @@ class EPwm:
         self._digital_compare.reset()
         self._rearrange()
 
-    # -- world face ----------------------------------------------------------------------------------------------
+    # -- for the world -------------------------------------------------------------------------------------------
 
     def set_tbclksync(self, on: bool) -> None:
         """PCLKCR0.TBCLKSYNC: starts and stops TBCLK of all modules together."""
@@ -203,7 +203,7 @@ class EPwm:
         return a, b
 
     def _follow_path(self, follow: Callable[[], None], on: bool) -> None:
-        """Call `follow()` whenever the counter's path is new, or no longer."""
+        """Call `follow()` whenever the counter's path changes (`on`), or no longer."""
         self._on_path = [*(other for other in self._on_path if other != follow), *([follow] if on else [])]
 
     # -- from active values to the outputs -----------------------------------------------------------------------
@@ -221,7 +221,7 @@ class EPwm:
         self._outputs.settle(before_this_tick)
 
     def _look(self) -> None:
-        """Bring the outputs up to now, in whatever order what is due in this cycle runs."""
+        """Bring the outputs up to now.  The result does not depend on the order of the events of this cycle."""
         if self._load_event is not None and event_time(self._load_event) == self.clock.now:
             self.clock.cancel(self._load_event)
             self._load()
@@ -229,7 +229,7 @@ class EPwm:
         self._time_base.change()
 
     def _rearrange(self, arrived: bool = False) -> None:
-        """The path of the counter or an active value is new: waveforms, wires and events follow."""
+        """The path of the counter or an active value has changed: update waveforms, wires and events."""
         self._outputs.arrange(arrived)
         self._schedule_load()
         self._triggers.reschedule()
@@ -269,7 +269,7 @@ class EPwm:
                 shadow.pending = True
                 if full is not None:
                     self.regs.CMPCTL.value |= full.mask
-                # Several registers wait for one load point: their event is there already.
+                # Several registers can wait for one load point.  Its event is scheduled already.
                 if self._load_event is None or shadow.points & ~self._load_points:
                     self._schedule_load()
 
@@ -285,7 +285,7 @@ class EPwm:
 
     @property
     def above(self) -> Mapping[str, Beyond]:
-        """By compare register: the first value that stood above the period."""
+        """Compare register -> its first value above the period."""
         return self._doubts.above
 
     @property
@@ -321,7 +321,7 @@ class EPwm:
             self._load_event = self.clock.after(base.tick, self._load)
 
     def _next_point(self, points: int) -> int | None:
-        """When the counter comes next to one of these load points, later than now; None: it does not run there."""
+        """The cycle (after now) when the counter next reaches one of these load points; None: it never does."""
         base = self._time_base
         if not points or not base.running:
             return None
@@ -333,7 +333,7 @@ class EPwm:
         return (AT_ZERO, period if down else 0), (AT_PERIOD, 0 if down else period)
 
     def _load(self) -> None:
-        """CTR = 0 or CTR = TBPRD: what waits for this point becomes active, for this TBCLK already."""
+        """CTR = 0 or CTR = TBPRD: load the shadows that wait for this point.  They are active in this TBCLK already."""
         self._load_event = None
         here = self._time_base.phase()
         points = sum({bit for bit, phase in self._load_phases() if phase == here})
@@ -390,7 +390,7 @@ class EPwm:
         return self._time_base.count()
 
     def _mark_next_tick(self) -> None:
-        """An event at the next TBCLK: who polls the counter looks again there."""
+        """Schedule an event at the next TBCLK, where a poll of the counter goes on."""
         if self._next_look is None and self._time_base.running:
             self._next_look = self.clock.schedule(self._time_base.next_tick(), self._look_again)
 

@@ -63,7 +63,7 @@ def event_phases(mode: int, period: int, compare_a: int, compare_b: int) -> dict
     return {}
 
 
-#: Where each event's action stands in AQCTLA and AQCTLB.
+#: The bit position of each event's action in AQCTLA and AQCTLB.
 _SHIFT: Final = {name: field.lo for name, field in AQCTLA.fields.items()}
 #: Bits of AQCTLA and AQCTLB that give an event of CMPA or of CMPB an action.
 USES_COMPARE_A: Final = AQCTLA.CAU.mask | AQCTLA.CAD.mask
@@ -78,7 +78,7 @@ def act(action: int, level: int) -> int:
 
 
 class OutputWaveform:
-    """One period of an output: which action happens at which phase."""
+    """One period of an output: the actions and their phases."""
 
     __slots__ = ("_actions", "_end", "_fixed", "_toggles", "length")
 
@@ -94,12 +94,12 @@ class OutputWaveform:
         self.length = length
         self._actions = sorted(by_phase.items())
         self._toggles = 0
-        #: Level at the end of a period that begins low; where some event sets or clears, of every period.
+        #: The level at the end of a period that begins low.  If some event sets or clears, it is that of every period.
         self._end = 0
         for _, action in self._actions:
             self._end = act(action, self._end)
             self._toggles += action == TOGGLE
-        #: Whether some event decides the level, whatever it was before.
+        #: Whether some event sets or clears the output, so that its former level does not matter.
         self._fixed = self._toggles < len(by_phase)
 
     def action_at(self, phase: int) -> int:
@@ -124,7 +124,7 @@ class OutputWaveform:
         return self._walk(level, -1, last - length) if last >= length else level
 
     def next_change(self, level: int, phase: int) -> int:
-        """How many arrivals after `phase` an output of this level changes; 0: never."""
+        """The number of arrivals after `phase` until an output of this level changes; 0: never."""
         for at, action in self._actions:
             if at > phase and act(action, level) != level:
                 return at - phase
@@ -135,7 +135,7 @@ class OutputWaveform:
 
     @property
     def alternates(self) -> bool:
-        """Whether every second period is the other ones inverted."""
+        """Whether each period is the inverse of the one before."""
         return not self._fixed and bool(self._toggles & 1)
 
     def _walk(self, level: int, after: int, until: int) -> int:
@@ -147,8 +147,8 @@ class OutputWaveform:
     def high_time(self, level: int, phase: int) -> tuple[int, int]:
         """(TBCLK high, TBCLK in all) of the steady waveform when the output is `level` at `phase`.
 
-        An output that is only toggled, and an odd number of times a period, repeats after two periods, the second of
-        which is the first one inverted.
+        If an output is only toggled, an odd number of times in a period, it repeats after two periods.  The second is
+        the inverse of the first.
         """
         length = self.length
         if self._fixed:
@@ -167,5 +167,5 @@ class OutputWaveform:
 
 @lru_cache(maxsize=1024)
 def waveform(mode: int, period: int, length: int, compare_a: int, compare_b: int, control: int) -> OutputWaveform:
-    """The waveform of a time base, kept: a controller comes back to the same few hundred duties."""
+    """The waveform of a time base.  It is cached, because a controller uses the same few hundred duties again."""
     return OutputWaveform(event_phases(mode, period, compare_a, compare_b), length, control)

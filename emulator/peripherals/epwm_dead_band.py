@@ -1,4 +1,4 @@
-"""The dead band of an ePWM module: what lies between the action qualifier and the trip zone.
+"""The dead band of an ePWM module.  It lies between the action qualifier and the trip zone.
 
     A in --+-> S4 -> rising edge delay --> S2 (inverted?) -> S1 (delayed or A in) = A path --> S6 -> output A
            |              |                                                             \\/
@@ -39,7 +39,7 @@ _S7: Final = 1 << DBCTL.OUTSWAP.lo
 _S8: Final = DBCTL.DEDB_MODE.mask
 #: With none of these set the outputs are the inputs.
 _ACTIVE: Final = DBCTL.OUT_MODE.mask | DBCTL.OUTSWAP.mask
-#: What of DBCTL decides how the signals go; the rest says when something is loaded.
+#: The bits of DBCTL that decide the path of the signals.  The other bits decide when registers are loaded.
 #: CHOICE: only these bits wait in the shadow of DBCTL.
 SWITCHES: Final = (
     DBCTL.OUT_MODE.mask | DBCTL.POLSEL.mask | DBCTL.IN_MODE.mask | DBCTL.OUTSWAP.mask | DBCTL.DEDB_MODE.mask
@@ -49,16 +49,16 @@ Edge = tuple[int, int, int]
 
 
 class _Delay:
-    """A delay of one kind of edge: those to the level `slow`; the others pass at once."""
+    """A delay for edges to the level `slow`.  Other edges pass at once."""
 
     __slots__ = ("_input", "_slow", "cycles", "due", "level")
 
     def __init__(self, slow: int) -> None:
         self._slow = slow
-        #: Of edges that come from now on.
+        #: The delay in cycles of edges that come from now on.
         self.cycles = 0
         self._input = self.level = 0
-        #: When the delayed edge comes out; -1 while none is under way.
+        #: The cycle when the delayed edge comes out; -1 while none is under way.
         self.due = -1
 
     def begin(self, level: int) -> None:
@@ -78,7 +78,7 @@ class _Delay:
             self.due = -1
 
     def pass_to(self, now: int) -> None:
-        """Let out what is due."""
+        """Let out an edge that is due by `now`."""
         if 0 <= self.due <= now:
             self.level = self._slow
             self.due = -1
@@ -91,7 +91,7 @@ class _Delay:
 class DeadBand:
     """The two delays and the switches around them.
 
-    Cycles are those of the clock.  `on`: the outputs are not simply the inputs.
+    Cycles are those of the clock.  `on`: whether the outputs can differ from the inputs.
     """
 
     __slots__ = ("_a", "_b", "_falling", "_rising", "_switches", "on")
@@ -144,9 +144,9 @@ class DeadBand:
             self._falling.pass_to(due)
 
     def course(self, edges: Iterator[Edge], until: int) -> Iterator[int]:
-        """Run until the cycle `until`, with these edges of the inputs: each cycle at which something may change.
+        """Run until the cycle `until` with these edges of the inputs.  Yields each cycle when something may change.
 
-        An edge that undoes a delayed one in the cycle in which that would come out is in time.
+        An edge can undo a delayed edge up to the cycle in which this one would come out, that cycle included.
         """
         for time, a, b in edges:
             if time > until:
@@ -161,7 +161,7 @@ class DeadBand:
             yield due
 
     def later(self, cycles: int) -> None:
-        """Everything happens `cycles` later: whole periods in which nothing new happens have been left out."""
+        """Shift all times by `cycles`: the caller has left out whole periods that only repeat."""
         for delay in (self._rising, self._falling):
             if delay.due >= 0:
                 delay.due += cycles
@@ -174,7 +174,7 @@ class DeadBand:
         return self._falling.level ^ bool(switches & _S3) if switches & _S0 else self._b
 
     def source(self, index: int) -> int:
-        """From which input, A (0) or B (1), an output follows."""
+        """The input, A (0) or B (1), that an output follows."""
         switches = self._switches
         if self._has_a_path(index):
             return int(bool(switches & _S4)) if switches & _S1 else 0
@@ -187,11 +187,11 @@ class DeadBand:
 
     @property
     def memory_cycles(self) -> int:
-        """How long a cause acts at most."""
+        """The longest time for which an edge of an input has an effect, in cycles."""
         return self._rising.cycles + self._falling.cycles
 
     def copy(self) -> DeadBand:
-        """Another one in the same state, to see how it goes on."""
+        """A copy in the same state, to compute how it goes on."""
         other = DeadBand()
         other.on, other._switches, other._a, other._b = self.on, self._switches, self._a, self._b
         other._rising.like(self._rising)

@@ -40,7 +40,7 @@ SIGNALS: Final = ("DCAH", "DCAL", "DCBH", "DCBL")
 #: Value of a field of DCTRIPSEL -> trip inputs as bits (TRIPINn is bit n - 1); 15 is the combination, 12 is none.
 _COMBINATION: Final = 15
 _RESERVED: Final = 12
-#: Of what comes in one cycle the point is first, and an opening window before the end of one that it continues.
+#: The order within one cycle: first the point of the counter, then the begin of a window, then the end of a window.
 _POINT_PRIORITY: Final = -3
 _OPEN_PRIORITY: Final = -2
 _CLOSE_PRIORITY: Final = -1
@@ -51,10 +51,10 @@ _POINTS: Final = (AT_PERIOD, AT_ZERO, AT_ZERO | AT_PERIOD, 0)
 class DigitalCompare:
     """The DC registers.
 
-    `listen(n, on)`: TRIPINn is looked at from now on, or no more; the answer is a call of `input`.
-    `next_point(points)` is when the counter comes to 0 or TBPRD next, None while it does not run.  `soc(0)` and
-    `soc(1)` are DCAEVT1.soc and DCBEVT1.soc, `sync()` is their sync.  `follow(reschedule, on)`: the counter's path
-    matters from now on, or no more.
+    `listen(n, on)` is called when the module begins (or ceases) to need TRIPINn; answer with a call of `input`.
+    `next_point(points)` is the cycle when the counter next reaches 0 or TBPRD, None while it does not run.  `soc(0)`
+    and `soc(1)` are DCAEVT1.soc and DCBEVT1.soc, `sync()` is their sync.  `follow(reschedule, on)` is called when the
+    module begins (or ceases) to need changes of the counter's path.
     """
 
     __slots__ = (
@@ -73,11 +73,11 @@ class DigitalCompare:
         self._next_point, self._listen = next_point, listen
         self._soc, self._sync, self._follow = soc, sync, follow
         self._filter = regs.registers["DCFCTL"]
-        #: Trip inputs that are high, and those that are listened to.
+        #: Trip inputs that are high, and those that the module listens to (bits).
         self._high = self._heard = 0
-        #: While the levels of inputs that matter now are asked for, one by one.
+        #: Whether the levels of newly needed inputs are being read, one by one.
         self._choosing = False
-        #: The blanking window is open.
+        #: Whether the blanking window is open.
         self._window = False
         self._point_event: Event | None = None
         self._offset_event: Event | None = None
@@ -89,7 +89,7 @@ class DigitalCompare:
         regs.bind("DCFWINDOWCNT", read=self._read_DCFWINDOWCNT)
 
     def reset(self) -> None:
-        """No trip input is looked at, no event stands; the registers are reset by the module."""
+        """Reset the state: no trip input is needed, and no event is active.  The module resets the registers."""
         self._end_blanking()
         self._follow(self.reschedule, False)
         self._choose()
@@ -135,7 +135,7 @@ class DigitalCompare:
         return self._window == bool(control & DCFCTL.BLANKINV.mask)
 
     def _evaluate(self) -> None:
-        """Trip inputs, a setting or the window have changed: the events follow."""
+        """Update the events: trip inputs, a setting or the window have changed."""
         raw = sum(self._holds(event) << event for event in range(len(EVENTS)))
         filtered = raw >> (self._filter.value & DCFCTL.SRCSEL.mask) & self._passes()
         used = sum(
@@ -145,7 +145,7 @@ class DigitalCompare:
             self._begin(event)
 
     def _begin(self, event: int) -> None:
-        """An event begins: what it does besides a trip."""
+        """An event begins: give its SOC and sync pulses."""
         control, n = EVENTS[event]
         word = self._regs.registers[control].value
         if n == 1 and word & DCACTL.EVT1SOCE.mask:
@@ -154,7 +154,7 @@ class DigitalCompare:
             self._sync()
 
     def _choose(self) -> None:
-        """Look at the trip inputs that the events depend on, and at no others."""
+        """Listen to the trip inputs that the events depend on, and to no others."""
         wanted = 0
         for event in range(len(EVENTS)):
             condition, first = self._condition(event), event & 2
@@ -174,7 +174,7 @@ class DigitalCompare:
 
     @property
     def _blanks(self) -> bool:
-        """Whether a blanking window matters."""
+        """Whether a blanking window can have an effect."""
         return bool(self._filter.value & DCFCTL.BLANKE.mask) and any(map(self._is_filtered, range(len(EVENTS))))
 
     def _end_blanking(self) -> None:
@@ -184,14 +184,14 @@ class DigitalCompare:
         self._window = False
 
     def reschedule(self) -> None:
-        """The path of the counter has changed: the next point comes at another time."""
+        """Schedule the next point anew, because the path of the counter has changed."""
         self._clock.cancel(self._point_event)
         points = _POINTS[(self._filter.value & DCFCTL.PULSESEL.mask) >> DCFCTL.PULSESEL.lo]
         time = self._next_point(points)
         self._point_event = None if time is None else self._clock.schedule(time, self._point, _POINT_PRIORITY)
 
     def _point(self) -> None:
-        """The counter is where PULSESEL says: the offset begins."""
+        """The counter has reached the point that PULSESEL names: the offset begins."""
         self.reschedule()
         self._clock.cancel(self._offset_event)
         self._offset_event = None
@@ -203,7 +203,7 @@ class DigitalCompare:
             self._open()
 
     def _open(self) -> None:
-        """The offset is over: the window begins, or begins anew."""
+        """The offset is over: the window begins, or starts again."""
         self._offset_event = None
         length = self._regs.registers["DCFWINDOW"].value
         if length:
@@ -219,7 +219,7 @@ class DigitalCompare:
         self._evaluate()
 
     def _left(self, event: Event | None, time: int) -> int:
-        """TBCLK until `time`, of a counter that runs down to there."""
+        """The value of a counter that counts down to 0 at `time`, in TBCLK."""
         return -((self._clock.now - time) // self._time_base.tick) if event is not None else 0
 
     # -- registers -----------------------------------------------------------------------------------------------

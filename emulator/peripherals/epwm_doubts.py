@@ -1,8 +1,10 @@
-"""What a driver of an ePWM overlooks: a duty for a counter that stands still or has no period, or for an output
-without a pin; a compare value beyond the period; a one-shot trip whose interrupt is cleared and whose latch is not.
+"""Finds mistakes of ePWM drivers.
 
-Part of `epwm.py`.  Start-up code writes compare values before it starts the counter and before it sets the pins, so
-nothing is said in the first 10 ms after the first of them (CHOICE).
+They are: a duty for a counter that stands still or has no period, or for an output without a pin; a compare value
+beyond the period; a one-shot trip whose interrupt flag is cleared and whose latch is not.
+
+Part of `epwm.py`.  Start-up code writes compare values before it starts the counter and before it sets the pins.  So
+nothing is reported in the first 10 ms after the first compare value (CHOICE).
 """
 
 from __future__ import annotations
@@ -34,8 +36,8 @@ class EPwmDoubts:
     def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs) -> None:
         self._clock, self._cpu, self._regs = clock, cpu, regs
         self._first: int | None = None
-        #: Compare register -> the first value above one more than the period, its statement, and that period: of those
-        #: that stood until the next one was written, with no other period between.
+        #: Compare register -> the first value above the period plus 1, with its statement and the period.  A value
+        #: counts only if it stood until the next one was written and the period did not change meanwhile.
         self.above: dict[str, Beyond] = {}
         self._above: dict[str, Beyond] = {}
 
@@ -52,7 +54,7 @@ class EPwmDoubts:
             self._above[compare] = Beyond(value, period, cause)
 
     def period_written(self) -> None:
-        """A compare value may be for the new period."""
+        """The period was written.  The compare value under test may be for the new period."""
         self._above.clear()
 
     def duty(self, compare: str, *, stopped: bool, tbclksync: bool, unseen: DutyWire | None) -> None:
@@ -73,7 +75,7 @@ class EPwmDoubts:
             self._report(compare, unseen.name, f"has no pin: {unseen.missing}")
 
     def old_trip(self) -> None:
-        """The latch of a one-shot trip has given its interrupt again, more than once."""
+        """Report that the latch of a one-shot trip has given its interrupt again, more than once."""
         flag = f"{self._regs.name}.TZFLG.OST"
         self._cpu.findings.report(
             "flag-not-cleared",

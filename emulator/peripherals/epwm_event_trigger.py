@@ -88,13 +88,13 @@ class EventTrigger:
         regs.bind("ETFRC", write=self._write_ETFRC)
 
     def reset(self) -> None:
-        """Forget what is scheduled; the registers are reset by the module."""
+        """Cancel scheduled events; the module resets the registers."""
         for trigger in self._triggers:
             self._clock.cancel(trigger.event)
             trigger.event = None
 
     def reschedule(self) -> None:
-        """The counter's path, a compare value or a setting has changed."""
+        """Schedule the triggers anew: the counter's path, a compare value or a setting has changed."""
         phases: dict[str, Phases] | None = None
         if not self._regs.ETSEL.value & _ENABLES and not any(trigger.event for trigger in self._triggers):
             return
@@ -193,7 +193,7 @@ class EventTrigger:
             self._fire(interrupt)
 
     def _write_ETFRC(self, word: int, lanes: int) -> None:
-        """The flag is set in any case, the pulse given if the trigger is enabled and no interrupt stands already."""
+        """Set the flag in any case; give the pulse if the trigger is enabled and no interrupt flag is set already."""
         for trigger in self._triggers:
             if word & trigger.flag:
                 standing = trigger is self._interrupt and self._flags.value & trigger.flag

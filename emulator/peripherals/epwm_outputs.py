@@ -1,8 +1,8 @@
 """The two outputs of an ePWM module: from the action qualifier through dead band and trip zone to the wires.
 
-Part of `epwm.py`.  A wire always has the duty; the level is computed when somebody asks, and edges exist only while
-somebody wants them: then there is one event at the next cycle in which an output may change.  It runs after what else
-the module does in that cycle (shadow loads), and before anything samples the pin.
+Part of `epwm.py`.  A wire always has the duty.  The level is computed on demand, and edges exist only while a listener
+wants them.  Then there is one event at the next cycle in which an output may change.  It runs after the module's other
+work of that cycle (shadow loads), and before any part samples the pin.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class _OnWire:
 class EpwmOutputs:
     """Output A and output B over the time base.
 
-    `settled()` is called before a level is looked at: it brings the module up to now.
+    `settled()` is called before a level is read: it must bring the module up to now.
     """
 
     __slots__ = (
@@ -92,7 +92,7 @@ class EpwmOutputs:
             output.wire.follow(_OnWire(self, output))
 
     def reset(self) -> None:
-        """Both low, nothing delayed; who wants edges still does."""
+        """Both outputs low, nothing delayed.  Listeners to edges stay."""
         for output in self.both:
             output.level = 0
         self._band = DeadBand()
@@ -105,7 +105,7 @@ class EpwmOutputs:
         return force - 1 if force in _FORCED else None
 
     def settle(self, before_this_tick: bool = False) -> None:
-        """Bring levels and dead band up to now; the caller then sets the time base, from which they count on."""
+        """Bring levels and dead band up to now.  The caller must set the time base next; levels count from there."""
         phase, arrivals = self._time_base.arrivals()
         if before_this_tick and arrivals:
             arrivals -= 1
@@ -119,7 +119,7 @@ class EpwmOutputs:
                 output.level = output.waveform.level_after(output.level, phase, arrivals)
 
     def arrange(self, arrived: bool) -> None:
-        """The path of the counter or an active value is new: waveforms and duties follow.
+        """The path of the counter or an active value has changed: compute waveforms and duties.
 
         `arrived`: the new values already decide what happens at the phase at which the counter stands.
         """
@@ -174,7 +174,7 @@ class EpwmOutputs:
     # -- through the dead band -----------------------------------------------------------------------------------
 
     def _inputs(self, phase: int) -> Iterator[Edge]:
-        """The edges of both levels of the action qualifier from where the counter was last set; maybe without end."""
+        """The edges of both action-qualifier levels since the counter was last set; there may be infinitely many."""
         time_base = self._time_base
         levels = [self._a.level, self._b.level]
         following = [self._next_arrival(output, output.level, phase) for output in self.both]
@@ -194,13 +194,13 @@ class EpwmOutputs:
         return output.waveform.next_change(level, phase)
 
     def _repeats_after(self) -> int:
-        """Arrivals since the counter was last set after which everything repeats every two periods."""
+        """The number of arrivals, since the counter was last set, after which all repeats every two periods."""
         band, now, tick = self._band, self._time_base.arrival_time(0), self._time_base.tick
         under_way = max(band.due - now, 0) + 2 * band.memory_cycles
         return -(-under_way // tick) + 6 * self._time_base.length
 
     def _pass_dead_band(self, phase: int, arrivals: int, until: int) -> None:
-        """Run the dead band from where the counter was last set, leaving out what repeats."""
+        """Run the dead band from where the counter was last set, and skip periods that only repeat."""
         twice = 2 * self._time_base.length
         left_out = max(arrivals - self._repeats_after(), 0) // twice * twice * self._time_base.tick
         for _ in self._band.course(self._inputs(phase), until - left_out):
@@ -208,7 +208,7 @@ class EpwmOutputs:
         self._band.later(left_out)
 
     def _delayed_duties(self) -> tuple[tuple[float, int], tuple[float, int]]:
-        """Duty and period of both steady waveforms behind the dead band."""
+        """Duty and period of both steady waveforms after the dead band."""
         time_base = self._time_base
         band, first = self._band.copy(), self._repeats_after()
         last = begin = time_base.arrival_time(first)
@@ -233,17 +233,17 @@ class EpwmOutputs:
     # -- edges ---------------------------------------------------------------------------------------------------
 
     def level_now(self, output: Output) -> int | None:
-        """What the pin of an output would show if one was set to it; None: high impedance."""
+        """The level that a pin set to this output shows; None: high impedance."""
         self._settled()
         return self.level(output)
 
     def watch(self) -> None:
-        """Somebody has begun or ceased to want the edges of an output."""
+        """A listener to the edges of an output has come, or the last one has gone."""
         self._settled()
         self.reschedule()
 
     def reschedule(self) -> None:
-        """One event at the next cycle in which a watched output may change; none while nobody watches."""
+        """Schedule one event at the next cycle in which a watched output may change; none without a listener."""
         if self._edge_event is not None:
             self._clock.cancel(self._edge_event)
             self._edge_event = None
@@ -252,7 +252,7 @@ class EpwmOutputs:
             self._edge_event = self._clock.schedule(time, self._edge, priority=_EDGE_PRIORITY)
 
     def _next_edge(self, output: Output) -> int:
-        """The next cycle at which an output may change, if everything is settled; NEVER: none as things are."""
+        """The next cycle at which an output may change, if everything is settled; NEVER: there is none."""
         if self._trip_zone.action(output.index) != UNTOUCHED:
             return NEVER
         phase = self._time_base.arrivals()[0]
@@ -264,12 +264,12 @@ class EpwmOutputs:
         return time
 
     def stays_until(self, output: Output) -> int:
-        """The next cycle at which an output may change; NEVER: none as things are."""
+        """The next cycle at which an output may change; NEVER: there is none."""
         self._settled()
         return self._next_edge(output)
 
     def tell(self) -> None:
-        """Tell the levels of now to who wants edges."""
+        """Report the present levels to listeners that want edges."""
         for output in self.both:
             if output.wire.watched:
                 output.wire.tell(self.level(output))

@@ -1,4 +1,4 @@
-"""A shadowed register of an ePWM module: what the CPU wrote, what the hardware uses, and when one becomes the other.
+"""A shadowed register of an ePWM module: the written value, the active value, and when it is loaded.
 
 Sources: TRM ePWM, TBPRD, counter-compare and action-qualifier shadow registers.
 """
@@ -17,9 +17,9 @@ LOAD_POINTS: Final = (AT_ZERO, AT_PERIOD, AT_ZERO | AT_PERIOD, 0)
 
 
 class Shadow:
-    """One register.  `active` is what the hardware uses; the register's word is what the CPU wrote last.
+    """One register.  `active` is the value that the hardware uses; the register's word is what the CPU wrote last.
 
-    `shift`: the value stands that much further up in the register; `used`: only these bits of it have a shadow.
+    `shift`: the bit position of the value in the register; `used`: only these bits of it have a shadow.
     CHOICE: reads return what was written last, not the active value (unconfirmed for TBPRD).
     """
 
@@ -50,10 +50,10 @@ class Shadow:
         self.active = self.register.value >> self._shift & self._used
 
     def configure(self, immediate: bool, points: int) -> bool:
-        """The mode fields were written.  Returns whether a waiting value was lost by going over to immediate.
+        """The mode fields were written.  Returns whether the change to immediate mode lost a waiting value.
 
-        In immediate mode the CPU reads and writes the active register, so a value that waits in the shadow stays
-        behind; the register shows the active one.
+        In immediate mode the CPU reads and writes the active register.  A value that waits in the shadow is not loaded,
+        and the register shows the active one.
         """
         self.points, self.immediate = points, immediate
         if not (immediate and self.pending):

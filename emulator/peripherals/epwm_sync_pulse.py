@@ -1,7 +1,7 @@
 """EPWMSYNCPER: the pulse of an ePWM that loads the DACs of comparator subsystems, starts their ramps, clears latches.
 
-HRPCTL.PWMSYNCSEL: it comes when the counter is at TBPRD (0) or at 0 (1).  An event exists only while somebody listens
-and the counter runs.
+HRPCTL.PWMSYNCSEL: it comes when the counter is at TBPRD (0) or at 0 (1).  An event exists only while there is a
+listener and the counter runs.
 Not modelled: PWMSYNCSELX, by which CMPC and CMPD give it.
 Part of `epwm.py`.  Sources: TRM ePWM, time-base submodule; HDR F2837xS_epwm.h.
 """
@@ -20,8 +20,8 @@ from emulator.signal import Signal
 class SyncPulse:
     """EPWMSYNCPER of one module.
 
-    `next_point(points)` is when the counter comes to 0 or TBPRD next; None: never.  `follow(reschedule, on)`: the path
-    of the counter matters from now on, or no more.
+    `next_point(points)` is the cycle when the counter next reaches 0 or TBPRD; None: never.  `follow(reschedule, on)`
+    is called when this begins (or ceases) to need changes of the counter's path.
     """
 
     __slots__ = ("_clock", "_event", "_follow", "_next_point", "_select", "_used", "pulsed")
@@ -45,7 +45,7 @@ class SyncPulse:
         self.reschedule()
 
     def reschedule(self) -> None:
-        """The path of the counter, the choice or who listens has changed."""
+        """Schedule the pulse anew: the counter's path, the choice or the listeners have changed."""
         if self._event is not None:
             self._clock.cancel(self._event)
             self._event = None

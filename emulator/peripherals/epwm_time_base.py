@@ -89,7 +89,7 @@ class TimeBase:
         return (self._phase + max(self._ticks() - self._lead, 0)) % self.length
 
     def arrivals(self) -> tuple[int, int]:
-        """(phase, n): since it was last set the counter has arrived at the n phases after `phase`."""
+        """(phase, n): since it was last set, the counter has passed the n phases after `phase`."""
         ticks = self._ticks()
         if self._lead:
             return self._phase - 1, max(ticks - self._lead + 1, 0)
@@ -112,7 +112,7 @@ class TimeBase:
         return self._base + first * self.tick
 
     def reached_maximum(self) -> bool:
-        """Whether TBCTR came to 0xFFFF by counting since this was last asked."""
+        """Whether TBCTR has reached 0xFFFF by counting since the last call."""
         passed, self._passed = self._passed, False
         before, self._seen = self._seen, self._ticks()
         return passed or self._meets_maximum(before, self._seen)
@@ -130,7 +130,7 @@ class TimeBase:
 
     def change(self, *, mode: int | None = None, period: int | None = None, tick: int | None = None,
                enabled: bool | None = None, count: int | None = None, up: bool | None = None) -> None:  # fmt: skip
-        """Change what is given from now on; the rest goes on from where it is.
+        """Change the given settings from now on.  Everything else stays as it is.
 
         TBCLK edges lie on a grid that starts when TBCLKSYNC is set.  CHOICE: a new prescaler starts a new grid.
         """

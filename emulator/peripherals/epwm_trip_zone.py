@@ -1,4 +1,4 @@
-"""The trip zone of an ePWM module: what forces its outputs, at once or until it is told to let go.
+"""The trip zone of an ePWM module: trips force its outputs, for a time or until software clears them.
 
 Modelled: TZ1 to TZ6 (active low) as one-shot and cycle-by-cycle trips (TZSEL); TZCTL.TZA and TZB, high impedance
     included: then nobody drives the pin; TZFRC.OST and CBC; TZFLG, TZOSTFLG, TZCBCFLG with TZCLR, TZOSTCLR, TZCBCCLR;
@@ -30,7 +30,7 @@ from emulator.registers.epwm_trip import TZCLR, TZCTL, TZFLG, TZFRC
 _OUTPUTS: Final[tuple[F, F]] = (TZCTL.TZA, TZCTL.TZB)
 #: The actions of events 1 and 2 of the digital compare, for each output.
 _EVENT_ACTIONS: Final = ((TZCTL.DCAEVT1, TZCTL.DCAEVT2), (TZCTL.DCBEVT1, TZCTL.DCBEVT2))
-#: What a tripped output does (TZCTL.TZA, TZB; 2 is low).
+#: The state of a tripped output (values of TZCTL.TZA and TZB; 2 is low).
 HIGH_IMPEDANCE: Final = 0
 HIGH: Final = 1
 UNTOUCHED: Final = 3
@@ -49,10 +49,11 @@ _SOURCES: Final = TZFLG.CBC.mask | TZFLG.OST.mask | _EVENTS << _EVENT_FLAG
 class TripZone:
     """The TZ registers.
 
-    `changed()` is called when an output may have been tripped or released, `interrupt` is pulsed.  `next_point(points)`
-    is when the counter comes to 0 or TBPRD next, None while it does not run.  `listen(n, on)`: TZn is looked at from
-    now on, or no more; the answer is a call of `input`.  `held()` tells an enabled event that TZFLG.INT holds back,
-    `stale()` a further interrupt that TZFLG.OST gives again and again, because only TZFLG.INT is cleared.
+    `changed()` is called when an output may have been tripped or released; `interrupt` is pulsed.  `next_point(points)`
+    is the cycle when the counter next reaches 0 or TBPRD, None while it does not run.  `listen(n, on)` is called when
+    the module begins (or ceases) to need TZn; answer with a call of `input`.  `held()` is called for an enabled event
+    that TZFLG.INT holds back.  `stale()` is called when TZFLG.OST gives its interrupt again and again, because only
+    TZFLG.INT is cleared.
     """
 
     __slots__ = (
@@ -72,13 +73,13 @@ class TripZone:
         self._listen = listen
         registers = regs.registers
         self._flags, self._control, self._select = registers["TZFLG"], registers["TZCTL"], registers["TZSEL"]
-        #: Inputs that are low, those that are looked at, and the causes of the cycle-by-cycle trip that lasts.
+        #: Inputs that are low, inputs that are listened to, and the causes of a cycle-by-cycle trip that lasts (bits).
         self._low = self._heard = self._cycle = 0
-        #: The events of the digital compare that stand.
+        #: The events of the digital compare that are active.
         self._events = 0
-        #: How often the flag of one one-shot trip has given an interrupt again.
+        #: How often the flag of the same one-shot trip has given an interrupt again.
         self._again = 0
-        #: Where such a trip ends.
+        #: The points of the counter at which a cycle-by-cycle trip ends.
         self._points = LOAD_POINTS[0]
         self._event: Event | None = None
         for name, write in (
@@ -89,7 +90,7 @@ class TripZone:
             regs.bind(name, write=write)
 
     def reset(self) -> None:
-        """Nothing is tripped and no input looked at; the registers are reset by the module."""
+        """Reset the state: nothing is tripped, and no input is needed.  The module resets the registers."""
         self._clock.cancel(self._event)
         self._event = None
         self._cycle = self._events = self._again = 0
@@ -108,7 +109,7 @@ class TripZone:
             self.reschedule()
 
     def events(self, standing: int) -> list[int]:
-        """The events of the digital compare that stand from now on, as bits; returns those that begin."""
+        """Set the events of the digital compare that are active from now on (bits).  Returns those that begin."""
         before, self._events = self._events, standing
         if standing == before:
             return []
@@ -119,7 +120,7 @@ class TripZone:
         return [n for n in range(begun.bit_length()) if begun >> n & 1]
 
     def action(self, output: int) -> int:
-        """What the trip zone does with output 0 (A) or 1 (B): HIGH_IMPEDANCE, HIGH, low, UNTOUCHED."""
+        """The action on output 0 (A) or 1 (B): HIGH_IMPEDANCE, HIGH, low or UNTOUCHED."""
         tripped = self._cycle or self._flags.value & TZFLG.OST.mask
         if not tripped and not self._events:
             return UNTOUCHED
@@ -129,7 +130,7 @@ class TripZone:
         return next((action for action in actions if action != UNTOUCHED), UNTOUCHED)
 
     def reschedule(self) -> None:
-        """The path of the counter or a cause has changed: the end of a cycle-by-cycle trip comes at another time."""
+        """Schedule the end of a cycle-by-cycle trip anew: the counter's path or a cause has changed."""
         if self._event is not None:
             if event_time(self._event) == self._clock.now:
                 return  # the end that is due in this cycle: a shadow load only came first
@@ -159,7 +160,7 @@ class TripZone:
             self._changed()
 
     def _trip(self, cycle: int = 0, one_shot: bool = False) -> None:
-        """Latch what is low and selected, and what software forces."""
+        """Latch the trips of selected inputs that are low, and trips that software forces."""
         flags = self._flags
         before = self._cycle, flags.value & TZFLG.OST.mask
         flags.value |= self._events << _EVENT_FLAG
@@ -186,7 +187,7 @@ class TripZone:
             self._held()
 
     def _choose(self) -> None:
-        """Look at the inputs that TZSEL names, and at no others."""
+        """Listen to the inputs that TZSEL names, and to no others."""
         select = self._select.value
         wanted = (select | select >> _ONE_SHOT) & _INPUTS
         before, self._heard = self._heard, wanted

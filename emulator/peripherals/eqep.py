@@ -44,10 +44,11 @@ def _field(word: int, field: F) -> int:
 class EQep:
     """One eQEP module.
 
-    `interrupt` is pulsed on the module's PIE line; `error(on)` tells when QFLG.PHE is set and cleared.
+    `interrupt` is pulsed on the module's PIE line.  `error(on)` is called when QFLG.PHE is set or cleared.
     `unit_period_extra` is added to QUPRD for the length of a unit: CHOICE: 0, so that QUPRD = 2,000,000 is 100 Hz as in
-    TI's examples; whether silicon adds 1 is unconfirmed.  `sticky_direction_error` is the CHOICE of `Capture` what a
-    change of direction spoils.  `held()`: events come while QFLG.INT stands; whether somebody tells who left it.
+    TI's examples; whether silicon adds 1 is unconfirmed.  `sticky_direction_error` is the CHOICE of `Capture` about a
+    change of direction.  `held()` is called for events while QFLG.INT is set.  It returns whether it has reported the
+    routine that left the flag.
     """
 
     __slots__ = (
@@ -73,7 +74,7 @@ class EQep:
         self._status = registers["QEPSTS"]
         self._flags = registers["QFLG"]
         self._unit = UnitTimer(clock, regs, self._unit_timeout, unit_period_extra)
-        # `sync` is looked up at each call: the plant sets it after the chip is built.
+        # `sync` is read at each call, because the plant sets it after the chip is built.
         self._watchdog = EqepWatchdog(clock, regs, lambda: quadrature.sync(), lambda: self._raise(QFLG.WTO.mask))
         self._capture = Capture(clock, regs, lambda: quadrature.sync(), sticky=sticky_direction_error)
         self._doubts = EQepDoubts(cpu, regs, quadrature, held)
@@ -107,7 +108,7 @@ class EQep:
         self._index_seen = False
         self._tell_error()
 
-    # -- world face ----------------------------------------------------------------------------------------------
+    # -- for the world -------------------------------------------------------------------------------------------
 
     def set_clock(self, on: bool) -> None:
         """PCLKCR4 switched the module's clock: registers keep their state, counters freeze."""
@@ -174,13 +175,13 @@ class EQep:
             self._position.value = self.regs.registers["QPOSINIT"].value
 
     def phase_error(self) -> None:
-        """A and B changed at once: nothing is counted, QFLG.PHE is set (a fault that a test or the bench injects)."""
+        """A and B changed at once: nothing is counted, and QFLG.PHE is set.  A test or the bench injects this fault."""
         if self._on:
             self._raise(QFLG.PHE.mask)
             self._tell_error()
 
     def _on_clash(self, cycles: int) -> None:
-        """Both lines changed at once, which only the decoder of quadrature minds."""
+        """Both lines changed at once.  Only the quadrature decoder takes this for an error."""
         if not self._source:
             self.phase_error()
         elif self._on:
@@ -204,7 +205,7 @@ class EQep:
             self._count(-edges if self._reversed else edges, start, end)
 
     def _derive(self, edges: int, start: int, end: int) -> None:
-        """QSRC 1-3: the clock is A, the direction B or fixed.  Edge by edge, since both follow from the shaft."""
+        """QSRC 1-3: the clock is A, the direction is B or fixed.  Each edge is counted singly: the shaft gives both."""
         decoder = self.regs.QDECCTL.value
         step = 1 if edges > 0 else -1
         shaft = self.quadrature.position - edges
@@ -358,7 +359,7 @@ class EQep:
         self.quadrature.sync()
         self.regs.QDECCTL.store(word)
         self._source = _field(word, QDECCTL.QSRC)
-        # Exchanging the lines, and inverting one of them, each turn the direction round.
+        # Swapping the lines reverses the direction, and so does inverting one of them.
         turns = _field(word, QDECCTL.SWAP) + _field(word, QDECCTL.QAP) + _field(word, QDECCTL.QBP)
         self._reversed = bool(turns & 1)
 
@@ -392,13 +393,13 @@ class EQep:
                 f"{register.path}: UPPS or CCPS was changed while CEN is set: the period under way is wrong",
                 object=register.path, value=word,
             )  # fmt: skip
-            # The new prescalers are taken by starting afresh.
+            # Restart the unit, so that it takes the new prescalers.
             self._capture.run(False)
         register.store(word)
         self._apply()
 
     def _apply(self) -> None:
-        """Start and stop the timers as the control registers and the clock gate now say.
+        """Start and stop the timers as the control registers and the clock gate now require.
 
         CHOICE: with QPEN = 0 nothing counts, the timers included ("resets internal operation").
         """

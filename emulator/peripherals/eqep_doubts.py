@@ -1,6 +1,6 @@
-"""What a driver of an eQEP overlooks: counters that cannot count yet, flags that are never cleared.
+"""Finds mistakes of eQEP drivers: reads of counters that cannot count yet, flags that are never cleared.
 
-Part of `eqep.py`.  Nothing here changes what a register reads.
+Part of `eqep.py`.  Nothing here changes the value of a register.
 """
 
 from __future__ import annotations
@@ -31,16 +31,16 @@ class EQepDoubts:
     def cleared(self, flags: int) -> None:
         """QCLR was written with `flags`."""
         if flags & _UTO:
-            #: UTO was read as 1 since it was set; and another unit ended then, without a clear between.
+            #: Whether UTO was read as 1 since it was set; whether another unit has ended after that without a clear.
             self._seen = self._stale = False
         if flags & _INT:
-            #: Enabled events since QFLG.INT has not been cleared.
+            #: Enabled events since the last clear of QFLG.INT.
             self._unserved = 0
 
     # Counters
 
     def position_read(self) -> None:
-        """QPOSCNT was read although it cannot have counted right."""
+        """QPOSCNT was read.  Report it if the counter cannot have counted right."""
         name = self._regs.name
         if not self._regs.QEPCTL.value & QEPCTL.QPEN.mask:
             self._report(f"{name}.QEPCTL.QPEN", "QPOSCNT", "= 0: the module is held in reset and counts nothing")
@@ -50,7 +50,7 @@ class EQepDoubts:
             self._report(self._quadrature.name, "QPOSCNT", f"has no pins: {self._quadrature.missing}")
 
     def latch_read(self) -> None:
-        """QPOSLAT was read: only a unit time-out writes it, with what QPOSCNT has counted."""
+        """QPOSLAT was read.  Only a unit time-out writes it, with the value of QPOSCNT."""
         name = self._regs.name
         if not self._regs.QEPCTL.value & QEPCTL.QPEN.mask:
             self._report(f"{name}.QEPCTL.QPEN", "QPOSLAT", "= 0: the module is held in reset and latches nothing")
@@ -91,8 +91,9 @@ class EQepDoubts:
         self._seen = True
 
     def event(self, flags: int) -> None:
-        """Events of `flags`, enabled in QEINT, came while QFLG.INT was set.  The second in a row is reported, unless
-        `held()` knows the routine that left it.
+        """Events of `flags`, enabled in QEINT, occurred while QFLG.INT was set.
+
+        The second in a row is reported, unless `held()` has reported the routine that left the flag.
         """
         self._unserved += 1
         if self._unserved > 1 and not self._held():

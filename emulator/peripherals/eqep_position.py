@@ -1,4 +1,4 @@
-"""The arithmetic of the eQEP position counter: where `edges` steps lead, and how far away a value lies.
+"""The arithmetic of the eQEP position counter: the value after some steps, and the steps to a value.
 
 Pure functions on a 32-bit counter that wraps at QPOSMAX.  A forward step from QPOSMAX leads to 0 (overflow), a backward
 step from 0 leads to QPOSMAX (underflow); with QPOSMAX = 0 the counter therefore never leaves 0.

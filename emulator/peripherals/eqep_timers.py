@@ -1,7 +1,7 @@
 """The three timers of an eQEP module: unit timer, watchdog, edge capture.
 
-Each is a count of SYSCLK cycles since a remembered `zero`, computed when somebody looks; `run(on)` starts and stops it
-and keeps the count in its register while stopped.
+Each is a count of SYSCLK cycles since a stored cycle `zero`, computed on demand.  `run(on)` starts and stops it; while
+it is stopped, its register holds the count.
 
 Sources: TRM eQEP, unit timer, watchdog, edge capture unit.
 """
@@ -191,7 +191,7 @@ class Capture:
         self._origin, self._zero = self._clock.now, -timer.value
 
     def count(self) -> int:
-        """QCTMR now; an overflow since it was last looked at sets QEPSTS.COEF."""
+        """QCTMR now.  An overflow since the last call sets QEPSTS.COEF."""
         if not self.running:
             return self._regs.registers["QCTMR"].value
         ticks = ((self._clock.now - self._origin) >> self._shift) - self._zero
@@ -219,7 +219,7 @@ class Capture:
             self._status.value |= QEPSTS.CDEF.mask
 
     def latch(self) -> None:
-        """QCTMR and QCPRD into their latches; a period that is no period is latched as 0xFFFF."""
+        """Copy QCTMR and QCPRD to their latches.  An invalid period is latched as 0xFFFF."""
         registers = self._regs.registers
         registers["QCTMRLAT"].value = self.count()
         invalid = QEPSTS.COEF.mask

@@ -1,7 +1,7 @@
 """The 16-deep FIFO that SPI, SCI and I2C share: words, interrupt level, and its FFTX or FFRX register.
 
 The modules lay their FIFO registers out alike (HDR SPIFFTX, SCIFFTX, I2CFFTX, SPIFFRX, SCIFFRX, I2CFFRX), so one class
-serves all.  The I2C has no reset bit for both channels and no overflow: it does not take what has no room.
+serves all.  The I2C has no reset bit for both channels.  It has no overflow either: it takes no byte without room.
 
 Modelled: depth, status, level interrupt, reset bit, overflow of the receive FIFO; the level that triggers the DMA
 (TRM SPI: fewer words than TXFFIL, or RXFFIL and more; SCI and I2C have none).
@@ -22,7 +22,7 @@ from emulator.registers.cell import Cell
 from emulator.signal import Signal
 
 DEPTH: Final = 16
-#: So many interrupts in a row leave words behind before it is told.
+#: It is reported when this many interrupts in a row have left words behind.
 SHORT: Final = 3
 
 LEVEL: Final = 0x001F
@@ -44,7 +44,7 @@ class Fifo:
     """One direction.  `receive` decides between "at least" and "at most" for the interrupt level.
 
     `fresh`: a flag that was set while it was not enabled gives its interrupt only while its level still holds.
-    `held()`: a word has come at the level, and gives no interrupt because the flag of the last one still stands.
+    `held()` is called when a word reaches the level and gives no interrupt, because the last one's flag is still set.
     """
 
     __slots__ = (
@@ -61,19 +61,19 @@ class Fifo:
         self._interrupt = interrupt
         self._receive = receive
         self._line = False
-        #: FIFO mode is on (the FFENA bit, which lives in FFTX for both directions).
+        #: Whether FIFO mode is on.  The FFENA bit for both directions is in FFTX.
         self.enabled = False
         self.words: deque[int] = deque()
         #: Words taken since the last interrupt; None: it has been acknowledged.
         self._taken: int | None = None
         #: How many interrupts in a row were acknowledged with fewer words taken than their level, and some left.
         self.short = 0
-        #: (): the DMA's level stands and something changes.
+        #: (): the FIFO has changed while the level for the DMA is active.
         self.requested: Signal[[]] = Signal()
 
     @property
     def at_level(self) -> bool:
-        """Whether the level stands that triggers the DMA."""
+        """Whether the level that triggers the DMA is active."""
         value, count = self._register.value, len(self.words)
         if not self.enabled or not value & RUN:
             return False
@@ -86,7 +86,7 @@ class Fifo:
 
     @property
     def path(self) -> str:
-        """Of its register."""
+        """The path of its register."""
         return self._register.path
 
     def reset(self) -> None:
@@ -96,7 +96,7 @@ class Fifo:
         self.enabled = self._line = False
 
     def clear(self) -> None:
-        """The channel is reset: the words are gone, the configuration stays."""
+        """Reset the channel: the words are lost, the configuration stays."""
         self.words.clear()
         self.refresh()
 
@@ -140,14 +140,14 @@ class Fifo:
         return not lost
 
     def left_behind(self) -> str:
-        """What `short` means, for a report."""
+        """A description of `short` for a report."""
         return (
             f"{self.path}: {self.short} times in a row the routine has taken fewer words than the "
             f"{self._register.value & LEVEL} at which its interrupt comes, and has left some for the next one"
         )
 
     def pop(self) -> int:
-        """Take the oldest word.  The caller has looked whether there is one."""
+        """Take the oldest word.  The caller must check that there is one."""
         word = self.words.popleft()
         if self._taken is not None:
             self._taken += 1

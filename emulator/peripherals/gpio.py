@@ -61,7 +61,7 @@ class GpioPort:
         self._wires = wires
         self._muxed = mux_changed
         self._every = (1 << len(wires)) - 1
-        #: What each wire falls back to when its pull-up is off: the board's own pull.
+        #: The board's own pull on each wire, which counts while the pull-up is off.
         self._floating = [wire.pull for wire in wires]
         self._latch = 0
         #: Levels as DAT sees them, before inversion.
@@ -70,13 +70,13 @@ class GpioPort:
         self._plain = self._every
         self._outputs = 0
         self._qualifiers: dict[int, InputQualifier] = {}
-        #: Where DAT was read last, and inputs whose level such a read and write made their latch: pin -> the statement.
+        #: The statement that read DAT last; inputs whose level a read and write of DAT copied to the latch, by pin.
         self._read_at = 0
         self._copied: dict[int, Cause] = {}
-        #: Of each pin, (level): every change that DAT shows of it; and the mask of the pins where somebody listens.
+        #: A signal for each pin, (level): every change that DAT shows; and the mask of the pins with listeners.
         self.input_changed: list[Signal[int]] = [Signal(partial(self._follow, i)) for i in range(len(wires))]
         self._followed = 0
-        #: Pins whose level is computed: what DAT shows of them is asked when it is read.
+        #: Pins with a computed level.  It is computed when DAT is read.
         self._computed = 0
         self._next_look: Event | None = None
         for i, wire in enumerate(wires):
@@ -87,7 +87,7 @@ class GpioPort:
         self._ctrl: dict[str, Cell] = {
             name.removeprefix(prefix): register for name, register in ctrl.registers.items() if name.startswith(prefix)
         }
-        #: GMUX and MUX of each pin, and where its two bits lie in them.
+        #: GMUX and MUX of each pin, and the position of its two bits in them.
         self._muxes = [
             (self._ctrl[f"GMUX{i // 16 + 1}"], self._ctrl[f"MUX{i // 16 + 1}"], i % 16 * 2) for i in range(len(wires))
         ]
@@ -99,7 +99,7 @@ class GpioPort:
         data.bind(f"{prefix}SET", write=self._write_SET)
         data.bind(f"{prefix}CLEAR", write=self._write_CLEAR)
         data.bind(f"{prefix}TOGGLE", write=self._write_TOGGLE)
-        # CHOICE: LOCK freezes what decides about function and output; CTRL, QSEL and PUD stay free.
+        # CHOICE: LOCK freezes the registers that decide function and output; CTRL, QSEL and PUD stay free.
         handlers: dict[str, tuple[Callable[[str, int], None] | None, bool]] = {
             "DIR": (self._outputs_changed, True),
             "ODR": (self._outputs_changed, True),
@@ -142,11 +142,11 @@ class GpioPort:
         return (gmux.value >> shift & 3) << 2 | mux.value >> shift & 3
 
     def qualifier(self, i: int) -> InputQualifier | None:
-        """What qualifies pin `i` of the port; None: its level counts at once."""
+        """The qualifier of pin `i` of the port; None: its level counts at once."""
         return self._qualifiers.get(i)
 
     def input(self, i: int) -> int:
-        """What DAT shows of pin `i`."""
+        """The level of pin `i` in DAT."""
         return self._read_DAT() >> i & 1
 
     # --- data registers --------------------------------------------------------------------------------------------
@@ -160,7 +160,7 @@ class GpioPort:
     def _write_DAT(self, word: int, lanes: int) -> None:
         changed = (word ^ self._latch) & lanes
         findings = self._cpu.findings
-        # What a statement has read and writes back: a latch becomes what the pin is.
+        # A statement that writes back what it has read copies the pin's level to the latch.
         copied = changed & ~self._outputs & self._plain & ~(word ^ self._levels ^ self._inv.value)
         if copied and self._read_at and self._read_at == findings.position.at and (cause := findings.mark()):
             for i in set_bits(copied & self._every):
@@ -168,7 +168,7 @@ class GpioPort:
         self._change_latch(changed)
 
     def _given(self, pins: int) -> None:
-        """The latches of `pins` are written on purpose."""
+        """Note that the program has written the latches of `pins` on purpose."""
         if self._copied:
             self._copied = {i: cause for i, cause in self._copied.items() if not pins >> i & 1}
 
@@ -220,7 +220,7 @@ class GpioPort:
         self._drive(changed)
 
     def _tell_copied(self, pins: int) -> None:
-        """Inputs become outputs with a latch that was copied from them."""
+        """Report inputs that become outputs while their latch is a copy of their level."""
         findings = self._cpu.findings
         for i in [i for i in self._copied if pins >> i & 1]:
             cause, level = self._copied.pop(i), self._latch >> i & 1
@@ -289,7 +289,7 @@ class GpioPort:
     # --- pins ------------------------------------------------------------------------------------------------------
 
     def _follow(self, i: int, wanted: bool) -> None:
-        """Somebody begins to listen to `input_changed` of a pin, or nobody does any more."""
+        """A first listener connects to `input_changed` of a pin (`wanted`), or the last one has gone."""
         if wanted:
             self._wires[i].attend()
             self._followed |= 1 << i
@@ -334,9 +334,9 @@ class GpioPort:
         self._computed = self._computed | mask if computed else self._computed & ~mask
 
     def _look(self) -> None:
-        """Ask the wires whose level is computed: what has changed comes by `_wire_changed`.
+        """Read the wires with a computed level; `_wire_changed` gets their changes.
 
-        An event marks where one of them changes next: who polls DAT looks again there.
+        An event at the next change of one of them lets a poll of DAT go on there.
         """
         until = NEVER
         for i in set_bits(self._computed):
@@ -376,13 +376,13 @@ class Gpio:
             raise ValueError(f"GPIO wants the wires of GPIO0 to GPIO{PIN_COUNT - 1}, got {len(pins)} of {PIN_COUNT}")
         self._ctrl = ctrl
         self._data = data
-        #: (pin, mux): after every change of a pin's function, on the way through others too.
+        #: (pin, mux): after every change of a pin's function, also of one that lasts only until the next write.
         self.mux_changed: Signal[int, int] = Signal()
         self._ports = [
             GpioPort(clock, cpu, letter, first, ctrl, data, pins[first : first + PINS_A_PORT], self.mux_changed)
             for letter, first in zip(PORTS, range(0, PIN_COUNT, PINS_A_PORT), strict=True)
         ]
-        #: Of each GPIO, (level): every change that DAT shows of it.
+        #: A signal for each GPIO, (level): every change that DAT shows.
         self.input_changed: list[Signal[int]] = [changed for port in self._ports for changed in port.input_changed]
 
     def reset(self) -> None:
@@ -399,9 +399,9 @@ class Gpio:
         return self._ports[pin // PINS_A_PORT].mux(pin % PINS_A_PORT)
 
     def qualifier(self, pin: int) -> InputQualifier | None:
-        """What qualifies the input of GPIO`pin`; None: its level counts at once."""
+        """The qualifier of the input of GPIO`pin`; None: its level counts at once."""
         return self._ports[pin // PINS_A_PORT].qualifier(pin % PINS_A_PORT)
 
     def input(self, pin: int) -> int:
-        """What DAT shows of GPIO`pin`."""
+        """The level of GPIO`pin` in DAT."""
         return self._ports[pin // PINS_A_PORT].input(pin % PINS_A_PORT)

@@ -37,15 +37,15 @@ class InputQualifier:
         self._period_cycles = period_cycles
         self._accepted = accepted
         self._event: Event | None = None
-        #: The first sample of the run of levels that differ, and the first sample after it was left.
+        #: The first sample of a run of samples that differ from the output, and the first sample after the run ended.
         self._first_sample = self._left = -1
         self.level = level
         self.samples = samples
-        #: How many changes of the pin there were, and how many counted.
+        #: The number of the pin's edges, and how many of them passed.
         self.edges = self.passed = 0
 
     def window_cycles(self) -> int:
-        """How long a level must last at least to count."""
+        """The shortest time that a level must last to count, in cycles."""
         return (self.samples - 1) * self._period_cycles()
 
     def change(self, level: int) -> None:
@@ -59,10 +59,10 @@ class InputQualifier:
             self._left = sample
             return
         if sample != self._left:
-            # A sample has seen the old level meanwhile, or there was no run: it begins anew.
+            # A sample has seen the old level meanwhile, or there was no run: a new run begins.
             self._first_sample = sample
         last_sample = max((self._first_sample + self.samples - 1) * period, self._clock.now)
-        # Last among equal times, after the edges of an ePWM: a sample sees the level that its cycle ends with.
+        # Among equal times it runs last, after the edges of an ePWM: a sample sees the level at the end of its cycle.
         self._event = self._clock.schedule(last_sample, self._qualified, priority=2)
 
     def stop(self) -> None:

@@ -61,26 +61,26 @@ DELAY: Final = 5
 BYTE_BITS: Final = 9
 #: Module clocks from I2CDXR to I2CDRR in digital loopback.
 LOOPBACK_CLOCKS: Final = 8
-#: A refused message that holds the bus for so long while the program looks on was forgotten.
+#: If a refused message holds the bus for this time while the program reads I2CSTR, the program has forgotten it.
 LONG_CYCLES: Final = 100 * CYCLES_PER_MS
 #: I2CCNT = 0.
 LONGEST_COUNT: Final = 65536
 #: The first address byte of a 10-bit address, without R/W: 11110 and the two upper bits.
 TEN_BITS: Final = 0x78
 
-# What the controller does on the bus
+# States of the controller on the bus
 IDLE: Final = 0
 STARTING: Final = 1
 BYTE: Final = 2
 STOPPING: Final = 3
-#: It has the bus and holds SCL low.
+#: The controller has the bus and holds SCL low.
 HELD: Final = 4
 
 
 class I2c:
     """One I2C module as controller of `bus`; `interrupt` and `fifo_interrupt` are pulses into the PIE.
 
-    `stops_when_refused`: an STP that stands makes the STOP of a message that is not acknowledged.
+    `stops_when_refused`: if STP is set already, a message that is not acknowledged ends with a STOP.
     """
 
     def __init__(
@@ -108,10 +108,10 @@ class I2c:
             regs, cpu.findings, self._interrupts, fifo_interrupt, written=self._written, read=self._go_on
         )
         self._doubts = I2cDoubts(regs, cpu.findings, bus)
-        #: What is under way on the bus, and its end; HELD has one only when it is about to go on.
+        #: The state on the bus, and the event at its end.  HELD has an event only when it is about to go on.
         self._state = IDLE
         self._event: Event | None = None
-        #: Whether a START of ours has no STOP yet.
+        #: Whether this controller has made a START and no STOP yet.
         self._owner = False
         #: The transfer, as I2CMDR and I2CCNT were at its START; `_finished`: it takes no further byte.
         self._transmitter = self._repeat = self._finished = False
@@ -119,11 +119,11 @@ class I2c:
         #: Transmit shift register, and the byte on its way through the loopback.
         self._xsr = self._looped = 0
         self._loop: Event | None = None
-        #: What wrote the command or the byte that goes over the bus.
+        #: The statement that wrote the command or the byte that is on the bus.
         self._cause: Cause | None = None
-        #: Whether the address of the message under way has no answer yet, and NACK told of an older one at its START.
+        #: Whether the address of the present message has no answer yet while NACK was still set at its START.
         self._unanswered = self._old_refusal = False
-        #: A refused message holds the bus; when the program first looked at I2CSTR since then.
+        #: Whether a refused message holds the bus; when the program first read I2CSTR after that.
         self._forgotten = False
         self._seen_held_at: int | None = None
         #: How many addresses in a row nobody has acknowledged.
@@ -172,13 +172,13 @@ class I2c:
             self._command(mode, before)
 
     def _command(self, mode: int, before: int) -> None:
-        """STT or STP was written: what the TRM's table of bus activity says, as soon as the bus lets it."""
+        """STT or STP was written: act as the TRM's table of bus activity says, as soon as the bus allows."""
         self._cause = self._findings.mark()
         if not mode & MST:
             if mode & STT:
                 self._doubts.no_controller()
         elif mode & RESERVED_COMMAND == RESERVED_COMMAND:
-            # CHOICE: both bits fall, so that the command does not come to life with the next write.
+            # CHOICE: both bits are cleared, so that the next write does not start this command.
             self._mdr.value &= ~(STT | STP)
             self._doubts.reserved_command()
         else:
@@ -190,7 +190,7 @@ class I2c:
             self._obey(mode, before)
 
     def _obey(self, mode: int, before: int) -> None:
-        """A command that has a meaning."""
+        """Carry out a valid command."""
         if self._state != IDLE:
             # What is under way looks at both bits when it ends.  CHOICE: so a START that comes too early is made behind
             # the STOP, or behind the byte.
@@ -205,18 +205,18 @@ class I2c:
         elif mode & STT:
             self._begin_start()
         else:
-            # A STOP of its own.  CHOICE: the next module clock sees it, so an STT right behind it comes with it.
+            # A STOP alone.  CHOICE: it acts at the next module clock, so an STT right after it acts together with it.
             self._state, self._finished = STARTING, True
             self._event = self._clock.after(self._module_cycles, self._next)
 
     def _written(self) -> None:
-        """I2CDXR has a byte."""
+        """The program has written a byte to I2CDXR."""
         self._cause = self._findings.mark()
         if self._transmitter and not self._finished:
             self._go_on()
 
     def _go_on(self) -> None:
-        """If SCL is held: what it was held for has come."""
+        """If SCL is held: the program has done what it was held for, so go on."""
         if self._state == HELD and self._event is None:
             self._forgotten = False
             self._event = self._clock.after(self._module_cycles, self._next)
@@ -261,7 +261,7 @@ class I2c:
         self._event = self._clock.after(self._module_cycles * (self._clkh.value + self._delay), self._started)
 
     def _started(self) -> None:
-        """SCL falls: the address follows, and the transfer is what the registers say now."""
+        """SCL falls: the address follows.  The registers now decide the transfer."""
         mode = self._mdr.value
         self._mdr.value = mode & ~STT
         self._interrupts.clear(ARDY)
@@ -273,7 +273,7 @@ class I2c:
         self._shift(self._address_sent)
 
     def report_retry(self, place: Place) -> None:
-        """Tell that the program ends in a loop, at `place`, that repeats its message until it works."""
+        """Report that the program ends in a loop, at `place`, that repeats its message until it succeeds."""
         self._findings.report_at(
             place, "endless-retry",
             f"repeated until it works: {self._regs.name} has sent {self.refusals} addresses in a row that nobody "
@@ -299,7 +299,7 @@ class I2c:
         self._next()
 
     def _refused(self) -> None:
-        """No acknowledgment: the transfer is over, and the program says how."""
+        """No acknowledgment: the transfer is over, and the program decides how it ends."""
         self._finished = True
         self._data.refused()
         self._interrupts.set(NACK | ARDY)
@@ -312,7 +312,7 @@ class I2c:
             self._str.tap(self._look, reads=True)
 
     def _look(self, register: Cell, access: str, _word: int, _mask: int) -> None:
-        """The program looks at I2CSTR, for the first time since a message was refused or later."""
+        """The program reads I2CSTR after a message was refused."""
         now = self._clock.now
         if self._state != HELD or not self._forgotten:
             register.untap(self._look)
@@ -327,7 +327,7 @@ class I2c:
         self._state, self._event = HELD, None
 
     def _caused(self, step: Callable[..., T], *what: object) -> T:
-        """A step on the bus: what a target says of it belongs to what wrote the command or the byte."""
+        """Run a step on the bus.  Reports of targets get the statement that wrote the command or the byte."""
         self._findings.cause = self._cause
         try:
             return step(*what)
@@ -335,7 +335,7 @@ class I2c:
             self._findings.cause = None
 
     def _next(self) -> None:
-        """Between two bytes, with SCL low: what comes now."""
+        """Decide the next step between two bytes, with SCL low."""
         mode = self._mdr.value
         if mode & STT:
             self._begin_start()
@@ -354,7 +354,7 @@ class I2c:
             self._shift(self._byte_received)
 
     def _count(self) -> None:
-        """A data byte is over.  Without repeat mode, ARDY comes with the last one, unless that has a STOP."""
+        """A data byte has ended.  Without repeat mode, ARDY is set after the last one, unless a STOP follows."""
         if self._repeat:
             self._interrupts.set(ARDY)
             return
@@ -395,7 +395,7 @@ class I2c:
             self._finished = True
         self._data.arrive(byte)
         self._count()
-        # CHOICE: the acknowledge bit of a byte that nobody has taken is sent before SCL is held; a STOP is not held.
+        # CHOICE: the acknowledge bit of a byte that was not read is sent before SCL is held; a STOP is not held.
         if self._data.overrun and not self._finished:
             self._hold()
         else:
@@ -415,7 +415,7 @@ class I2c:
         self._event = self._clock.after(self._module_cycles, self._let_go)
 
     def _let_go(self) -> None:
-        """STP and MST are cleared, behind SCD."""
+        """Clear STP and MST, after SCD."""
         self._state, self._event = IDLE, None
         mode = self._mdr.value & ~STP
         if mode & STT:

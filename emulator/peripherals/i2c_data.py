@@ -25,7 +25,7 @@ XSMT: Final = 0x0400
 
 
 class I2cData:
-    """What waits to be sent, and what was received; `written()` and `read()` tell when the program has been there."""
+    """Bytes to send and bytes received.  `written()` and `read()` are called when the program accesses a register."""
 
     __slots__ = (
         "_drr", "_dxr", "_fftx", "_findings", "_interrupts", "_premature", "_read", "_received", "_refused", "_rsr",
@@ -43,13 +43,13 @@ class I2cData:
         self._fftx = registers["I2CFFTX"]
         self._tx_fifo = Fifo(self._fftx, fifo_interrupt, receive=False, fresh=True)
         self._rx_fifo = Fifo(registers["I2CFFRX"], fifo_interrupt, receive=True, fresh=True)
-        #: The module is out of reset (IRS).
+        #: Whether the module is out of reset (IRS).
         self._running = False
-        #: Receive shift register: the byte that I2CDRR had no room for.
+        #: The receive shift register: the byte for which I2CDRR had no room.
         self._rsr = 0
-        #: What waits to be sent is left over from a message that was not acknowledged.
+        #: Whether the bytes to send are left over from a message that was not acknowledged.
         self._refused = False
-        #: I2CDRR holds a byte that was not read; bytes since reset, and reads before the first of them.
+        #: Whether I2CDRR holds an unread byte; bytes since reset, and reads before the first of them.
         self._unread = False
         self._received = self._premature = 0
         regs.bind("I2CDRR", read=self._read_I2CDRR)
@@ -78,9 +78,9 @@ class I2cData:
         return bool(self._str.value & RSFULL)
 
     def refused(self) -> None:
-        """A message was not acknowledged.  What waits stays, and a driver that tries again writes over it.
+        """A message was not acknowledged.  Waiting bytes stay, and a driver that tries again overwrites them.
 
-        Nothing says whether it does stay, so what is lost behind it is not told.
+        No document says whether they do stay.  So a byte that is lost because of them is not reported.
         """
         self._refused = True
 
@@ -100,7 +100,7 @@ class I2cData:
         return -1
 
     def arrive(self, byte: int) -> None:
-        """The receive shift register is full: on with it, if there is room."""
+        """The receive shift register is full: pass the byte on, if there is room."""
         self._received += 1
         if self._fftx.value & ENHANCED:
             fifo = self._rx_fifo
@@ -119,7 +119,7 @@ class I2cData:
 
     def _overrun(self, byte: int) -> None:
         if self._str.value & RSFULL:
-            # In loopback, or behind a STOP: the bus is not held.
+            # The bus is not held in loopback or after a STOP.
             self._lost(self._drr.path, "two bytes came before the last one was read: the first of them is lost")
         self._rsr = byte
         self._str.value |= RSFULL
@@ -181,7 +181,7 @@ class I2cData:
         self._follow()
 
     def _follow(self) -> None:
-        """In FIFO mode, and out of reset, the levels give interrupts."""
+        """Update the FIFO interrupts: in FIFO mode and out of reset, the levels give interrupts."""
         self._tx_fifo.enabled = self._rx_fifo.enabled = self._running and bool(self._fftx.value & ENHANCED)
         self._tx_fifo.refresh()
         self._rx_fifo.refresh()

@@ -1,9 +1,9 @@
-"""What a driver of the I2C overlooks: settings that a START makes use of, and commands that come at a wrong time.
+"""Finds mistakes of I2C drivers: wrong settings at a START, and commands at a wrong time.
 
 The criteria are the manual's words: module clock of 7 to 12 MHz, I2CPSC written only while IRS = 0, clock dividers that
 are not 0, a bus of 400 kHz at most, zeros above a 7-bit address, no new message while STP is 1, STT only for a
 controller, not all of RM, STT and STP, no interrupts of XRDY and RRDY in FIFO mode.
-Time: looked at with each START and each command, never on other accesses.
+Time: checked at each START and each command, never at other accesses.
 Sources: TRM I2C: clock generation, I2CPSC, I2CCLKL, I2CSAR, I2CMDR, bus activity by RM, STT and STP.
 """
 
@@ -16,10 +16,10 @@ from emulator.clock import SYSCLK_HZ, ms
 from emulator.registers.i2c import I2CFFTX, I2CIER, I2CMDR, I2cRegs
 from emulator.signals import I2cBus
 
-#: What the module's clock must be, in Hz.
+#: The allowed range of the module's clock, in Hz.
 SLOWEST_HZ: Final = 7_000_000
 FASTEST_HZ: Final = 12_000_000
-#: The fast mode of the bus, with what the integer dividers round.
+#: The limit of the bus's fast mode, with a margin for the rounding of the integer dividers.
 FASTEST_BUS_HZ: Final = 400_000 * 1.005
 #: Bits of I2CSAR that are a 7-bit address.
 ADDRESS: Final = 0x7F
@@ -100,7 +100,7 @@ class I2cDoubts:
             )  # fmt: skip
 
     def early(self) -> None:
-        """STT was set while the message before, or its STOP, is under way."""
+        """Report that STT was set while the last message, or its STOP, is under way."""
         path = f"{self._mdr.path}.STT"
         self._findings.report(
             "i2c-stop-pending",
@@ -110,7 +110,7 @@ class I2cDoubts:
         )  # fmt: skip
 
     def old_refusal(self) -> None:
-        """STP is set once more: the message is given up before its address had an answer, and NACK stood before it."""
+        """Report an STP that ends a message before its address had an answer, because an older NACK was still set."""
         path = f"{self._str.path}.NACK"
         self._findings.report(
             "flag-not-cleared",
@@ -119,7 +119,7 @@ class I2cDoubts:
         )  # fmt: skip
 
     def left_busy(self, cycles: int) -> None:
-        """A message that was refused holds the bus, and the program has seen that for `cycles`."""
+        """Report a refused message that holds the bus; the program has been able to see that for `cycles`."""
         self._findings.report(
             "i2c-left-busy",
             f"{self._bus.name}: a message got a NACK, and neither STT nor STP was set since then: BB stays 1 until the "

@@ -53,18 +53,18 @@ class I2cInterrupts:
         self._isrc.value &= ~INTCODE
 
     def set(self, flags: int) -> None:
-        """What `flags` tell has happened."""
+        """Set flags of I2CSTR, and request their interrupts."""
         self._str.value |= flags
         self._pending |= flags & self._ier.value & REQUESTS
         self._offer()
 
     def clear(self, flags: int) -> None:
-        """What `flags` tell is over: nobody needs to be told any more."""
+        """Clear flags of I2CSTR, and take back their requests."""
         self._str.value &= ~flags
         self._withdraw(flags)
 
     def _offer(self) -> None:
-        """The request of the highest priority, which is the lowest flag, as soon as I2CISRC is free."""
+        """Give the request of the highest priority (the lowest flag) as soon as I2CISRC is free."""
         pending = self._pending
         if pending and not self._isrc.value & INTCODE:
             first = pending & -pending

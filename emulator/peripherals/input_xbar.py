@@ -43,13 +43,13 @@ class InputXbar:
         self._lock = regs.registers["INPUTSELECTLOCK"]
         #: INPUTn -> (level): every change of it.
         self.changed: dict[int, Signal[int]] = {n: Signal(partial(self._wanted, n)) for n in range(1, 15)}
-        #: What ends to hear the pin of an input: of those that somebody listens to.
+        #: Input -> the function that stops listening to its pin; only for inputs with listeners.
         self._stops: dict[int, Callable[[], None]] = {}
         for n in self.changed:
             regs.bind(f"INPUT{n}SELECT", write=partial(self._write_INPUTxSELECT, n))
 
     def signal(self, n: int) -> XbarInput:
-        """INPUTn, for who takes it among other signals."""
+        """INPUTn as a level, for receivers that select among several signals."""
         return XbarInput(self, n)
 
     def input(self, n: int) -> int:
@@ -57,14 +57,14 @@ class InputXbar:
         return self._level_of(self._regs.registers[f"INPUT{n}SELECT"].value)
 
     def _wanted(self, n: int, wanted: bool) -> None:
-        """Somebody begins to listen to INPUTn, or nobody does any more."""
+        """A first listener connects to INPUTn (`wanted`), or the last one has gone."""
         if wanted:
             self._hear(n, self._regs.registers[f"INPUT{n}SELECT"].value)
         else:
             self._stops.pop(n)()
 
     def _hear(self, n: int, pin: int) -> None:
-        """Hear this pin for INPUTn; one that does not exist never changes."""
+        """Listen to this pin for INPUTn.  A pin that does not exist never changes."""
         self._stops[n] = self._pin_changed[pin].connect(self.changed[n].emit) if pin < self._pins else _nothing
 
     def _level_of(self, pin: int) -> int:
@@ -93,7 +93,7 @@ class InputXbar:
             )  # fmt: skip
 
     def _choose(self, n: int, before: int, after: int) -> None:
-        """Another pin for an input: where its level differs, the input sees an edge."""
+        """An input gets another pin.  If the pin's level differs, the input sees an edge."""
         was, level = self._level_of(before), self._level_of(after)
         self._stops[n]()
         self._hear(n, after)

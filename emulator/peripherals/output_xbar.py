@@ -32,7 +32,7 @@ class OutputXbar:
         used: Callable[[str], None],
     ) -> None:  # fmt: skip
         self._cpu, self._regs, self._put = cpu, regs, put
-        #: What the pins have been told.
+        #: The levels that `put` was last called with.
         self._levels = [0] * OUTPUTS
         self._outputs = [
             XbarOutput(

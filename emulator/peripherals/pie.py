@@ -31,7 +31,7 @@ LINES: Final = 16
 VECTOR_TABLE: Final = 0x0D00
 #: CPU interrupts 13 (CPU timer 1) and 14 (CPU timer 2) have these vector ids.
 DIRECT_VECTORS: Final = (13, 14)
-#: CHOICE: an interrupt that waits for its acknowledge for 100 ms waits for one that is not in the program.
+#: CHOICE: if an interrupt waits for its acknowledge for 100 ms, the program contains no such acknowledge.
 LONG_CYCLES: Final = 100 * CYCLES_PER_MS
 #: The entries of the vector table by id.
 _ENTRIES: Final = {entry.id: name for name, entry in PieVectTable.layout.items() if isinstance(entry, Vector)}
@@ -45,7 +45,7 @@ def vector_id(group: int, n: int) -> int:
 
 
 def _name(vector: int) -> str:
-    """The interrupt of a vector: `interrupt 1.7`, or a line of the CPU by its number."""
+    """The name of a vector's interrupt: `interrupt 1.7`, or the number of a CPU line."""
     if vector < 0x20:
         return f"interrupt {vector} of the CPU"
     first, line = (0x20, 1) if vector < 0x80 else (0x80, 9)
@@ -54,7 +54,7 @@ def _name(vector: int) -> str:
 
 
 class Pie:
-    """PIE behaviour over its registers; takes the CPU's lines 1..14."""
+    """PIE behaviour over its registers.  It handles the CPU's lines 1..14."""
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: PieCtrlRegs) -> None:
         self._clock, self._cpu, self._regs = clock, cpu, regs
@@ -62,16 +62,16 @@ class Pie:
         self._ctrl, self._ack = registers["PIECTRL"], registers["PIEACK"]
         self._ier = tuple(registers[f"PIEIER{x}"] for x in range(1, GROUPS + 1))
         self._ifr = tuple(registers[f"PIEIFR{x}"] for x in range(1, GROUPS + 1))
-        #: What runs when a vector is taken, and where that begins, if it is the firmware's own.
+        #: Vector -> the function that runs when it is taken, and where that begins if it is the firmware's own.
         self._vectors: dict[int, tuple[Callable[[], None], Place | None]] = {}
         #: The last vector that each group took, and how often each group was acknowledged.
         self._taken = [0] * GROUPS
         self._acknowledged = [0] * GROUPS
-        #: The flags of each group that the firmware has set by itself.
+        #: The flags of each group that the firmware has set by writing PIEIFR.
         self._forced = [0] * GROUPS
-        #: When the routine of each vector was left that has had no pulse since.
+        #: Vector -> when its routine ended, if there has been no pulse since.
         self._served: dict[int, int] = {}
-        #: By group and number: the flag that has kept back a further event, and the routine that left it.
+        #: (group, number) -> the flag that has kept a further event back, and the routine that left the flag.
         self._kept_back: dict[tuple[int, int], tuple[str, Place]] = {}
         regs.bind("PIECTRL", write=self._write_PIECTRL)
         regs.bind("PIEACK", write=self._write_PIEACK)
@@ -86,7 +86,7 @@ class Pie:
         """Registers to 0.  Vectors stay: they are RAM."""
         self._regs.reset()
 
-    # --- what the board and the kernel use ---------------------------------------------------------------------------
+    # --- for the board and the kernel --------------------------------------------------------------------------------
 
     def line(self, group: int, n: int) -> Callable[[], None]:
         """The input of interrupt `group`.`n`: call it for a pulse.  Raises ValueError outside 1..12, 1..16."""
@@ -107,10 +107,10 @@ class Pie:
         return pulse
 
     def flag_left(self, group: int, n: int, flag: str, *, at_once: bool = False) -> bool:
-        """The source of interrupt `group`.`n` gives no pulse for an event because its `flag` still stands.
+        """The source of interrupt `group`.`n` gives no pulse for an event because its `flag` is still set.
 
-        Told where the routine of that interrupt has run since the last pulse and left the flag for long, or `at_once`;
-        False if there is no such routine.
+        It is reported at the routine of that interrupt, if this has run since the last pulse and has left the flag for
+        long (`at_once`: for any time).  Returns False if there is no such routine.
         """
         vector = vector_id(group, n)
         since = self._served.get(vector)
@@ -123,7 +123,7 @@ class Pie:
         return True
 
     def finish(self) -> None:
-        """The run ends: who has kept an interrupt back for half as long is told too."""
+        """The run ends.  Report also flags that have kept an interrupt back for half of that time."""
         for (group, n), (flag, begins) in self._kept_back.items():
             since = self._served.get(vector_id(group, n))
             if since is not None and self._clock.now >= since + LONG_CYCLES // 2:
@@ -142,19 +142,19 @@ class Pie:
         return bool(self._ier[group - 1].value & 1 << n - 1)
 
     def waits(self, group: int, n: int) -> bool:
-        """Whether interrupt `group`.`n` has come and is let through, and no interrupt of its group was ever taken."""
+        """Whether interrupt `group`.`n` is pending and enabled while no interrupt of its group was ever taken."""
         return bool(self._ifr[group - 1].value & self._ier[group - 1].value & 1 << n - 1) and not self._taken[group - 1]
 
     def left_by(self, group: int, n: int) -> Place | None:
-        """Where the firmware's routine of interrupt `group`.`n` stands, if it has run since the last pulse."""
+        """The place of the firmware's routine of interrupt `group`.`n`, if it has run since the last pulse."""
         vector = vector_id(group, n)
         return self._vectors.get(vector, (None, None))[1] if vector in self._served else None
 
     def set_vector(self, vector_id: int, handler: Callable[[], None] | None, begins: Place | None = None) -> None:
-        """Write a vector: what runs when interrupt `vector_id` is taken (13..0xDF).  None: nothing.
+        """Write a vector: `handler` runs when interrupt `vector_id` is taken (13..0xDF).  None: nothing runs.
 
         15 to 31 are the core's own (data log, RTOS, emulation, NMI, traps), which nothing here takes.
-        `begins`: where a routine of the firmware stands that has to acknowledge by itself.
+        `begins`: the place of a firmware routine that must acknowledge the interrupt itself.
         """
         if not DIRECT_VECTORS[0] <= vector_id < 0x80 + 8 * GROUPS:
             raise ValueError(f"PIE vector {vector_id:#x}: want 0xd..0xdf")
@@ -164,20 +164,20 @@ class Pie:
             self._vectors[vector_id] = handler, begins
 
     def has_vector(self, vector_id: int) -> bool:
-        """Whether something runs when interrupt `vector_id` is taken."""
+        """Whether a function runs when interrupt `vector_id` is taken."""
         return vector_id in self._vectors
 
     # --- the flow ----------------------------------------------------------------------------------------------------
 
     def _deliver(self, x: int) -> None:
-        """Pass group `x` (from 0) on to the CPU if a line is latched and enabled and nobody is owed an acknowledge."""
+        """Pass group `x` (from 0) on to the CPU if a line is latched and enabled and no acknowledge is missing."""
         ack = 1 << x
         if self._ifr[x].value & self._ier[x].value and not self._ack.value & ack and self._ctrl.value & 1:
             self._ack.value |= ack
             self._cpu.raise_line(x + 1)
 
     def _held(self, x: int, n: int, *, again: bool) -> None:
-        """A missing acknowledge holds an interrupt back: told if that is lost by it (`again`), or waits for long."""
+        """A missing acknowledge holds an interrupt back.  Report it if one is lost (`again`) or waits for long."""
         if again:
             self._not_acknowledged(x, n)
         elif not self._cpu.in_interrupt:
@@ -189,7 +189,7 @@ class Pie:
             self._not_acknowledged(x, n)
 
     def held_back(self, group: int, n: int) -> bool:
-        """Whether interrupt `group`.`n` has come and a missing acknowledge holds it back: then that is told."""
+        """Whether a missing acknowledge holds a pending interrupt `group`.`n` back.  Then report it."""
         x = group - 1
         waits = self._ifr[x].value & self._ier[x].value & 1 << n - 1
         return bool(waits and self._ack.value & 1 << x) and self._not_acknowledged(x, n)
@@ -218,7 +218,7 @@ class Pie:
                 self._deliver(x)
 
     def _fetch(self, x: int) -> None:
-        """The CPU takes INT(x+1): the lowest latched and enabled line gives the vector, and its flag is cleared."""
+        """The CPU takes INT(x+1).  The lowest latched and enabled line gives the vector; its flag is cleared."""
         if not self._ctrl.value & 1:
             # CHOICE: disabled between latch and fetch, nothing runs (silicon would use the boot ROM's vector).
             return
@@ -231,12 +231,12 @@ class Pie:
         self._served[vector] = self._clock.now
 
     def _next(self, x: int) -> int:
-        """The flag whose vector is fetched next for group `x`.  TRM: with nothing left it is that of INTx.1."""
+        """The flag whose vector is fetched next for group `x`.  TRM: if none is left, it is that of INTx.1."""
         active = self._ifr[x].value & self._ier[x].value
         return active & -active if active else 1
 
     def _describe(self, line: int) -> tuple[str, str, Place | None]:
-        """What waits at a line of the CPU: its vector, what asks for it, where its routine begins."""
+        """The interrupt that waits at a CPU line: its vector, its source, and where its routine begins."""
         vector, forced = line, False
         if line <= GROUPS:
             bit = self._next(line - 1)
@@ -282,7 +282,7 @@ class Pie:
         self._deliver(x)
 
     def _write_PIEIFRx(self, x: int, word: int, lanes: int = ALL) -> None:
-        # A written 1 latches an interrupt; a written 0 loses one that came since the word was read.
+        # Writing 1 latches an interrupt.  Writing 0 loses an interrupt that came after the program read the word.
         self._forced[x] |= word & lanes & ~self._ifr[x].value
         self._ifr[x].store(word, lanes)
         self._deliver(x)

@@ -39,16 +39,16 @@ class VectorTable:
             regs.bind(name, read=partial(self._read, number), write=partial(self._write, number))
 
     def wrap_with(self, around: Callable[[Routine], Routine]) -> None:
-        """What is written to an entry from now on runs as `around(routine)`: a test's time limit stands around it."""
+        """Run routines that are written to an entry from now on as `around(routine)`, e.g. with a test's time limit."""
         self._around = around
 
     def clear(self) -> None:
-        """Every entry without a routine: TI's InitPieVectTable gives each one that only stops."""
+        """Remove the routines of all entries, as TI's InitPieVectTable does: it writes one that only stops."""
         for number in self._ids.values():
             self._write(number, 0)
 
     def routine(self, group: int, n: int) -> str | None:
-        """The name of the routine of PIE interrupt `group`.`n`, whoever wrote it there; None: it has none."""
+        """The name of the routine of PIE interrupt `group`.`n`, written by firmware or kernel; None: it has none."""
         number = vector_id(group, n)
         routine = self._routines.get(number)
         return routine.__name__ if routine is not None else "the kernel's" if self._pie.has_vector(number) else None

@@ -51,7 +51,7 @@ class Sci:
 
     `rx_interrupt` and `tx_interrupt` are pulses into the PIE, `lspclk_divider()` is SYSCLK cycles a LSPCLK cycle.
     `break_bits`: how long the line stays low after a missing stop bit before BRKDT (CHOICE: 10; later manuals of the
-    family say 9.625).  `held()`: as of `Fifo`, of the receiver's.
+    family say 9.625).  `held()` is that of the receive FIFO (`Fifo`).
     """
 
     def __init__(
@@ -84,15 +84,15 @@ class Sci:
         self._fftx = register["SCIFFTX"]
         self._ffct = register["SCIFFCT"]
         self._fifo = Fifo(self._fftx, tx_interrupt, receive=False)
-        #: The last answer of `format`, for speed, and what it was made from.
+        #: The last result of `format`, kept for speed, and the register values that it was made from.
         self._format_key: tuple[int, int, int] | None = None
         self._format: Format
         self._receiver = SciReceiver(clock, cpu, regs, rx, rx_interrupt, self.format, break_bits, held)
-        #: Without FIFO: SCITXBUF holds a character that waits for the shifter.
-        #: The statement that gave the latest character: what is said of its frame stands there.
+        #: Without FIFO: whether SCITXBUF holds a character that waits for the shifter.
+        #: The statement that wrote the latest character.  Findings about its frame are reported there.
         self._cause: Cause | None = None
         self._waiting = False
-        #: The end of the frame that is being shifted, and what it is.
+        #: The event at the end of the frame that is being shifted, and this frame.
         self._shift: Event | None = None
         self._data = 0
         self._start = 0
@@ -176,7 +176,7 @@ class Sci:
             if not self._fifo.push(self._txbuf.value):
                 self._lost("the transmit FIFO is full or held in reset: the character is lost")
         elif not self._ctl1.value & SWRESET:
-            # CHOICE: TXRDY is held at 1 during reset, so nothing waits for its end.
+            # CHOICE: TXRDY is held at 1 during reset, so no character waits for its end.
             name = f"{self._ctl1.path}.SWRESET"
             self._not_configured(f"{name} = 0: the module is held in reset, and the character is lost", name)
         else:

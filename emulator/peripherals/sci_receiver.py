@@ -65,32 +65,33 @@ class SciReceiver:
         self._rxst = register["SCIRXST"]
         self._rxbuf = register["SCIRXBUF"]
         self.fifo = Fifo(register["SCIFFRX"], interrupt, receive=True, held=held)
-        #: SWRESET is 1.
+        #: Whether SWRESET is 1.
         self._running = False
-        #: A break was detected: deaf until SWRESET.
+        #: Whether a break was detected.  Then the receiver is deaf until SWRESET.
         self._blocked = False
-        #: The pin is disconnected from the line.
+        #: Whether the pin is disconnected from the line.
         self.loopback = False
         #: The statement that set the baud registers.
         self.rate_set_by: Cause | None = None
-        #: SCIRST holds the FIFO channel.
+        #: Whether SCIRST holds the FIFO channel.
         self.channel_held = False
-        #: Until then (cycles) a character that began earlier is being sampled.
+        #: The cycle until which a character that began earlier is being sampled.
         self._busy_until = 0.0
         self._low_since = 0
         #: How long the line was low, once it has risen again.
         self._low_width: int | None = None
         self._low_event: Event | None = None
         self._break_event: Event | None = None
-        #: Whether the FIFO was emptied with the overflow that stands in RXFFOVF.
+        #: Whether the program has emptied the FIFO while RXFFOVF was set by this overflow.
         self._overflow_answered = False
-        #: Characters that came since RXFIFORESET was cleared; None: it was not, or never set.  What cleared it.
+        #: Characters that came since RXFIFORESET was cleared (None: it is not, or never was set), and the statement
+        #: that cleared it.
         self._came_to_closed: int | None = None
         self._closed_by: Cause | None = None
-        #: Whether a character has come since reset, and reads of SCIRXBUF before.
+        #: Whether a character has come since reset, and the reads of SCIRXBUF before the first one.
         self._received = False
         self._premature = 0
-        #: Whether SCIRXBUF has been read, and what was lost in loopback before.
+        #: Whether SCIRXBUF has been read, and the loss in loopback before that.
         self._ever_read = False
         self._lost_unread = ""
 
@@ -147,7 +148,7 @@ class SciReceiver:
             self._deliver(character.data, _errors(character))
 
     def _tell_rates(self, rates: str) -> None:
-        """A character of another speed: told at the statement that set this end's."""
+        """Report a character of another speed at the statement that set this end's speed."""
         findings = self._cpu.findings
         before, findings.cause = findings.cause, self.rate_set_by
         findings.report("serial-rate", f"{self._regs.name}: {rates}", object=self._regs.registers["SCILBAUD"].path)
@@ -190,7 +191,7 @@ class SciReceiver:
             self._low_width = self._clock.now - self._low_since
 
     def _low_sampled(self) -> None:
-        """The character that the falling edge began is over."""
+        """The character that began with the falling edge is over."""
         self._low_event = None
         own = self._own_format()
         for character in sample(low_pulse(self._low_width), own):
@@ -254,7 +255,7 @@ class SciReceiver:
         return (FE if word & SCIFFFE else 0) | (PE if word & SCIFFPE else 0)
 
     def _raise(self, errors: int, also: bool = False) -> None:
-        """Set error flags; one pulse if RXERROR rises with its interrupt enabled, or for another source (`also`)."""
+        """Set error flags.  Give one pulse if RXERROR rises with its interrupt enabled, or for another source (`also`)."""
         status = self._rxst.value
         if errors:
             self._rxst.value = status | errors | RXERROR
@@ -324,7 +325,7 @@ class SciReceiver:
             self._overflow_answered = False
 
     def _closed(self, before: int, unread: int) -> None:
-        """RXFIFORESET = 0: the FIFO had `unread` characters, and its register was `before`."""
+        """RXFIFORESET was cleared while the FIFO had `unread` characters.  Its register was `before`."""
         self._closed_by, self._came_to_closed = self._cpu.findings.mark(), 0
         if not before & OVERFLOW:
             return
@@ -339,7 +340,7 @@ class SciReceiver:
         self._overflow_answered = True
 
     def _came_too_late(self) -> None:
-        """A character for a FIFO that is held in reset."""
+        """A character arrived for a FIFO that is held in reset."""
         if self._came_to_closed is None:
             return
         self._came_to_closed += 1
@@ -357,7 +358,7 @@ class SciReceiver:
             findings.cause = None
 
     def _lost(self, what: str) -> None:
-        """A character is lost.  A program that hears only itself misses none before it begins to read."""
+        """Report a lost character.  In loopback, a loss does not count before the program begins to read."""
         if self.loopback and not self._ever_read:
             self._lost_unread = self._lost_unread or what
             return

@@ -1,4 +1,4 @@
-"""What an SCI receiver makes of a waveform: start bit, majority of three samples, stop bit.
+"""How an SCI receiver decodes a waveform: start bit, majority of three samples, stop bit.
 
 Modelled: eight samples a bit, a start bit valid after four low samples, each bit the majority of samples 4, 5 and 6,
 parity, one stop bit checked, the hunt for the next falling edge after a stop bit; so baud mismatch, format mismatch,
@@ -23,7 +23,7 @@ SAMPLES_PER_BIT: Final = 8
 START_SAMPLES: Final = 4
 #: The middle of each sample that votes on a bit, in bits.
 VOTES: Final[tuple[float, ...]] = (3.5 / SAMPLES_PER_BIT, 4.5 / SAMPLES_PER_BIT, 5.5 / SAMPLES_PER_BIT)
-#: A drift over the frame below this part of a bit cannot move two votes into a neighbour.
+#: If the drift over the frame is below this part of a bit, no two samples of a vote fall into a neighbouring bit.
 HARMLESS_DRIFT: Final = 0.25
 
 
@@ -91,7 +91,7 @@ def low_pulse(width_cycles: float | None) -> LineWaveform:
 
 
 def matches(frame: SerialFrame, own: Format) -> bool:
-    """Whether `frame` certainly arrives as sent: same format, harmless drift, a good stop bit."""
+    """Whether `frame` certainly arrives as sent: the same format, a harmless drift, a good stop bit."""
     return (
         abs(frame.bit_cycles - own.bit_cycles) * own.frame_bits < HARMLESS_DRIFT * frame.bit_cycles
         and frame.data_bits == own.data_bits

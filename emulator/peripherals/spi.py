@@ -47,10 +47,10 @@ SLOWEST_FAST_BRR: Final = 3
 class Spi:
     """One SPI module as bus master.
 
-    `rx_interrupt` and `tx_interrupt` are pulses into the PIE; without FIFO all interrupts leave on the RX line.
+    `rx_interrupt` and `tx_interrupt` are pulses into the PIE; without FIFO all interrupts use the RX line.
     `select(level)` drives SPISTE.
     `lspclk_divider()` is SYSCLK cycles a LSPCLK cycle; code that changes it calls `clock_changed`.
-    `held()`: as of `Fifo`, of the receiver's.
+    `held()` is that of the receive FIFO (`Fifo`).
     """
 
     def __init__(
@@ -85,16 +85,16 @@ class Spi:
         self._ffct = register["SPIFFCT"]
         self._tx_fifo = Fifo(self._fftx, tx_interrupt, receive=False)
         self._rx_fifo = Fifo(register["SPIFFRX"], rx_interrupt, receive=True, held=held)
-        #: The end of the word that is being shifted.
+        #: The event at the end of the word that is being shifted.
         self._shift: Event | None = None
         self._length = 16
         #: Words completed since reset, and reads of SPIRXBUF before the first of them.
         self._received = self._premature = 0
-        #: SPISTS is looked at: INT_FLAG tells of a word from before the one that is shifting.
+        #: Whether reads of SPISTS are watched: INT_FLAG is still set by a word before the one that is shifting.
         self._old_flag = False
-        #: A chip select rose while the present word was shifting.
+        #: Whether a chip select rose while the present word was shifting.
         self._cut = False
-        #: What wrote the word that is sent, and those that wait.
+        #: The statements that wrote the word that is being sent and the words that wait.
         self._cause: Cause | None = None
         self._causes: list[Cause | None] = []
         bus.deselected.connect(self._deselected)
@@ -121,15 +121,15 @@ class Spi:
         self._configure()
 
     def clock_changed(self) -> None:
-        """LSPCLK runs at another rate: the next word does too."""
+        """LSPCLK has another rate.  The next word uses it."""
         self._configure()
 
     def requested(self, *, receive: bool) -> Signal[[]]:
-        """(): SPIRXDMA or SPITXDMA stands, and something changes."""
+        """(): the FIFO has changed while SPIRXDMA or SPITXDMA is active."""
         return (self._rx_fifo if receive else self._tx_fifo).requested
 
     def at_level(self, *, receive: bool) -> bool:
-        """Whether SPIRXDMA or SPITXDMA stands."""
+        """Whether SPIRXDMA or SPITXDMA is active."""
         return (self._rx_fifo if receive else self._tx_fifo).at_level
 
     @property
@@ -149,7 +149,7 @@ class Spi:
 
     @property
     def word_cycles(self) -> int:
-        """SYSCLK cycles a word, likewise."""
+        """SYSCLK cycles a word at the present settings."""
         return self._word_cycles
 
     @property
@@ -158,7 +158,7 @@ class Spi:
         return self._cpol, self._cpha
 
     def _configure(self) -> None:
-        """Follow SPICCR, SPICTL, SPIBRR and LSPCLK: what they mean for a word is worked out here, not for each word."""
+        """Follow SPICCR, SPICTL, SPIBRR and LSPCLK.  Their effect on a word is computed here, not for each word."""
         ccr, ctl = self._ccr.value, self._ctl.value
         #: Whether a word can start: out of reset and master.
         self._ready = bool(ccr & SPISWRESET and ctl & MASTER)
@@ -176,7 +176,7 @@ class Spi:
         self._ccr.store(word, lanes)
         self._configure()
         if not self._ccr.value & SPISWRESET:
-            # The FIFOs keep their words: start-up code sets them before it pulses this bit.
+            # The FIFOs keep their words: start-up code sets the FIFOs up before it pulses this bit.
             self._stop()
             self._sts.value = 0
             self._received = self._premature = 0
@@ -214,9 +214,10 @@ class Spi:
             self._sts.value |= BUFFULL_FLAG
 
     def _doubt(self, word: int) -> None:
-        """A word is written whose lower bits are not sent, and were not sent of the one before.
+        """Check a word whose lower bits are not sent, when those of the word before were not sent either.
 
-        Who sends a word in parts writes the rest next, shifted up; who only wants an answer writes the same again.
+        A driver that sends a word in parts writes the rest next, shifted up.  A driver that only wants an answer writes
+        the same word again.
         """
         before, kept = self._txbuf.value, self._char_bits
         unsent = (1 << 16 - kept) - 1
@@ -275,7 +276,7 @@ class Spi:
         )  # fmt: skip
 
     def _watch_flag(self, on: bool) -> None:
-        """Look at reads of SPISTS while INT_FLAG is that of an earlier word."""
+        """Watch reads of SPISTS while INT_FLAG is still set by an earlier word."""
         if on != self._old_flag:
             self._old_flag = on
             self._regs.bind("SPISTS", read=self._read_old_flag if on else None)
@@ -350,7 +351,7 @@ class Spi:
         )
 
     def _deselected(self, chip_select: Wire) -> None:
-        """A device was let go; the word that is shifting, if there is one, does not reach it any more."""
+        """A device was deselected.  A word that is being shifted does not reach it any more."""
         shift = self._shift
         if shift is not None and not self._cut:
             self._cut = True
@@ -368,7 +369,7 @@ class Spi:
             self._select(1)
 
     def _receive(self) -> None:
-        """SPIDAT goes to the receive buffer, and what waits to be sent into SPIDAT."""
+        """Move SPIDAT to the receive buffer, and the next word to send into SPIDAT."""
         self._shift = None
         self._received += 1
         if self._old_flag:
@@ -434,7 +435,7 @@ class Spi:
             self._rx_interrupt()
 
     def _caused(self) -> None:
-        """Remember what writes a word."""
+        """Remember the statement that writes a word."""
         self._causes.append(self._cpu.findings.mark())
 
     def _stop(self) -> None:

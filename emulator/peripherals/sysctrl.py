@@ -38,7 +38,7 @@ from emulator.signal import Signal
 
 GATES: Final = tuple(name for name in CpuSysRegs.layout if name.startswith("PCLKCR"))
 RESETS: Final = tuple(name for name in DevCfgRegs.layout if name.startswith("SOFTPRES"))
-#: Where CLKSRCCTL2 has the bit clock of a CAN module, and the cycles of SYSCLK and of the crystal.
+#: The position of a CAN module's bit clock field in CLKSRCCTL2, and the SYSCLK cycles of its two clocks.
 CAN_SOURCE: Final = {"A": 2, "B": 4}
 XTAL_HZ: Final = 10_000_000
 CAN_CLOCKS: Final = {0: 1, 1: SYSCLK_HZ // XTAL_HZ}
@@ -73,7 +73,7 @@ class SysCtrl:
         #: (cycles): CPU timer 2 counts every so many SYSCLK cycles from now on.
         self.timer2_changed: Signal[int] = Signal()
         self._locking: Event | None = None
-        #: When PLL, divider and oscillator are held against 200 MHz, and what set them last.
+        #: The event when PLL, divider and oscillator are checked for 200 MHz, and the statement that set them last.
         self._settling: Event | None = None
         self._set_by: Cause | None = None
         for name in GATES:
@@ -106,10 +106,10 @@ class SysCtrl:
         self._cpu.clock.cancel(self._settling)
         self._tell_timer2()
 
-    # --- what the board attaches -------------------------------------------------------------------------------------
+    # --- for the board -----------------------------------------------------------------------------------------------
 
     def gate(self, register: str, field: str, *blocks: Block, on_clock: Callable[[bool], None] | None = None) -> None:
-        """Let `register`.`field` (`PCLKCR13`, `ADC_A`) tell `on_clock(on)`, and switch the clock of `blocks`.
+        """Let `register`.`field` (`PCLKCR13`, `ADC_A`) call `on_clock(on)`, and switch the clock of `blocks`.
 
         Both get the present state at once.  Raises ValueError for a gate that does not exist.
         """
@@ -129,18 +129,18 @@ class SysCtrl:
         self._resets[register].append((self._mask(self._devcfg, self._resets.keys(), register, field), reset))
 
     def start_pll(self, multiplier: int) -> None:
-        """What software does that writes SYSPLLMULT; nobody is told that the PLL is not modelled."""
+        """Act as software that writes SYSPLLMULT, without a report that the PLL is not modelled."""
         self._write_SYSPLLMULT(multiplier)
 
     def run_pll(self, divider: int) -> None:
-        """What software does that writes PLLSYSCLKDIV and sets PLLCLKEN, likewise."""
+        """Act as software that writes PLLSYSCLKDIV and sets PLLCLKEN, also without a report."""
         self._clkcfg.registers["SYSPLLCTL1"].value |= SYSPLLCTL1.PLLCLKEN.mask
         self._write_SYSCLKDIVSEL(divider)
 
     def doubt_sysclk(self) -> None:
-        """Tell a SYSCLK that is set to be another than the 200 MHz that it has here.
+        """Report a SYSCLK that is set to another frequency than the 200 MHz that it has here.
 
-        CHOICE: nobody knows the board's crystal: any is right with which it would be 200 MHz.
+        CHOICE: the board's crystal is not known.  Any crystal that would give 200 MHz is taken as right.
         """
         self._cpu.clock.cancel(self._settling)
         clkcfg = self._clkcfg.registers
@@ -275,7 +275,7 @@ class SysCtrl:
         self._settle()
 
     def _settle(self) -> None:
-        """Something of SYSCLK was set: it is looked at once nothing more of it is."""
+        """A setting of SYSCLK was written.  Check SYSCLK once its settings have not changed for a while."""
         clock = self._cpu.clock
         self._set_by = self._cpu.findings.mark()
         clock.cancel(self._settling)

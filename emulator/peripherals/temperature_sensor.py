@@ -28,7 +28,7 @@ class TemperatureSensor:
 
     def __init__(self, regs: AnalogSubsysRegs, output: AnalogWire) -> None:
         self._regs, self._output = regs, output
-        #: Of the chip; a test may set it.
+        #: The temperature of the chip in degrees Celsius; a test may set it.
         self.temperature_c = 25.0
         regs.bind("TSNSCTL", write=self._write_TSNSCTL)
 

@@ -51,7 +51,7 @@ class Watchdog:
         self.reset()
 
     def report_in_vain(self, since: int, hung: Place) -> None:
-        """`main` hangs at `hung` since the cycle `since`: told where somebody services the watchdog nevertheless."""
+        """Report a service of the watchdog although `main` hangs at `hung` since the cycle `since`."""
         begun, findings = self._begun, self._cpu.findings
         if self._wdcr.value & WDDIS or begun is None or self._serviced_at <= since:
             return

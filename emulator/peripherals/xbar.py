@@ -1,12 +1,12 @@
-"""The X-BAR flags: which signal of the ePWM and Output X-BARs was high.
+"""The X-BAR flags: which signals of the ePWM and Output X-BARs have been high.
 
 Modelled: XBARFLG1 (comparators), INPUT1 to INPUT6 and ECAP1.OUT to ECAP6.OUT of XBARFLG2, and their clears.
 Not modelled: the other flags, which stay 0, as their signals do.
 Time: none; a flag is set in the cycle of its signal.
 CHOICE: a flag is set while its signal is high: a clear then sets it again.
-CHOICE: the flag of an INPUT or an eCAP is set from when a mux of an X-BAR chooses it on, or from the first access to
-    XBARFLG2 or XBARCLR2: without that nobody asks, and every edge of GPIO0, which all inputs have out of reset, would
-    cost.
+CHOICE: the flag of an INPUT or an eCAP can be set once a mux of an X-BAR chooses the signal, or XBARFLG2 or XBARCLR2
+    was accessed.  Before that no program needs the flags, and every edge of GPIO0, which is the pin of all inputs out
+    of reset, would cost time.
 Sources: TRM X-BAR; HDR F2837xS_xbar.h.
 """
 
@@ -20,7 +20,7 @@ from emulator.registers.core import ALL
 from emulator.registers.xbar import XBARFLG1, XBARFLG2, XbarRegs
 from emulator.signals import Level
 
-#: The clears that TI's header calls otherwise than their flags lie at the same bits; the names do not matter here.
+#: Some clears have other names in TI's header than their flags.  They lie at the same bits, which is what counts here.
 _FLAGS: Final = {name.replace("_", "."): ("XBARFLG1", field.mask) for name, field in XBARFLG1.fields.items()} | {
     name.replace("_", "."): ("XBARFLG2", field.mask)
     for name, field in XBARFLG2.fields.items() if name.startswith(("INPUT", "ECAP"))

@@ -1,4 +1,4 @@
-"""An output of the ePWM X-BAR or of the Output X-BAR before latch and inversion: the OR of what its muxes choose.
+"""An output of the ePWM X-BAR or the Output X-BAR, before latch and inversion: the OR of the signals its muxes choose.
 
 Modelled: MUX0 to MUX31 of an output, their enables; the comparators (CTRIPx, CTRIPOUTx), INPUT1 to INPUT6 and
     the outputs of the eCAPs.
@@ -20,7 +20,7 @@ from emulator.cpu import Cpu
 from emulator.registers.core import ALL, Block
 from emulator.signals import Level
 
-#: OUTPUTLOCK and TRIPLOCK want it in their upper half.
+#: The key that OUTPUTLOCK and TRIPLOCK need in their upper half.
 KEY: Final = 0x5A5A
 _COMPARATORS: Final = 8
 #: Muxes in a configuration register.
@@ -28,7 +28,7 @@ _HALF: Final = 16
 
 
 def choices(trip: str) -> list[tuple[tuple[str, ...], ...]]:
-    """Mux -> its four choices, each the signals that are ORed; `trip` is CTRIP or CTRIPOUT."""
+    """The four choices of each mux; a choice is the signals that are ORed.  `trip` is CTRIP or CTRIPOUT."""
     table: list[tuple[tuple[str, ...], ...]] = []
     for k in range(1, _COMPARATORS + 1):
         high, low = f"CMPSS{k}.{trip}H", f"CMPSS{k}.{trip}L"
@@ -48,8 +48,8 @@ def choices(trip: str) -> list[tuple[tuple[str, ...], ...]]:
 class XbarOutput:
     """The muxes of the output `name` (OUTPUT3, TRIP4).
 
-    `changed()` is called when `level` may have changed; `locked()` says whether the registers drop writes, which it
-    reports.  `signals` are the modelled ones; `used(signal)` is called with each that a mux begins to choose.
+    `changed()` is called when `level` may have changed.  `locked()` returns whether the registers drop writes; it also
+    reports such a write.  `signals` are the modelled ones.  `used(signal)` is called when a mux begins to choose one.
     """
 
     __slots__ = (
@@ -69,7 +69,7 @@ class XbarOutput:
         self._configs = registers[f"{name}MUX0TO15CFG"], registers[f"{name}MUX16TO31CFG"]
         self._enable = registers[f"{name}MUXENABLE"]
         self._in_use: list[str] = []
-        #: What ends to hear each of them.
+        #: The functions that stop listening to them.
         self._stops: dict[str, Callable[[], None]] = {}
         #: Signals that are not modelled and were reported.
         self._told: set[str] = set()
@@ -99,7 +99,7 @@ class XbarOutput:
             self._findings.report("unmodelled", f"{path} = {choice}: {what}, it stays low", object=path, value=choice)
 
     def _choose(self) -> None:
-        """The registers have other values: listen to what they choose now, and to nothing else."""
+        """The registers have changed: listen to the signals that they choose now, and to no others."""
         before, self._in_use = self._in_use, self._chosen()
         for name in before:
             if name not in self._in_use:
@@ -121,6 +121,6 @@ class XbarOutput:
 
 
 def report_locked(cpu: Cpu, path: str, by: str, word: int) -> None:
-    """Tell of a write that a lock has dropped."""
+    """Report a write that a lock has dropped."""
     message = f"{path} is locked by {by}: the write was dropped silently"
     cpu.findings.report("locked", message, object=path, value=word)

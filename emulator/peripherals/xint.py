@@ -29,7 +29,7 @@ BOTH: Final = 3
 class Xint:
     """External interrupt `number` over its registers; `pulse` is its line to the PIE.
 
-    `listen(on)`: from now on the edges of its input matter, or no more.
+    `listen(on)` is called when the module begins (or ceases) to need the edges of its input.
     """
 
     def __init__(self, clock: Clock, regs: XintRegs, number: int, pulse: Callable[[], None],
