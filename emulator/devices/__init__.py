@@ -1,1 +1,1 @@
-"""The parts around the chip, from their data sheets: each with a bus face and a world face in SI units."""
+"""The parts around the chip, from their data sheets.  Each has a side to a bus, and one to the world in SI units."""

@@ -22,7 +22,7 @@ SIZE: Final = 32768
 PAGE: Final = 64
 #: The 7-bit address with A2, A1 and A0 at ground.
 ADDRESS: Final = 0x50
-#: What no byte was ever written to.
+#: The value of bytes that were never written.
 ERASED: Final = 0xFF
 #: tWR, at most.
 WRITE_CYCLE_MS: Final = 5.0
@@ -31,8 +31,8 @@ WRITE_CYCLE_MS: Final = 5.0
 class At24c256:
     """The device: `bus.attach(eeprom.address, eeprom)`.  `pins` are A2, A1, A0 as a number.
 
-    `write_protect` is the level of WP, which a board may change at any time.  `report(rule, message)` gets what a
-    driver does wrong.
+    `write_protect` is the level of WP, which a board may change at any time.  `report(rule, message)` is called for
+    mistakes of the driver.
     """
 
     __slots__ = (
@@ -51,18 +51,18 @@ class At24c256:
         self.address = ADDRESS | pins
         self.write_protect = 0
         self._memory = bytearray([ERASED]) * SIZE
-        #: The current address, and how many bytes of a new one are still to come.
+        #: The current address, and how many bytes of a new address are still to come.
         self._pointer = self._address_bytes = 0
-        #: Data of the present message by their places; data of the write cycle, and its end.
+        #: Address -> byte, of the present message and of the write cycle; the end of the write cycle.
         self._latches: dict[int, int] = {}
-        #: Where the data of the message began, and how many bytes there were.
+        #: The first address of the message's data, and the number of bytes.
         self._first = self._sent = 0
         self._writing: dict[int, int] = {}
         self._cycle_end = 0
 
     @property
     def memory(self) -> bytearray:
-        """What the device holds now."""
+        """The content of the device now."""
         self._settle()
         return self._memory
 
@@ -78,7 +78,7 @@ class At24c256:
         return self._clock.now < self._cycle_end
 
     def start(self) -> None:
-        """A START or a repeated one: a message without its STOP writes nothing."""
+        """A START or a repeated START.  A message that has had no STOP writes nothing."""
         self._latches = {}
         self._sent = 0
 
@@ -90,7 +90,7 @@ class At24c256:
         return True
 
     def write(self, byte: int) -> bool:
-        """Two bytes of address, the upper one first, then data."""
+        """Take a byte: first two bytes of address, the upper one first, then data."""
         if self._address_bytes:
             self._address_bytes -= 1
             self._pointer = (self._pointer << 8 | byte) % SIZE
@@ -104,13 +104,13 @@ class At24c256:
         return True
 
     def read(self) -> int:
-        """The byte at the current address, which moves on."""
+        """The byte at the current address.  The address then moves on."""
         byte = self.memory[self._pointer]
         self._pointer = (self._pointer + 1) % SIZE
         return byte
 
     def stop(self) -> None:
-        """A STOP: what the message has brought is written."""
+        """A STOP: write the data of the message."""
         if self._latches and not self.write_protect:
             self._settle()
             self._writing, self._cycle_end = self._latches, self._clock.now + self._cycle_cycles

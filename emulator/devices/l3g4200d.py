@@ -43,12 +43,14 @@ _STILL: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 class L3G4200D:
-    """The device.  Bus face: `select`, `exchange`, `i2c`, `int1`, `drdy`; world face: `set_rate_source`,
-    `set_temperature`; test face: `force_samples`.
+    """The device.
 
-    `rate_source(cycles)` gives rad/s about x, y, z, positive counter-clockwise.  `ideal` is the perfect specimen:
-    no offset, noise, LPF1 delay or settling, exact data rate.  `report(rule, message)` gets what a driver does wrong;
-    `mark` gives what `report` takes as `since` (`report.py`).
+    For the bus: `select`, `exchange`, `i2c`, `int1`, `drdy`.  For the world: `set_rate_source`, `set_temperature`.  For
+    tests: `force_samples`.
+
+    `rate_source(cycles)` returns rad/s about x, y, z, positive counter-clockwise.  `ideal` is the perfect specimen:
+    no offset, noise, LPF1 delay or settling, exact data rate.  `report(rule, message)` is called for mistakes of the
+    driver; `mark()` returns the value that `report` takes as `since` (`report.py`).
     `sdo` is the level of that pin on an I2C, where it is the lowest bit of the address.
     `temperature_zero_c` is where OUT_TEMP reads 0 (CHOICE: the sheet leaves the offset open).
     """
@@ -81,7 +83,7 @@ class L3G4200D:
         self.readings = GyroReadings(clock, self.report, mark or tuple)
         #: Axis of an idle output that the present transaction has read, -1 for none.
         self.idle_axis = -1
-        #: Axes whose outputs nothing fills, and whether the next read finds an enabled FIFO bypassed.
+        #: Axes whose outputs are never filled, and whether the next read finds an enabled FIFO in bypass mode.
         self._idle_axes = 7
         self._bypassed = False
         self.path = SignalPath(self.unit, rng, temperature_c)
@@ -90,7 +92,7 @@ class L3G4200D:
         self.spi = SpiFrame(self, self.report)
         #: The device on an I2C: `bus.attach(gyro.i2c.address, gyro.i2c)`.
         self.i2c = I2cFrame(self, self.spi, sdo)
-        #: Bus face: chip select and words of the bus, as the framing takes them.
+        #: For the bus: chip select and words of the bus go directly to the framing.
         self.select = self.spi.select
         self.exchange = self.spi.exchange
         self.greatest_clock_hz = GREATEST_CLOCK_HZ
@@ -134,26 +136,26 @@ class L3G4200D:
         self._event = None
         self._apply_settings()
 
-    # World face
+    # For the world
 
     def set_rate_source(self, source: Callable[[int], tuple[float, float, float]]) -> None:
-        """What turns it from now on: rad/s about x, y, z at a virtual time in cycles."""
+        """Set the source of its rotation from now on: rad/s about x, y, z at a virtual time in cycles."""
         self.rate_source = source
 
     @property
     def temperature_c(self) -> float:
-        """What the die has been set to."""
+        """The temperature of the die."""
         return self._temperature_c
 
     def set_temperature(self, temperature_c: float) -> None:
-        """The die is at `temperature_c` from now on; OUT_TEMP shows it at its next refresh."""
+        """Set the temperature of the die from now on.  OUT_TEMP shows it at its next refresh."""
         self._catch_up()
         self._latch_temperature()
         self._temperature_c = temperature_c
         self.path.set_temperature(temperature_c)
 
     def force_samples(self, samples: Callable[[int], Digits] | None) -> None:
-        """Make each sample from now on `samples(cycles)`, x, y, z in digits, whatever the rate; None: by the rate."""
+        """Make each sample from now on `samples(cycles)`: x, y, z in digits, whatever the rate.  None: by the rate."""
         self._catch_up()
         self._forced = samples
 
@@ -169,7 +171,7 @@ class L3G4200D:
 
     @property
     def samples_read_twice(self) -> int:
-        """Reads of a high byte whose sample had given its high byte before."""
+        """The number of reads of a high byte that had been read before for the same sample."""
         return self.outputs.samples_read_twice
 
     @property
@@ -177,7 +179,7 @@ class L3G4200D:
         """Time between samples, 0 while none are taken."""
         return self._period
 
-    # Bus face
+    # For the bus
 
     def after(self, address: int) -> int:
         """The next address of a burst.
@@ -211,7 +213,7 @@ class L3G4200D:
         return self.registers[address]
 
     def _doubt(self, axis: int) -> None:
-        """An output is read that nothing fills, or not as the FIFO's settings promise."""
+        """Report the read of an output that is never filled, or that an enabled FIFO in bypass mode does not feed."""
         if self._bypassed:
             self._bypassed = False
             self.readings.bypassed()
@@ -275,7 +277,7 @@ class L3G4200D:
         return round(self._second_cycles / (r.ODR_HZ[rate] * (1.0 + self.unit.odr_error)))
 
     def set_second(self, cycles: float) -> None:
-        """What a second of its own oscillator lasts from now on: the grid of samples goes on from the latest one."""
+        """Set the length of a second of its own oscillator.  The grid of samples goes on from the latest sample."""
         self._catch_up()
         self._second_cycles = cycles
         if self._period:
@@ -298,7 +300,7 @@ class L3G4200D:
         self._idle_axes = ~regs[r.CTRL_REG1] & 7 if regs[r.CTRL_REG1] & 8 else 7
         self._bypassed = bool(regs[r.CTRL_REG5] & 0x40 and not fifo_ctrl >> 5)
         ctrl3 = regs[r.CTRL_REG3]
-        #: Whether a pin shows something that depends on samples.
+        #: Whether the level of a pin depends on samples.
         self._pins_in_use = bool(ctrl3 & 0x0F) or bool(ctrl3 & 0x80 and self.interrupt.enabled)
         self.outputs.restart_set()
         self._update_pins()
@@ -344,7 +346,7 @@ class L3G4200D:
     # Samples
 
     def _catch_up(self) -> None:
-        """Take the samples that are due and that somebody can still notice."""
+        """Take the samples that are due and can still have an effect."""
         now = self.clock.now
         if now < self._next_sample:
             return
@@ -357,7 +359,7 @@ class L3G4200D:
         self._plan_sample()
 
     def _plan_sample(self) -> None:
-        """When the sample after the latest one lies on the grid."""
+        """Compute when the next sample on the grid is due."""
         after = self._index + 1 - self._index_base
         self._next_sample = self._time_base + after * self._period if self._period else NEVER
 
@@ -380,7 +382,7 @@ class L3G4200D:
     # Pins
 
     def _plan_event(self) -> None:
-        """Keep one event for the next thing that a pin must show on its own."""
+        """Schedule one event for the next change of a pin that no access causes."""
         self.clock.cancel(self._event)
         self._event = None
         now = self.clock.now

@@ -59,7 +59,7 @@ class SampleFifo:
         self._decide()
 
     def _decide(self) -> None:
-        """What mode and trigger mean until one of them changes."""
+        """Decide how samples are stored until mode or trigger change."""
         self.in_use = self.enabled and self._mode != FifoMode.BYPASS
         self.active = self.in_use and (self._mode != FifoMode.BYPASS_TO_STREAM or self._triggered)
 
@@ -70,7 +70,7 @@ class SampleFifo:
 
     @property
     def needs_every_sample(self) -> bool:
-        """Whether leaving samples out could change the content: it is filling towards a stop."""
+        """Whether every sample must be pushed, because the memory fills until it stops."""
         return self.active and self.stops_when_full and len(self._sets) < DEPTH
 
     @property

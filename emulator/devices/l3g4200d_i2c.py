@@ -1,4 +1,4 @@
-"""I2C framing of the L3G4200D: bytes to and from the register file that its SPI face has too.
+"""I2C framing of the L3G4200D: bytes to and from the register file, which SPI uses too.
 
 Modelled: the sub-address with auto-increment in bit 7, bursts of reads and writes, a repeated START for the turn of
 direction, the sub-address that stays between transactions; silence while chip select is low, which chooses SPI.
@@ -21,7 +21,7 @@ AUTO_INCREMENT: Final = 0x80
 
 
 class I2cFrame:
-    """What the device is on a bus: `bus.attach(frame.address, frame)`.  `sdo` is the level of its pin SDO."""
+    """The device as a target on a bus: `bus.attach(frame.address, frame)`.  `sdo` is the level of its pin SDO."""
 
     __slots__ = ("_address", "_file", "_increment", "_spi", "_sub_next", "sdo")
 
@@ -44,7 +44,7 @@ class I2cFrame:
         return ADDRESS | self.sdo
 
     def start(self) -> None:
-        """A START or a repeated one: what was under way is over."""
+        """A START or a repeated START.  It ends the transaction under way."""
         if self._file.idle_axis >= 0:
             self._file.deselected()
 

@@ -47,7 +47,7 @@ class OutputRegisters:
         self._shown = [self.newest] * 3
         self._held = [0, 0, 0]
         self._seen = [0, 0, 0]
-        #: Sample number of a byte whose other half has not been read yet: positive for a low byte, negative for a high.
+        #: Sample of a byte whose other half has not been read yet: positive for a low byte, negative for a high one.
         self._half = [0, 0, 0]
         self._read_high = [0, 0, 0]
         self._set_bytes = 0
@@ -66,7 +66,7 @@ class OutputRegisters:
         self._seen[axis] = self.newest.number
 
     def restart_set(self) -> None:
-        """The FIFO was configured: a half-read set is forgotten when nothing feeds from it."""
+        """The FIFO was configured.  If it does not feed the outputs now, forget a set that is half read."""
         if not self._fifo.active:
             self._set_bytes = 0
 

@@ -1,17 +1,17 @@
-"""What a driver makes of the samples of the L3G4200D: taken again as if new, read too often, too early, or torn.
+"""Finds drivers that misread the samples of the L3G4200D: an old sample taken as new, too often, too early, or torn.
 
-Nothing here changes what the device answers.  One sample (of one axis, seen at its high byte) may be read twice by a
-driver that runs at the data rate, because two clocks are never equal.  Told is (CHOICE of the figures):
+Nothing here changes the answers of the device.  A driver that runs at the data rate may read one sample twice (of one
+axis, counted at its high byte), because two clocks are never equal.  Reported are (CHOICE of the figures):
 
 * `stale-sample`: three reads or more of one sample in a row, the first two within a quarter of a sample period (four
   or more otherwise); or more than a fifth of `WINDOW` reads repeated, each within a quarter of a period of the last;
 * `polling-above-rate`: more than a fifth of `WINDOW` reads repeated, spread over the period.
 
-A driver that looks at STATUS_REG or DRDY first never repeats a sample.  A window that was told is followed by `PAUSE`
-that are not looked at: calls cost time to remember.
+A driver that reads STATUS_REG or DRDY first never repeats a sample.  After a window that was reported, `PAUSE` windows
+are not checked, because keeping the calls takes time.
 
 Sources: L3G section on output data rate, CTRL_REG4 (BDU).  The sheet gives no turn-on time: drivers of the part wait
-300 ms, and this model's specimens settle within 250 to 300 ms, so samples of the first 250 ms are told.
+300 ms, and this model's specimens settle within 250 to 300 ms, so reads of samples of the first 250 ms are reported.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ, Clock
 from emulator.devices.report import DeviceReport, Mark, ReportedFinding, shared
 
 TURN_ON_CYCLES: Final = 250 * CYCLES_PER_MS
-#: Reads that are weighed together, and the part of them that may repeat a sample: 1/TOLERATED.
+#: The number of reads in a window, and the part of them that may repeat a sample: 1/TOLERATED.
 WINDOW: Final = 20
 TOLERATED: Final = 5
 PAUSE: Final = 15
@@ -37,15 +37,15 @@ class _Axis:
 
     def __init__(self, name: str) -> None:
         self.name = name
-        #: Sample of the latest read, when it was, how often in a row it was read and since when.
+        #: The sample of the latest read, when it was read, how often in a row, and since when.
         self.number = self.at = self.run = self.run_at = 0
-        #: Calls of an earlier read of this run, which of them a later one shared, and what was told about it.
+        #: The calls of an earlier read of this run, those that a later read shared, and the finding about the run.
         self.mark: Mark = ()
         self.both: Mark = ()
         self.finding: ReportedFinding | None = None
-        #: The window: reads, repeats, longest run, time of the first read.
+        #: The window: number of reads, repeats, longest run, time of the first read.
         self.reads = self.repeats = self.longest = self.first = 0
-        #: Windows that need not be looked at.
+        #: The number of windows that need not be checked.
         self.pause = 0
         #: After a window with too many repeats: repeats in it, its rate, and the calls of its last read.
         self.above: tuple[int, Mark] | None = None
@@ -99,7 +99,7 @@ class GyroReadings:
             a.mark = self._mark()
 
     def _grow(self, a: _Axis, finding: ReportedFinding, now: int) -> None:
-        """The run goes on, and its finding with it; elsewhere in the firmware another run begins."""
+        """Update the finding of a run that goes on.  Another place in the firmware begins another run."""
         if shared(a.mark, self._mark()) is not a.both:
             a.run, a.run_at, a.mark, a.finding = 1, now, (), None
         elif isinstance(finding.value, int) and a.run > finding.value:
@@ -111,7 +111,7 @@ class GyroReadings:
         return f"{a.run} reads of L3G4200D.{a.name} in {spent_ms:.2f} ms gave 1 sample, no. {a.number}: {rate}"
 
     def _weigh(self, a: _Axis, now: int) -> None:
-        """The window is full."""
+        """The window is full: judge it."""
         if a.pause:
             a.pause -= 1
         elif a.repeats * TOLERATED > a.reads and a.longest < 3:
@@ -150,7 +150,7 @@ class GyroReadings:
         self._report("startup-read", message, object=name, value=round(age_ms, 3))
 
     def torn(self, axis: int, low: int, high: int) -> None:
-        """The two bytes of one value came from samples `low` and `high`."""
+        """Report a value whose two bytes came from different samples, `low` and `high`."""
         name = f"L3G4200D.{self._axes[axis].name}"
         self._report(
             "spread-read",
@@ -160,7 +160,7 @@ class GyroReadings:
         )  # fmt: skip
 
     def idle(self, axis: int, powered: bool) -> None:
-        """An output was read that nothing fills."""
+        """Report the read of an output that is never filled."""
         a = self._axes[axis]
         bit = f"{a.name[-1]}en" if powered else "PD"
         why = "the axis is disabled" if powered else "the device is in power-down"
@@ -170,7 +170,7 @@ class GyroReadings:
         )  # fmt: skip
 
     def bypassed(self) -> None:
-        """An output was read with the FIFO enabled and in bypass mode."""
+        """Report the read of an output with the FIFO enabled and in bypass mode."""
         self._report(
             "fifo-bypassed",
             "L3G4200D.CTRL_REG5.FIFO_EN = 1 and FIFO_CTRL_REG.FM = 0 (bypass): the FIFO holds nothing, and the outputs "

@@ -1,4 +1,4 @@
-"""L3G4200D: what its registers are and what their codes mean.  Description only; `l3g4200d.py` behaves.
+"""L3G4200D: its registers and the meaning of their codes.  `l3g4200d.py` has the behaviour.
 
 Sources: L3G sections 4-7 (register map, CTRL_REG1-5, FIFO, interrupt generator), table of mechanical
 characteristics.  LPF1 cut-offs are not in that document: see `LPF1_HZ`.

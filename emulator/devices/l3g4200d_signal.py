@@ -37,17 +37,17 @@ Digits = tuple[int, int, int]
 _ZERO: Vector = (0.0, 0.0, 0.0)
 _DEG: Final = 180.0 / math.pi
 
-#: A filter's memory is over when less than this part of an old input is left (below one digit of 65536).
+#: A filter has forgotten an input when less than this part of it is left (below one digit of 65536).
 _FORGOTTEN: Final = 1e-5
 
 
 @dataclass(frozen=True, slots=True)
 class GyroUnit:
-    """How one specimen differs from the data sheet.  The default is the perfect one.
+    """The differences of one specimen from the data sheet.  The default is the perfect specimen.
 
-    `zero_rate` and `scale` are fractions of the typical zero-rate level and of the 2 % sensitivity change over
-    temperature, -1..1 for each axis; `nonlinearity` likewise of 0.2 % of full scale; `turn_on_error_dps` is the error
-    at the moment of leaving power-down.
+    `zero_rate` and `scale` are fractions, -1..1 for each axis, of the typical zero-rate level and of the 2 %
+    sensitivity change over temperature.  `nonlinearity` is such a fraction of 0.2 % of full scale.
+    `turn_on_error_dps` is the error at the moment of leaving power-down.
     """
 
     zero_rate: Vector = _ZERO
@@ -174,13 +174,13 @@ class SignalPath:
         self._fs = 0
         self._full_scale_dps = FULL_SCALE_DPS[0]
         self._sensitivity_dps = SENSITIVITY_DPS[0]
-        #: Of each axis: gain, weight of the non-linearity and zero-rate level, in dps.
+        #: For each axis: gain, weight of the non-linearity, and zero-rate level in dps.
         self._element: tuple[Vector, ...] = ()
         self._hpm = 0
         self._noise = 0.0
         self._reference_dps = 0.0
         self._self_test_dps = 0.0
-        #: How many samples back the present one depends on, to well below a digit.
+        #: The number of earlier samples that the present one depends on, to well below a digit.
         self.memory_samples = 0
         self._calibrate()
 
@@ -215,7 +215,7 @@ class SignalPath:
         self._calibrate()
 
     def _calibrate(self) -> None:
-        """What the element makes of a rate at the present range and temperature."""
+        """Compute the constants of the element for the present range and temperature."""
         unit = self._unit
         warm = self._temperature_c - 25.0
         self._element = tuple(
@@ -248,7 +248,7 @@ class SignalPath:
         self._noise = self._unit.noise_density_dps * math.sqrt(odr / 2.0)
 
     def restart(self) -> None:
-        """The chain was off: the filters start from rest."""
+        """Start the filters from rest, because the chain was off."""
         key = self._key
         if key:
             self._rebuild(key[0], key[1], key[2], bool(key[3]), bool(key[4]))
@@ -294,7 +294,7 @@ class SignalPath:
                 v = self._lp1[axis].step(v)
             values.append(v)
         if not self._hp and not self._lp2:
-            # No stage behind the first: every position of both switches shows the same.
+            # No stage after the first is active: all positions of both switches give the same value.
             digits = self._digits(values)
             return digits, digits
         taps = [self._taps(axis, v) for axis, v in enumerate(values)]
@@ -313,7 +313,7 @@ class SignalPath:
         return v, high, low, low
 
     def _imperfect(self, axis: int, dps: float) -> float:
-        """What a real element makes of a rate.
+        """The output of a real element for a rate.
 
         CHOICE: non-linearity is the third Chebyshev polynomial, the shape whose best-fit line is zero and whose
         error touches the stated bound at both ends and twice between.

@@ -14,7 +14,7 @@ from typing import Final, Protocol
 
 
 class RegisterFile(Protocol):
-    """What the framing needs of the device."""
+    """The functions of a device that the framing uses."""
 
     def read_register(self, address: int) -> int:
         """One byte, with its side effects."""
@@ -39,7 +39,7 @@ GREATEST_CLOCK_HZ: Final = 10e6
 
 
 class SpiFrame:
-    """The transaction in progress.  `report(rule, message)` gets what breaks the framing of this `part`."""
+    """The transaction in progress.  `report(rule, message)` is called for errors in the framing of this `part`."""
 
     __slots__ = (
         "_address",
@@ -84,16 +84,16 @@ class SpiFrame:
         self._late_bit = 0
 
     def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int | None:
-        """Shift `length` bits; cpol and cpha as usual (mode = 2 cpol + cpha), and modes 0 and 3 fit this device.
+        """Shift `length` bits; cpol and cpha as usual (mode = 2 cpol + cpha).  Modes 0 and 3 fit this device.
 
-        SDO is driven from the second byte of a read on.  CHOICE: bits not driven inside a word that is driven in part
+        SDO is driven from the second byte of a read on.  CHOICE: if only a part of a word is driven, its other bits
         read 0; in modes 1 and 2 both ends sample where the other shifts, so each sees the stream one bit late.
         """
         if not self.selected:
             return None
         if length != 8 or self._bits & 7 or cpol != cpha:
             return self._exchange_bits(out_bits, length, cpol, cpha)
-        # A word that is one byte of the frame, as drivers send them: `_shift_word` would make the same of its bits.
+        # The word is one byte of the frame, as usual.  `_shift_word` would give the same result bit by bit.
         self._bits += 8
         if self._bits == 8:
             self._command = out_bits & 0xFF

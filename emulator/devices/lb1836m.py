@@ -34,7 +34,7 @@ PASSES: Final = 8
 
 @dataclass(frozen=True, slots=True)
 class Lb1836mParams:
-    """What the data sheet gives, and CHOICEs where it is silent.
+    """Values of the data sheet, and CHOICEs where it gives none.
 
     `saturation_ohm`: upper plus lower drop per ampere (0.40 V at 400 mA).  `diode_v`: one spark-killer diode.
     `brake_v`: transistor plus diode met by a freewheeling current while braking.
@@ -55,8 +55,8 @@ class Lb1836mParams:
 class Lb1836m:
     """One channel: `current(emf, resistance, inductance)` is the mean winding current for the present inputs.
 
-    Bus face: the duty wires IN1 and IN2 (their PWM periods start together; the high part comes first).
-    World face: `supply_v`, and the current that the motor asks for.
+    For the bus: the duty wires IN1 and IN2 (their PWM periods start together; the high part comes first).
+    For the world: `supply_v`, and `current`, which the motor calls.
     """
 
     __slots__ = (
@@ -106,7 +106,7 @@ class Lb1836m:
         return amps * self.polarity, slope
 
     def _latch(self, period_cycles: int, resistance: float, inductance: float) -> None:
-        """New duties, supply or winding: work out what only they decide."""
+        """Compute the values that depend only on the duties, the supply and the winding."""
         self._duty1, self._duty2 = duty1, duty2 = self.in1.duty, self.in2.duty
         self._period = period_cycles
         self._resistance_ohm, self._inductance_h, self._supply_v = resistance, inductance, self.supply_v
@@ -140,7 +140,7 @@ class Lb1836m:
         return 0.0, 0.0
 
     def _ccm(self, emf: float, total: float, drive: float) -> tuple[float, float]:
-        """Continuous conduction, positive or negative, or none in between."""
+        """The current in continuous conduction, positive or negative; zero in between."""
         off = 1.0 - drive
         forward = (drive * self.supply_v - off * self._off_v - emf) / total
         if forward > 0.0:
@@ -151,7 +151,7 @@ class Lb1836m:
         return 0.0, 0.0
 
     def _switched(self, emf: float, total: float) -> tuple[float, float]:
-        """The periodic steady state of the winding under PWM, exact while one sign of current flows."""
+        """The periodic steady state of the winding under PWM.  It is exact while the current keeps its sign."""
         a_gone, g_gone, tau, period = self._a_gone, self._g_gone, self._tau_s, self._period_s
         on = (self.supply_v - emf) / total  # where the current heads while driven
         fall = (self._off_v + emf) / total  # minus where it heads while off

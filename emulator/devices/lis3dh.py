@@ -79,10 +79,10 @@ SETTLING_PERIODS: Final = (1, 7)
 
 
 class Lis3dh:
-    """The device.  Bus face: `select`, `exchange`; world face: `set_motion_source`.
+    """The device.  For the bus: `select`, `exchange`.  For the world: `set_motion_source`.
 
-    `motion_source(cycles)` gives what a free mass feels along x, y and z in m/s2: at rest on a table (0, 0, +9.81).
-    It is asked once as a measurement begins, and at the end of each period: the mean over the period.
+    `motion_source(cycles)` returns the specific force along x, y and z in m/s2: at rest on a table (0, 0, +9.81).
+    It is called once when a measurement begins, and at the end of each period; it returns the mean over the period.
     """
 
     #: Address -> name, for who decodes the bus.
@@ -109,8 +109,8 @@ class Lis3dh:
         self.offset_g = [0.0 if ideal else rng.uniform(-OFFSET_G, OFFSET_G) for _ in range(3)]
         self._rate = 1.0 if ideal else 1.0 + rng.uniform(-ODR_SPREAD, ODR_SPREAD)
         self._event: Event | None = None
-        #: What the framing looks at: SDO always answers; the disabled axis that a transaction read, if it read no other
-        #: (else -1).
+        #: Read by the framing: whether SDO answers (always); the disabled axis that a transaction read, if it read no
+        #: other axis (else -1).
         self.four_wire = True
         self.idle_axis = -1
         self._enabled_read = False
@@ -132,14 +132,14 @@ class Lis3dh:
         self._period = 0
         self._base = 0
         self._taken = 0
-        #: Left-justified words; the newest, while a read holds back the registers (BDU); halves that were read.
+        #: Left-justified output words; the newest words while a read holds the outputs (BDU); halves that were read.
         self._words = [0, 0, 0]
         self._newer: list[int | None] = [None, None, None]
         self._halves = [0, 0, 0]
         self._status = 0
 
     def set_motion_source(self, source: Callable[[int], tuple[float, float, float]]) -> None:
-        """What moves it from now on."""
+        """Set the source of its motion from now on."""
         self.motion_source = source
 
     def select(self, level: int) -> None:
@@ -147,7 +147,7 @@ class Lis3dh:
         self._spi.select(level)
         self._enabled_read = False
 
-    # What CTRL_REG1 and CTRL_REG4 say
+    # The settings in CTRL_REG1 and CTRL_REG4
 
     @property
     def mode(self) -> tuple[int, tuple[int, int, int, int]]:
@@ -163,7 +163,7 @@ class Lis3dh:
         rates = LOW_POWER_ODR_HZ if self.registers[CTRL_REG1] & 8 else ODR_HZ
         return rates[setting] if setting < len(rates) else 0
 
-    # The register file, as the framing wants it
+    # The register file, for the framing
 
     def after(self, address: int) -> int:
         """The address that follows in a burst."""
@@ -176,7 +176,7 @@ class Lis3dh:
         self.idle_axis = -1
 
     def _idle(self, axis: int, field: str, why: str) -> None:
-        """An output was read that nothing fills."""
+        """Report the read of an output that is never filled."""
         self._report(
             "not-configured",
             f"LIS3DH.OUT_{'XYZ'[axis]} was read while CTRL_REG1.{field} = 0: {why}, and the value is old",
@@ -238,7 +238,7 @@ class Lis3dh:
                 self._words[axis] = newer
                 self._newer[axis] = None
         if high:
-            # CHOICE: as the gyro of this maker: the high byte takes the sample away.
+            # CHOICE: as in the gyro of this maker, reading the high byte takes the sample away.
             self._status &= ~(0x11 << axis)
         # BLE swaps the bytes, in high resolution alone.
         big = self.registers[CTRL_REG4] & 0x48 == 0x48

@@ -53,10 +53,10 @@ _BAUD: Final = 9600
 
 
 class SonarAir:
-    """What the sensors of one robot share: they hear each other's pings.
+    """The air that the sensors of one robot share: they hear each other's pings.
 
-    `cross_source(from_name, to_name, cycles)` is the path length in metres from a ping by way of a reflector to the
-    other sensor, or None when nothing arrives.  It is asked only when the other sensor listens within 38 ms.
+    `cross_source(from_name, to_name, cycles)` is the path length in metres of a ping by way of a reflector to the
+    other sensor, or None when nothing arrives.  It is called only when the other sensor listens within 38 ms.
     """
 
     __slots__ = ("_sensors", "cross_source")
@@ -66,7 +66,7 @@ class SonarAir:
         self._sensors: list[LvMaxSonar] = []
 
     def set_cross_source(self, source: Callable[[str, str, int], float | None]) -> None:
-        """What carries a ping from one sensor to another from now on."""
+        """Set the source of path lengths from one sensor to another from now on."""
         self.cross_source = source
 
     def add(self, sensor: LvMaxSonar) -> None:
@@ -79,7 +79,7 @@ class SonarAir:
         return any(sensor.busy or sensor.readings for sensor in self._sensors)
 
     def ping(self, source: LvMaxSonar, cycles: int) -> None:
-        """`source` pings now: those who listen may hear it, and it may hear what was sent just before."""
+        """`source` pings now.  Sensors that listen may hear it, and it may hear pings that were sent just before."""
         for other in self._sensors:
             if other is source:
                 continue
@@ -97,8 +97,8 @@ class SonarAir:
 class LvMaxSonar:
     """One sensor.
 
-    Bus face: `rx` (start), `tx` (chaining pulse, driven), `analog` (AN), optional `pw` and `serial` (with
-    `bw_high=False`).  World face: `range_source(name, cycles)`, asked at each ping; `last_reading_in`,
+    For the bus: `rx` (start), `tx` (chaining pulse, driven), `analog` (AN), optional `pw` and `serial` (with
+    `bw_high=False`).  For the world: `range_source(name, cycles)`, called at each ping; `last_reading_in`,
     `last_ping_cycles`, `readings`.  `period_factor` is this specimen's cycle relative to 49 ms.
     """
 
@@ -124,7 +124,7 @@ class LvMaxSonar:
         report: DeviceReport | None = None,
         mark: Callable[[], Mark] | None = None,
     ) -> None:
-        """`powered_up`: power came on long ago, nobody has asked for a range yet; it waits for its first command."""
+        """`powered_up`: power came on long ago, and the sensor waits for its first command."""
         if not 2.5 <= vcc_v <= 5.5:
             raise ValueError(f"LV-MaxSonar {name}: supply {vcc_v} V; want 2.5 to 5.5 V")
         if not 0.9 <= period_factor <= 1.1:
@@ -140,11 +140,11 @@ class LvMaxSonar:
         self.air = air or SonarAir()
         self.air.add(self)
         self._period_factor = period_factor
-        #: How many times longer than they should its times are, counted in cycles.
+        #: The factor by which its times, in cycles, are longer than they should be.
         self._longer = 1.0
         self.cycle_cycles = self.lasts(CYCLE_CYCLES * period_factor)
         self.bw_high = bw_high
-        #: Reading of the latest ping in inches (0 before the first), its time, and how many there were.
+        #: The reading of the latest ping in inches (0 before the first), its time, and the number of readings.
         self.last_reading_in = 0
         self.last_ping_cycles = 0
         self.readings = 0
@@ -192,30 +192,33 @@ class LvMaxSonar:
 
     @property
     def idle(self) -> bool:
-        """Whether nobody has ever started it, nor another sensor of its ring."""
+        """Whether neither it nor another sensor of its ring has ever been started."""
         return self._ready and not self.air.started
 
     @property
     def blind_in(self) -> int | None:
-        """Distance at which an object stood too near during calibration and is ignored since, in inches."""
+        """The distance in inches of an object that was too near during calibration and has been ignored since."""
         return self._blind_in
 
     def set_range_source(self, source: Callable[[str, int], Echo | None]) -> None:
-        """What it sees from now on."""
+        """Set the source of its ranges from now on."""
         self.range_source = source
 
     def set_second(self, cycles: float) -> None:
-        """What a second of its own oscillator lasts, from the next cycle of ranging on."""
+        """Set the length of a second of its own oscillator, from the next ranging cycle on."""
         self._longer = cycles / SYSCLK_HZ
         self.cycle_cycles = self.lasts(CYCLE_CYCLES * self._period_factor)
         self.held.rise_tau = RISE_TAU * self._longer
 
     def lasts(self, cycles: float) -> int:
-        """What a time of its own lasts, that should last so many cycles."""
+        """The true length of a time of its own that should last `cycles`."""
         return round(cycles * self._longer)
 
     def set_power(self, on: bool) -> None:
-        """Its supply breaks in, or comes back: all is forgotten, AN and TX are at ground, and it starts up again."""
+        """Its supply fails, or comes back.
+
+        Without supply it forgets all, and AN and TX are at ground.  With supply it starts up again.
+        """
         for event in (self._next, self._start, self._pw_fall, self._tx_fall):
             self.clock.cancel(event)
         self._start = None
@@ -223,7 +226,7 @@ class LvMaxSonar:
         self.last_reading_in = self.ping_interval = self.listening_until = 0
         self._blind_in = None
         self.held.move(0.0, self.clock.now, self.clock.now, finish=True)
-        # Who reads it now is not told that it has measured nothing yet: it had.
+        # A read is not reported as one before the first measurement: the sensor had measured before.
         self.held.tell(None)
         self._lower_tx()
         self._lower_pw()
@@ -231,7 +234,7 @@ class LvMaxSonar:
             self._next = self.clock.after(self.lasts(POWER_UP_CYCLES), self._powered_up)
 
     def hear(self, cycles: int) -> None:
-        """Another sensor's sound arrives at `cycles`: a phantom, when it comes before the own echo."""
+        """Another sensor's sound arrives at `cycles`.  Before the sensor's own echo, it gives a phantom range."""
         flight = cycles - self.last_ping_cycles
         if flight > 0 and cycles < self.listening_until:
             phantom = self._inches(flight / self._longer / PER_INCH_CYCLES)
@@ -246,7 +249,7 @@ class LvMaxSonar:
             self._begin()
 
     def _rx_changed(self, level: int) -> None:
-        """RX counts when it has been high for 20 us; in a cycle only its level at the end does."""
+        """RX has changed.  It counts after 20 us of high level; within a cycle only its level at the end counts."""
         if not level:
             self.clock.cancel(self._start)
             self._start = None
@@ -304,7 +307,7 @@ class LvMaxSonar:
         return self._rng.random() < echo.strength
 
     def _inches(self, flight_in: float) -> int:
-        """A time of flight, in inches of 147 us, as the sensor reports it.  The part below a whole inch is dropped."""
+        """The range that the sensor reports for a time of flight in inches (of 147 us).  It is cut to whole inches."""
         if flight_in == math.inf:
             return NOTHING_IN
         measured = flight_in * self._scale
@@ -316,7 +319,7 @@ class LvMaxSonar:
         return max(FLOOR_IN, inches)
 
     def _settle(self, reading_in: int, echo: int) -> None:
-        """The result of this cycle is known at `echo`: the analog value begins to move, PW falls."""
+        """The result of this cycle is known at `echo`: the analog value begins to move, and PW falls."""
         self.last_reading_in = reading_in
         self.held.move(
             reading_in * self.vcc_v / 512.0,

@@ -19,12 +19,12 @@ from emulator.clock import CYCLES_PER_US, NEVER
 #: is why only long ranges after short ones fall short.
 RISE_TAU: Final = 6_800 * CYCLES_PER_US / math.log(10.0)
 
-#: Ripple is constant for so many cycles.
+#: The ripple is constant for this many cycles.
 _RIPPLE_HOLD: Final = 100 * CYCLES_PER_US
 
 
 class HeldVoltage:
-    """`volts(cycles)` is the source of the analog wire.  `ripple_v` is its greatest deviation, `salt` its seed."""
+    """`volts(cycles)` is the source of the analog wire.  `ripple_v` is the greatest ripple, `salt` its seed."""
 
     __slots__ = (
         "_calm_from", "_calm_until", "_calm_v", "_converted", "_linear", "_quiet_until", "_ripple_now", "_slot",
@@ -35,22 +35,22 @@ class HeldVoltage:
         self, volts: float, ripple_v: float = 0.0, salt: int = 0,
         converted: Callable[[HeldVoltage, int, float], int] | None = None,
     ) -> None:  # fmt: skip
-        """`converted(this, cycles, volts)` is told of a conversion, and returns when it wants to hear of the next."""
+        """`converted(this, cycles, volts)` is called at a conversion; it returns when it must be called next."""
         self.ripple_v = ripple_v
         self.salt = salt
         self.rise_tau = RISE_TAU
         # The ripple of the latest slot.
         self._slot = -1
         self._ripple_now = 0.0
-        #: The move that was ordered last: cycles and volts.
+        #: The latest move: cycles and volts.
         self.start = 0
         self.end = 0
         self.from_v = volts
         self.target_v = volts
-        #: What is held from `end` on.
+        #: The voltage that is held from `end` on.
         self._steady_v = volts
         self._linear = True
-        # From one cycle until another nothing moves and the voltage is this: samples come in groups.
+        # The voltage and the cycles for which it does not change.  Samples come in groups, so this saves time.
         self._calm_from = 0
         self._calm_until = 0
         self._calm_v = volts
@@ -58,7 +58,7 @@ class HeldVoltage:
         self._quiet_until = 0
 
     def tell(self, converted: Callable[[HeldVoltage, int, float], int] | None) -> None:
-        """Who is told of conversions from now on."""
+        """Set the function that is called at conversions from now on."""
         self._converted = converted
         self._calm_from = self._calm_until = self._quiet_until = 0
 
@@ -120,7 +120,7 @@ class HeldVoltage:
         return self.from_v + step * -math.expm1(-(cycles - self.start) / self.rise_tau)
 
     def _noise(self, slot: int) -> float:
-        """-1..1, the same for the same slot: asking twice, or never, changes nothing."""
+        """A value in -1..1 that depends only on the slot, however often it is asked for."""
         h = (slot * 0x9E3779B1 ^ self.salt * 0x85EBCA6B) & 0xFFFFFFFF
         h = (h ^ h >> 15) * 0x2C1B3C6D & 0xFFFFFFFF
         h = (h ^ h >> 12) * 0x297A2D39 & 0xFFFFFFFF

@@ -1,4 +1,4 @@
-"""What the LV-MaxSonar-EZ hears: the beam as pure functions, for the world that casts the rays.
+"""What the LV-MaxSonar-EZ detects: the beam as pure functions, for the world that casts the rays.
 
 Modelled: walls as mirrors (detection by the angle between boresight and the perpendicular), small round objects by
 diameter, range and bearing, order of several reflectors.
@@ -16,7 +16,7 @@ from typing import Final
 
 INCH_M: Final = 0.0254
 
-#: CHOICE: a wall is certain to be heard up to A0 off its perpendicular, never beyond A1, with a straight line between.
+#: CHOICE: a wall is always heard up to A0 off its perpendicular, never beyond A1; in between the chance falls linearly.
 A0_RAD: Final = math.radians(20.0)
 A1_RAD: Final = math.radians(30.0)
 
@@ -42,7 +42,7 @@ class Echo:
 
 
 def detection_probability(incidence_rad: float) -> float:
-    """How surely a plane wall is heard whose perpendicular is `incidence_rad` off the boresight."""
+    """The probability that a plane wall is heard whose perpendicular is `incidence_rad` off the boresight."""
     angle = abs(incidence_rad)
     if angle <= A0_RAD:
         return 1.0
@@ -72,7 +72,7 @@ def object_range_m(diameter_m: float, vcc_v: float = 3.3) -> float:
 
 
 def object_detection_probability(diameter_m: float, range_m: float, bearing_rad: float, vcc_v: float = 3.3) -> float:
-    """How surely a round object at `range_m` and `bearing_rad` off the boresight is heard."""
+    """The probability that a round object at `range_m` and `bearing_rad` off the boresight is heard."""
     angle = abs(bearing_rad)
     if range_m > object_range_m(diameter_m, vcc_v) or angle >= OBJECT_LIMIT_RAD:
         return 0.0

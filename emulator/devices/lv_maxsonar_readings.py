@@ -1,14 +1,14 @@
-"""What a driver makes of the AN output of an LV-MaxSonar-EZ: converted too early, in its slew, or again and again.
+"""Finds drivers that convert the AN output of an LV-MaxSonar-EZ too early, while it moves, or too often.
 
 Nothing here changes the voltage.  Conversions less than `SAME_READING_CYCLES` apart are one reading: the mean of a
-burst takes the converter's noise out and is no new range.  Told is (CHOICE of the figures):
+burst removes the converter's noise and is no new range.  Reported are (CHOICE of the figures):
 
 * `stale-sample`: three readings of one held range within one cycle of the sensor (49 ms);
 * `slew-read`: a voltage that is more than `NEITHER_IN` inches from the range before and from the range to come;
 * `startup-read`: a reading before the first range has settled; `not-configured`: nobody has asked for a range.
 
-The converter asks for the voltage very often.  `converted` is therefore asked only at the first conversion of a
-reading, and says until when the next ones need not be told.
+The converter reads the voltage very often.  So `converted` is called only at the first conversion of a reading.  It
+returns until when it need not be called again.
 Sources: EZ pin description AN, timing description (AN moves until 44.3 ms of the cycle, then holds).
 """
 
@@ -23,12 +23,12 @@ from emulator.devices.report import DeviceReport, Mark
 
 SAME_READING_CYCLES: Final = CYCLES_PER_MS
 NEITHER_IN: Final = 2.0
-#: Ranges that are not looked at after one that was told: calls cost time to remember.
+#: This many ranges are not checked after one that was reported, because keeping the calls takes time.
 PAUSE: Final = 15
 
 
 class Ranging(Protocol):
-    """What is asked of the sensor."""
+    """The properties of the sensor that are used here."""
 
     name: str
     vcc_v: float
@@ -38,7 +38,7 @@ class Ranging(Protocol):
 
     @property
     def idle(self) -> bool:
-        """Ready, and never started."""
+        """Whether the sensor is ready and was never started."""
 
 
 class SonarReadings:
@@ -50,13 +50,13 @@ class SonarReadings:
 
     def __init__(self, sensor: Ranging, report: DeviceReport, mark: Callable[[], Mark]) -> None:
         self._sensor, self._report, self._mark = sensor, report, mark
-        #: Ranges whose readings need not be counted.
+        #: The number of ranges whose readings need not be counted.
         self._pause = 0
         self.moved()
 
     def moved(self) -> None:
         """A new range is on its way."""
-        #: Times of the readings of the held range that count, newest last; the calls of the last one.
+        #: The times of the readings that count for the held range, newest last; the calls of the last one.
         self._times: list[int] = []
         self._mark_then: Mark = ()
         self._counting = not self._pause
@@ -64,7 +64,7 @@ class SonarReadings:
         self._slew_told = False
 
     def converted(self, held: HeldVoltage, cycles: int, volts: float) -> int:
-        """AN, which is `held`, was converted at `cycles`: returns until when nothing needs to be told."""
+        """AN (`held`) was converted at `cycles`.  Returns until when it need not be called again."""
         sensor = self._sensor
         first = sensor.readings == 0 or (sensor.readings == 1 and cycles < held.end)
         if first:
@@ -110,7 +110,7 @@ class SonarReadings:
                 "stale-sample", message, object=f"sonar {sensor.name} AN", value=times, since=self._mark_then
             )
             if finding is not None and isinstance(finding.value, int) and times > finding.value:
-                # Only from the second range on is it known how long one is held.
+                # How long a range is held is known only from the second range on.
                 finding.value, finding.message = times, message
             elif sensor.ping_interval:
                 self._pause = PAUSE

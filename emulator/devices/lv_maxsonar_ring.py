@@ -75,16 +75,16 @@ class SonarRing:
         close_ring(rx, start)
 
     def set_second(self, cycles: float) -> None:
-        """What a second of the sensors' own oscillators lasts from now on."""
+        """Set the length of a second of the sensors' own oscillators from now on."""
         for sensor in self.sensors.values():
             sensor.set_second(cycles)
 
     def set_power(self, on: bool) -> None:
-        """The supply of all breaks in, or comes back."""
+        """The supply of all sensors fails, or comes back."""
         for sensor in self.sensors.values():
             sensor.set_power(on)
 
     def set_range_source(self, source: Callable[[str, int], Echo | None]) -> None:
-        """What each sensor sees from now on."""
+        """Set the source of ranges of each sensor from now on."""
         for sensor in self.sensors.values():
             sensor.set_range_source(source)

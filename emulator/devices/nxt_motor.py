@@ -65,9 +65,10 @@ class NxtMotorParams:
 
 
 class NxtMotor:
-    """Motor, gear and encoder.  Positive current turns the shaft in the positive sense, A leads B.
+    """Motor, gear and encoder.  Positive current turns the shaft in the positive sense; then A leads B.
 
-    Bus face: the bridge's duty wires and `encoder`.  World face: `angle_rad`, `omega_rad_s`, `torque_line`, `turn`.
+    For the bus: the bridge's duty wires and `encoder`.  For the world: `angle_rad`, `omega_rad_s`, `torque_line`,
+    `turn`.
     """
 
     __slots__ = (
@@ -79,9 +80,9 @@ class NxtMotor:
         self.encoder = encoder
         self.params = params or NxtMotorParams()
         self.omega_rad_s = 0.0
-        #: What a second lasts: more or less than it should where the oscillator that counts is wrong.
+        #: The length of a second in cycles.  It differs from the nominal one if the chip's oscillator is wrong.
         self.second_cycles = float(SYSCLK_HZ)
-        #: Half an edge into the first count: a shaft at rest does not sit on the brink of an edge.
+        #: The shaft starts half an edge into the first count, so that a shaft at rest is not just at an edge.
         self.angle_rad = 0.5 / _EDGES_PER_RAD
         self._edge = 0
         self._last_edge_cycles = 0
@@ -94,9 +95,9 @@ class NxtMotor:
         return self.bridge.current(emf, params.resistance_ohm, params.inductance_h)[0]
 
     def torque_line(self, omega_rad_s: float) -> tuple[float, float]:
-        """Torque near this speed as `intercept - slope * omega` in N.m and N.m.s, dry friction left out.
+        """Torque near this speed as `intercept - slope * omega`, in N.m and N.m.s, without dry friction.
 
-        Exact where the bridge conducts continuously, the tangent elsewhere.
+        It is exact where the bridge conducts continuously; elsewhere it is the tangent.
         """
         params = self.params
         kb, kt = params.back_emf_v_s, params.torque_nm_per_a
@@ -105,7 +106,7 @@ class NxtMotor:
         return kt * amps + slope * omega_rad_s, slope + params.viscous_nm_s
 
     def turn(self, delta_rad: float, start_cycles: int, end_cycles: int, omega_start_rad_s: float) -> None:
-        """The shaft moved by `delta_rad`, one way, at constant acceleration from `omega_start_rad_s`: report edges."""
+        """Report the edges of a turn by `delta_rad`, one way, at constant acceleration from `omega_start_rad_s`."""
         angle = self.angle_rad
         after = angle + delta_rad
         self.angle_rad = after
@@ -137,7 +138,7 @@ class NxtMotor:
         self.encoder.move(edges, begin, last_at)
 
     def spin(self, start_cycles: int, end_cycles: int, load_nm: float = 0.0, max_step_s: float = 0.005) -> None:
-        """Integrate a shaft that carries nothing but its rotor and a constant opposing `load_nm` (>= 0)."""
+        """Integrate a shaft with only its rotor and a constant opposing `load_nm` (>= 0)."""
         params = self.params
         dry = params.coulomb_nm + load_nm
         total = (end_cycles - start_cycles) / self.second_cycles

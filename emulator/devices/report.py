@@ -1,9 +1,9 @@
-"""How a device tells what a driver does wrong, and at which of its statements.
+"""How a device reports mistakes of a driver, and at which statement.
 
-A driver reaches a device through functions of its own: the statement that executes when a word has gone over the bus is
-that of the transfer function, for good and for bad.  What is wrong about two accesses together (one sample taken twice)
-is decided where both come from: the innermost call that is still the same.  A mark keeps the calls of one access, and a
-report `since` a mark stands at the statement of that call.  Who keeps findings and calls is the board's business.
+A driver reaches a device through functions of its own.  When a word has gone over the bus, the executing statement is
+always that of the transfer function.  A mistake in two accesses together (one sample taken twice) comes from the code
+that made both: the innermost call that both share.  A mark keeps the calls of one access.  A report `since` a mark has
+the statement of that shared call as its place.  The board keeps findings and calls.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ Mark = tuple[Any, ...]
 
 
 class ReportedFinding(Protocol):
-    """What has been told, whose numbers may grow."""
+    """A finding whose numbers may still grow."""
 
     message: str
     value: Any
 
 
 def shared(a: Mark, b: Mark) -> Mark:
-    """The innermost call that two marks share, from which on they are the same outwards; empty if there is none."""
+    """The innermost call that two marks share; all calls around it are the same too.  Empty if there is none."""
     calls = set()
     while a:
         calls.add(id(a))
@@ -34,7 +34,7 @@ def shared(a: Mark, b: Mark) -> Mark:
 
 
 class DeviceReport(Protocol):
-    """What a device calls.  Returns the finding, so that its numbers can grow; None if nothing keeps it."""
+    """The report function of a device.  Returns the finding, so that its numbers can grow; None if it is not kept."""
 
     def __call__(
         self, rule: str, message: str, /, *, object: str = "", value: Any = None, since: Mark | None = None
@@ -43,10 +43,10 @@ class DeviceReport(Protocol):
 
 
 class Silent:
-    """The report of a device that nobody listens to."""
+    """The report function of a device whose reports are not kept."""
 
     def __call__(
         self, rule: str, message: str, /, *, object: str = "", value: Any = None, since: Mark | None = None
     ) -> ReportedFinding | None:
-        """Nothing."""
+        """Do nothing."""
         return None

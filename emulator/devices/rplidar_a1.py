@@ -1,4 +1,4 @@
-"""RPLIDAR A1M8: a laser that turns and tells the distance all around, over a serial line.
+"""RPLIDAR A1M8: a turning laser scanner that sends the distances all around over a serial line.
 
 Modelled: requests STOP, RESET, SCAN, FORCE_SCAN, GET_INFO, GET_HEALTH with response descriptors and data; requests with
 a payload and a checksum; the 5 s in which a request must be complete, the pauses behind STOP and RESET; 2000
@@ -37,7 +37,7 @@ NEAREST_M: Final = 0.15
 FARTHEST_M: Final = 6.0
 #: All bytes of a request must have come within this time.
 REQUEST_CYCLES: Final = 5000 * CYCLES_PER_MS
-#: CHOICE: in the pause that a host must leave behind STOP and RESET it takes nothing in.
+#: CHOICE: in the pause that a host must leave after STOP and RESET, it accepts no bytes.
 STOP_PAUSE_CYCLES: Final = 1 * CYCLES_PER_MS
 RESET_PAUSE_CYCLES: Final = 2 * CYCLES_PER_MS
 
@@ -48,7 +48,7 @@ SCAN: Final = 0x20
 FORCE_SCAN: Final = 0x21
 GET_INFO: Final = 0x50
 GET_HEALTH: Final = 0x52
-#: What newer firmware, other models or an accessory board know besides (`sl_lidar_cmd.h`).
+#: Further requests of newer firmware, other models or an accessory board (`sl_lidar_cmd.h`).
 _NEWER: Final = {
     0x59: "GET_SAMPLERATE", 0x82: "EXPRESS_SCAN", 0x83: "HQ_SCAN", 0x84: "GET_LIDAR_CONF", 0x85: "SET_LIDAR_CONF",
     0x90: "NEW_BAUDRATE_CONFIRM", 0xA8: "HQ_MOTOR_SPEED_CTRL", 0xF0: "SET_MOTOR_PWM", 0xFF: "GET_ACC_BOARD_FLAG",
@@ -60,7 +60,7 @@ SCAN_DESCRIPTOR: Final = bytes.fromhex("a55a0500004081")
 INFO_DESCRIPTOR: Final = bytes.fromhex("a55a1400000004")
 HEALTH_DESCRIPTOR: Final = bytes.fromhex("a55a0300000006")
 
-#: CHOICE: what it says about a sample that met something; one that did not has 0.
+#: CHOICE: the quality of a sample that hit something; a sample without an echo has 0.
 QUALITY: Final = 15
 #: The sheet says less than 1 % of the distance.  CHOICE: that is three standard deviations, and never more.
 ERROR_LIMIT: Final = 0.01
@@ -69,9 +69,10 @@ MOTOR_SPREAD: Final = 0.03
 
 
 class RplidarA1:
-    """The device.  Bus face: two serial lines, `line_in` with what the host sends; world face: `set_distance_source`.
+    """The device.  For the bus: two serial lines; `line_in` carries the bytes of the host.  For the world:
+    `set_distance_source`.
 
-    `distance_source(clockwise_rad, cycles)` gives metres to what stands in this direction, inf for nothing; 0 is
+    `distance_source(clockwise_rad, cycles)` returns the distance in metres in this direction, inf for nothing; 0 is
     straight ahead.
     """
 
@@ -101,7 +102,7 @@ class RplidarA1:
         self._busy_until = 0
         self._event: Event | None = None
         self._turn = 0
-        #: Requests obeyed; requests given up, and bytes that belong to none or came broken.
+        #: The number of requests carried out; that of requests given up, and of bytes outside of requests or broken.
         self.obeyed = 0
         self.discarded = 0
         line_in.sent.connect(self._frame)
@@ -112,11 +113,11 @@ class RplidarA1:
         return self._event is not None
 
     def set_distance_source(self, source: Callable[[float, int], float]) -> None:
-        """What stands around it from now on."""
+        """Set the source of distances from now on."""
         self.distance_source = source
 
     def angle_rad(self, cycles: int) -> float:
-        """Where the laser looks, clockwise from ahead."""
+        """The direction of the laser, clockwise from straight ahead."""
         return tau * (cycles % self.turn_cycles) / self.turn_cycles
 
     # Requests
@@ -129,7 +130,7 @@ class RplidarA1:
             self.discarded += 1
 
     def receive(self, byte: int) -> None:
-        """One byte of the host."""
+        """Take one byte from the host."""
         request, now = self._request, self._clock.now
         if request and now - self._began > REQUEST_CYCLES:
             request.clear()
@@ -183,7 +184,7 @@ class RplidarA1:
         self.obeyed += 1
 
     def _answer(self, data: bytes) -> None:
-        """CHOICE: until an answer is out it takes no other request in: the sheet wants a host to wait for it."""
+        """CHOICE: it accepts no other request until an answer is sent: by the sheet a host must wait for the answer."""
         self._pacer.send(data)
         self._busy_until = self._pacer.idle_at
 
@@ -203,7 +204,7 @@ class RplidarA1:
         self._pacer.send(sample(angle, self._measured_m(self.distance_source(angle, now)), begins))
 
     def _measured_m(self, distance_m: float) -> float:
-        """What it makes of a distance; 0 where it has no echo."""
+        """The distance that it measures; 0 without an echo."""
         if not NEAREST_M <= distance_m <= FARTHEST_M:
             return 0.0
         if self._ideal:

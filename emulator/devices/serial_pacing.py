@@ -1,4 +1,4 @@
-"""Characters on a serial line at their exact times, and what a receiver of another speed makes of them.
+"""Characters on a serial line at their exact times, and how a receiver of another speed decodes them.
 
 Modelled: 8N1 frames back to back, fractional bit times without drift, reception at the middle of the receiver's bits.
 Not modelled: parity, noise on the line, characters run together by a speed that is far off.
@@ -41,11 +41,11 @@ class LinePacer:
 
     @property
     def idle_at(self) -> int:
-        """When the last queued byte's stop bit ends; now, if there is none."""
+        """The cycle when the stop bit of the last queued byte ends; now if no byte is queued."""
         return self._edge(self._sent + len(self._queue)) if self._queue else self._clock.now
 
     def set_baud(self, baud: int) -> None:
-        """Another speed from the next character on; the one on the line is finished at the old speed."""
+        """Set the speed from the next character on.  The character on the line ends at the old speed."""
         if baud <= 0:
             raise ValueError(f"line {self._line.name}: {baud} baud; want more than 0")
         self._next_baud = baud
@@ -57,7 +57,7 @@ class LinePacer:
             self._restart(self._clock.now)
 
     def clear(self) -> None:
-        """Drop what waits, the character on the line included."""
+        """Drop all waiting characters, and the one on the line."""
         self._queue.clear()
         self._clock.cancel(self._event)
         self._event = None
@@ -87,9 +87,9 @@ class LinePacer:
 
 
 def received(frame: SerialFrame, bit_cycles: float) -> tuple[int, bool]:
-    """The byte that a receiver with its own bit time takes from a frame, and whether its stop bit was high.
+    """The byte that a receiver with its own bit time decodes from a frame, and whether the stop bit was high.
 
-    It samples the middle of each bit, counted from the start bit's edge; after the frame the line is idle (high).
+    It samples the middle of each bit, counted from the start bit's edge.  After the frame the line is idle (high).
     """
     ratio = bit_cycles / frame.bit_cycles
     if frame.data_bits == 8 and frame.parity is None and 0.98 < ratio < 1.02:

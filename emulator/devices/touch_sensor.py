@@ -23,10 +23,10 @@ MAX_BOUNCES: Final = 4
 
 
 class TouchSensor:
-    """The switch on `pin`.  `pull_up_ohm` None leaves the pull to the pin itself (it floats without one).
+    """The switch on `pin`.  With `pull_up_ohm` None the pin's own pull counts (without one the pin floats).
 
-    `threshold_v` is where the pin's input changes (CHOICE: half of 0.8 V and 2.0 V; between those no level is
-    guaranteed, and `guaranteed_low` tells).
+    `threshold_v` is where the pin's input changes (CHOICE: half-way between 0.8 V and 2.0 V; between those no level is
+    guaranteed, and `guaranteed_low` tells whether a closed switch is surely low).
     """
 
     def __init__(
@@ -47,9 +47,9 @@ class TouchSensor:
         self.pin = pin
         self.ideal = ideal
         self.pressed = False
-        #: (pressed): the button is pushed, or let go.
+        #: (pressed): the button is pressed or released.
         self.pressed_changed: Signal[bool] = Signal()
-        #: What `press` said last, and what `feed` says against it.
+        #: The last argument of `press`, and of `feed`, which overrides it.
         self._asked = False
         self._fed: bool | None = None
         self._closed = False
@@ -64,13 +64,13 @@ class TouchSensor:
             pin.set_pull(1)
 
     def press(self, pressed: bool) -> None:
-        """Push the button or let it go, now; while it is fed, that counts afterwards."""
+        """Press or release the button now.  While `feed` overrides it, this takes effect afterwards."""
         self._asked = pressed
         if self._fed is None:
             self._push(pressed)
 
     def feed(self, pressed: bool | None) -> None:
-        """Push it or let it go whatever `press` says, from now on; None: as `press` says."""
+        """Press or release the button from now on, whatever `press` says.  None: `press` counts again."""
         self._fed = pressed
         self._push(self._asked if pressed is None else pressed)
 
@@ -87,7 +87,7 @@ class TouchSensor:
         self.pressed_changed.emit(pressed)
 
     def _plan_bounces(self, final: bool) -> None:
-        """Pairs of changes after the first contact; the last one, to the final state, ends the bounce."""
+        """Schedule pairs of changes after the first contact; the last change, to the final state, ends the bounce."""
         duration = self._rng.randint(*BOUNCE_CYCLES)
         bounces = self._rng.randint(1, MAX_BOUNCES)
         inside = sorted(self._rng.sample(range(CYCLES_PER_US, duration), 2 * bounces - 1))

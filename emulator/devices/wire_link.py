@@ -19,8 +19,8 @@ from emulator.signals import SerialFrame, SerialLine
 class WireLink:
     """PC side: `feed`, `pending_to_robot`, `received`; robot side: two serial lines.
 
-    `uart_in` carries what the robot sends, `uart_out` what it receives.  `feed` takes everything; whoever feeds looks
-    at `pending_to_robot` and holds a fast writer back.
+    `uart_in` carries the bytes that the robot sends, `uart_out` those that it receives.  `feed` takes any number of
+    bytes; its caller reads `pending_to_robot` and slows a fast writer down.
     """
 
     def __init__(
@@ -32,7 +32,7 @@ class WireLink:
         baud: int = 9600,
         report: Callable[[str, str], object] | None = None,
     ) -> None:
-        #: (data, cycles): the PC has bytes of the robot.
+        #: (data, cycles): the PC has received bytes from the robot.
         self.received: Signal[bytes, int] = Signal()
         #: Characters from the robot whose stop bit was not seen.  CHOICE: dropped, as a PC's UART marks them.
         self.framing_errors = 0

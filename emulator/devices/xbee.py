@@ -23,7 +23,7 @@ from emulator.signal import Signal
 from emulator.signals import SerialFrame, SerialLine, Wire
 
 DI_BYTES: Final = 202
-#: CTS is taken away when so few bytes are left, and given back when so many are.
+#: CTS is withdrawn when only this many bytes are free, and given back when this many are free.
 CTS_OFF_FREE: Final = 17
 CTS_ON_FREE: Final = 34
 PACKET_BYTES: Final = 100
@@ -32,7 +32,7 @@ DO_BYTES: Final = 202
 
 
 class XBeeModule:
-    """One module.  Bus face: `din`, `dout` (serial lines) and `cts` (0 = go on); world face: the `air` it shares.
+    """One module.  For the bus: `din`, `dout` (serial lines) and `cts` (0 = go on).  For the world: its `air`.
 
     Counters: `di_overflow` bytes and `do_dropped` bytes lost silently, `framing_errors` characters not understood.
     """
@@ -76,21 +76,21 @@ class XBeeModule:
         air.join(self)
         din.sent.connect(self._from_host)
 
-    # What others ask
+    # State for other parts
 
     @property
     def command_mode(self) -> bool:
-        """Whether the host talks to the module rather than through it."""
+        """Whether the module is in command mode: the host talks to it, not to the other end."""
         return self._command.active
 
     @property
     def bytes_from_host(self) -> int:
-        """Bytes that came from the host and have not reached the air's other end."""
+        """The number of bytes from the host that have not reached the other module."""
         return len(self._di) + self._command.held + self.air.flying(self)
 
     @property
     def bytes_to_host(self) -> int:
-        """Bytes for the host whose stop bit has not ended."""
+        """The number of bytes for the host whose stop bit has not ended."""
         return self._pacer.pending + len(self._held_back)
 
     @property
@@ -111,7 +111,7 @@ class XBeeModule:
             self._buffer(byte)
 
     def _buffer(self, byte: int) -> None:
-        """Into the DI buffer; RO restarts at the end of each character (CHOICE: not at its start bit)."""
+        """Put a byte into the DI buffer.  RO restarts at the end of each character (CHOICE: not at its start bit)."""
         if len(self._di) >= DI_BYTES:
             self.di_overflow += 1
             return
@@ -140,7 +140,7 @@ class XBeeModule:
         self._send_packet()
 
     def _send_packet(self) -> None:
-        """One packet of what is due, as soon as the air is free; bytes go on gathering meanwhile."""
+        """Send one packet of the bytes that are due, as soon as the air is free.  Bytes go on gathering meanwhile."""
         if not self._due:
             return
         if self.air.busy:
@@ -169,7 +169,7 @@ class XBeeModule:
         self._send_packet()
 
     def radio_received(self, payload: bytes) -> None:
-        """A packet: taken whole or dropped whole.  CHOICE: in command mode it waits for the end of that mode."""
+        """A packet arrived: it is taken or dropped as a whole.  CHOICE: in command mode it waits for the mode's end."""
         if self.bytes_to_host + len(payload) > DO_BYTES:
             self.do_dropped += len(payload)
         elif self._command.active:
@@ -178,33 +178,33 @@ class XBeeModule:
             self._pacer.send(payload)
 
     def radio_failed(self) -> None:
-        """No acknowledgement after all tries: only the EA counter tells."""
+        """No acknowledgement after all tries.  Only the EA counter shows it."""
         working = self.settings.working
         working["EA"] = min(working["EA"] + 1, 0xFFFF)
 
     # Command mode
 
     def command_entered(self) -> None:
-        """Data buffered so far goes out first."""
+        """Send the data buffered so far first."""
         self._flush()
 
     def command_left(self) -> None:
-        """What came from the air meanwhile goes to the host."""
+        """Give the data that came from the air meanwhile to the host."""
         if self._held_back:
             self._pacer.send(bytes(self._held_back))
             self._held_back.clear()
 
     def command_data(self, data: bytes) -> None:
-        """Characters that looked like the command sequence and were not."""
+        """Take characters as data that looked like the command sequence and were not."""
         for byte in data:
             self._buffer(byte)
 
     def reply(self, text: bytes) -> None:
-        """An answer to the host, behind what is being sent already."""
+        """Send an answer to the host, after the bytes that are being sent already."""
         self._pacer.send(text)
 
     def apply(self) -> None:
-        """Working values take effect, once the answers at the old speed are out."""
+        """Let the working values take effect, once the answers at the old speed are sent."""
         if self._pacer.pending:
             self.clock.schedule(self._pacer.idle_at, self._take_effect)
         else:
@@ -234,9 +234,9 @@ class XBeeModule:
 class XBeeLink:
     """A pair of modules between the robot's UART and a PC.
 
-    Robot side: `uart_in` carries what the robot sends, `uart_out` what it receives, `robot.cts`.  PC side: `feed`,
-    `pending_to_robot`, `received`; the PC's port runs at `pc_baud`.  `feed` takes everything; whoever
-    feeds looks at `pending_to_robot` and holds a fast writer back.
+    Robot side: `uart_in` carries the bytes that the robot sends, `uart_out` those that it receives; `robot.cts`.  PC
+    side: `feed`, `pending_to_robot`, `received`; the PC's port runs at `pc_baud`.  `feed` takes any number of bytes;
+    its caller reads `pending_to_robot` and slows a fast writer down.
     """
 
     def __init__(
@@ -252,7 +252,7 @@ class XBeeLink:
         air: RadioChannel | None = None,
         report: Callable[[str, str], object] | None = None,
     ) -> None:
-        #: (data, cycles): the PC has bytes of the robot.
+        #: (data, cycles): the PC has received bytes from the robot.
         self.received: Signal[bytes, int] = Signal()
         self.air = air or RadioChannel(clock, rng=rng, ideal=ideal)
         self.robot = XBeeModule(clock, uart_in, uart_out, self.air, name="robot", baud=baud, cts=cts, report=report)

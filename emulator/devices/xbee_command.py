@@ -22,16 +22,16 @@ _CR: Final = 0x0D
 
 
 class Host(Protocol):
-    """What command mode needs of its module."""
+    """The functions of a module that command mode uses."""
 
     def command_entered(self) -> None:
-        """Data buffered so far goes out first."""
+        """Command mode begins: send the data buffered so far first."""
 
     def command_left(self) -> None:
         """Data may flow again."""
 
     def command_data(self, data: bytes) -> None:
-        """Characters that looked like the sequence and were data."""
+        """Take characters as data that looked like the command sequence and were not."""
 
     def reply(self, text: bytes) -> None:
         """Answer to the host."""
@@ -73,7 +73,7 @@ class CommandMode:
         return self._held
 
     def character(self, byte: int, start: int, end: int) -> bool:
-        """A character from the host; True when it is not (or not yet) data."""
+        """Take a character from the host.  Returns True if it is not data, or not yet known to be."""
         guard = self._live["GT"] * CYCLES_PER_MS
         silent = start - self._last_end >= guard
         self._last_end = end
@@ -98,7 +98,7 @@ class CommandMode:
         self._host.command_left()
 
     def reset(self) -> None:
-        """Forget everything that was begun."""
+        """Forget a sequence or command that has begun."""
         self._clock.cancel(self._guard)
         self._clock.cancel(self._timeout)
         self._guard = self._timeout = None
@@ -118,7 +118,7 @@ class CommandMode:
         self._restart_timeout()
 
     def _release(self) -> None:
-        """CHOICE: command characters are held back until their guard times decide, then are data like any other."""
+        """CHOICE: command characters are held back until the guard times decide.  Without a command they are data."""
         if self._held:
             self._clock.cancel(self._guard)
             self._guard = None

@@ -67,7 +67,7 @@ BROADCAST: Final = 0xFFFF
 
 
 class XBeeSettings:
-    """The parameters of one module: `working` now, `stored` over a reset."""
+    """The parameters of one module: `working` are in use now, `stored` survive a reset."""
 
     __slots__ = ("_factory", "name", "stored", "stored_name", "working")
 
@@ -92,7 +92,7 @@ class XBeeSettings:
         self.name = " "
 
     def reset(self) -> None:
-        """What a reset leaves; the error counters start again."""
+        """Reset: working values become the stored ones, and the error counters start again."""
         self.working = dict(self.stored)
         self.working["EA"] = self.working["EC"] = 0
         self.name = self.stored_name

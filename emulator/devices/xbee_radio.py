@@ -29,14 +29,14 @@ LATENCY_CYCLES: Final = (1 * CYCLES_PER_MS, 5 * CYCLES_PER_MS)
 
 
 class Station(Protocol):
-    """A module as the air sees it."""
+    """A module as the radio channel sees it."""
 
     @property
     def radio_settings(self) -> dict[str, int]:
         """Working parameters."""
 
     def radio_free(self) -> None:
-        """The channel fell silent: whoever waits may ask again."""
+        """The channel is free: a waiting module may try again."""
 
     def radio_received(self, payload: bytes) -> None:
         """A packet for this module."""
@@ -76,11 +76,11 @@ class RadioChannel:
         self.clock = clock
         self.ideal = ideal
         self.busy = False
-        #: Packets sent, lost, and tries beyond the first.
+        #: The numbers of packets sent, of packets lost, and of tries beyond the first.
         self.packets = 0
         self.lost = 0
         self.retries = 0
-        #: What befalls a packet besides: `(lost, delay_cycles)`; None: nothing.
+        #: A fault that acts on packets: returns `(lost, delay_cycles)` for one; None: no fault.
         self.interference: Callable[[], tuple[bool, int]] | None = None
         self._rng = rng
         self._loss = (packet_loss, burst_loss)
@@ -93,15 +93,15 @@ class RadioChannel:
         self._flying = 0
 
     def flying(self, station: Station) -> int:
-        """Bytes that `station` has on the air."""
+        """The number of bytes that `station` has on the air."""
         return self._flying if self._sender is station else 0
 
     def join(self, station: Station) -> None:
-        """A module is within reach."""
+        """Add a module to the channel."""
         self._stations.append(station)
 
     def wait(self, station: Station) -> None:
-        """`station` wants to send when the channel falls silent."""
+        """Note that `station` wants to send when the channel is free."""
         if station not in self._waiting:
             self._waiting.append(station)
 
@@ -156,7 +156,7 @@ class RadioChannel:
         self._flying = 0
         if failed:
             station.radio_failed()
-        # Whoever has waited goes first; the sender may have more.
+        # A station that has waited goes first; the sender may have more to send.
         self.wait(station)
         for _ in range(len(self._waiting)):
             if self.busy:

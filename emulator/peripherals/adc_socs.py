@@ -86,7 +86,7 @@ class Socs:
             self._triggered[trigsel] = self._triggered.get(trigsel, 0) | 1 << n
 
     def triggered_by(self, trigsel: int) -> int:
-        """The SOCs that a hardware trigger starts: those that select it; in burst mode the next round-robin ones too."""
+        """The SOCs that a hardware trigger starts: those that select it; in burst mode the next round-robin SOCs."""
         socs = self._triggered.get(trigsel, 0)
         burst, low = self._burst.value, self._obeying
         if low < 16 and burst & 0x3F == trigsel:

@@ -255,7 +255,7 @@ class SciReceiver:
         return (FE if word & SCIFFFE else 0) | (PE if word & SCIFFPE else 0)
 
     def _raise(self, errors: int, also: bool = False) -> None:
-        """Set error flags.  Give one pulse if RXERROR rises with its interrupt enabled, or for another source (`also`)."""
+        """Set error flags.  Give one pulse if RXERROR rises with its interrupt enabled, or for a source `also`."""
         status = self._rxst.value
         if errors:
             self._rxst.value = status | errors | RXERROR

@@ -69,7 +69,7 @@ class XbarOutput:
         self._configs = registers[f"{name}MUX0TO15CFG"], registers[f"{name}MUX16TO31CFG"]
         self._enable = registers[f"{name}MUXENABLE"]
         self._in_use: list[str] = []
-        #: The functions that stop listening to them.
+        #: Signal -> the function that stops listening to it.
         self._stops: dict[str, Callable[[], None]] = {}
         #: Signals that are not modelled and were reported.
         self._told: set[str] = set()

@@ -1,1 +1,1 @@
-"""The audit: every entry of the catalogue demonstrated, each with the evidence of a detector or a measurement."""
+"""The audit: it demonstrates every entry of the catalogue, with the evidence of a detector or a measurement."""

@@ -1,8 +1,8 @@
 """Demonstrations of the defects of the console (TFG annex 2), by id, against the running robot.
 
-The faithful console is the program itself where `C2000_HIL_CONSOLE` names it, else the model that does the same; the
-corrected one is the model with the correction.  The firmware is the faithful one in both, and the corrected one with
-all corrections.
+The faithful console is the program itself if `C2000_HIL_CONSOLE` names it, else the model, which does the same.  The
+corrected console is the model with the correction.  Both run with the faithful firmware; with all corrections, the
+firmware is corrected too.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from hil.client.decode import FrameDecoder, OdometryFrame
 IDS: Final = frozenset(name for name, entry in CATALOGUE.items() if entry.kind is DefectKind.CONSOLE)
 #: When the window can be clicked.
 READY_S: Final = 3.5
-#: A robot that stands does not move by a millimetre.
+#: A robot that stands moves by less than a millimetre.
 STANDS_M: Final = 1e-3
 #: The console's own period of orders.
 CLICK_S: Final = 0.1
@@ -43,7 +43,7 @@ def run_console(bench: Bench, script: Script, corrected: frozenset[str]) -> Desk
 
 
 def _shown(script: Script, look: Callable[[Bench, Desk], Evidence], fixes: Fixes) -> Evidence:
-    """What is seen after a script, on the firmware and the console that `fixes` ask for."""
+    """What `look` sees after a script, with the firmware and console for `fixes`."""
     variant = Variant.of(fixes)
     corrected = IDS if ALL in variant else variant.fixes & IDS
     # What the console does is measured, so that nobody watches the firmware.
@@ -52,7 +52,7 @@ def _shown(script: Script, look: Callable[[Bench, Desk], Evidence], fixes: Fixes
 
 
 def way(bench: Bench, duration_s: float) -> float:
-    """How far the robot goes (m) in the next seconds, which nobody gives an order in."""
+    """How far the robot goes (m) in the next seconds, without an order."""
     bench.world.sync_now()
     before = bench.world.travelled_m
     bench.run_for(duration_s)
@@ -75,7 +75,7 @@ def _still_drives(what: str, bench: Bench, _desk: Desk) -> Evidence:
 
 
 def _frames(desk: Desk) -> list[tuple[float, OdometryFrame]]:
-    """What the robot sent, whole."""
+    """The whole frames that the robot sent."""
     decoder = FrameDecoder()
     return [(time_s, frame) for time_s, data in desk.frames for frame in decoder.feed(data)]
 

@@ -4,7 +4,7 @@ What runs on it (`console_program`, `console_model`) calls `write`, `read`, `wai
 annex 2 calls pyserial, `time.sleep` and Tk.  Nothing here waits for real time: a script gives the same bytes each
 time.
 
-CHOICE: computing costs `UPDATE_S` for each look at the window, and what the script says for a point of the map.
+CHOICE: computing takes `UPDATE_S` for each update of the window, and the script's time for a point of the map.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from emulator.clock import SYSCLK_HZ
 from hil.bench import Bench
 
 UPDATE_S: Final = 1e-3
-#: Windows' driver keeps so many characters that nobody has read (the default of SetupComm); later ones are lost.
+#: The driver of Windows keeps this many unread characters (the default of SetupComm); later ones are lost.
 RECEIVED_MOST: Final = 4096
 
 
 class Over(BaseException):
-    """The script has ended: whatever loop the console is in, it is left here."""
+    """The script has ended.  It leaves any loop that the console is in."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,27 +36,27 @@ class PressedKey:
 
 @dataclass(frozen=True, slots=True)
 class Script:
-    """What the user does, in s from the start of the console."""
+    """The user's actions, in s from the start of the console."""
 
     seconds: float
-    #: When which button or entry of the menu is clicked, by its text.
+    #: Clicks: the time, and the text of the button or menu entry.
     clicks: tuple[tuple[float, str], ...] = ()
     keys: tuple[PressedKey, ...] = ()
-    #: What is in the two entries beside SET.
+    #: The text of the two entries beside SET.
     v: str = ""
     w: str = ""
     #: Characters that a disturbed line adds: when, which.
     noise: tuple[tuple[float, bytes], ...] = ()
-    #: From when on nothing comes from the robot.
+    #: From this time on nothing comes from the robot.
     silent_from_s: float = float("inf")
-    #: How long the PC computes for a point of the map, beside the pause of the program.
+    #: The time that the PC computes for a point of the map, besides the program's own pause.
     drawing_s: float = 0.0
-    #: What begins the file of the configuration, and the name of the file of drives that stands in its second line.
+    #: The first line of the configuration file, and the name of the file of drives in its second line.
     port: str = "COM3 "
     archive: str = "trayectoria.txt"
     #: Files that are there from the start, by name.
     files: tuple[tuple[str, str], ...] = ()
-    #: From when on another window has the keyboard.
+    #: From this time on another window has the keyboard.
     elsewhere_from_s: float = float("inf")
 
 
@@ -71,7 +71,7 @@ class MapPoint:
 
 
 class Desk:
-    """What the console has around it, and what it did."""
+    """The surroundings of the console, and a record of what it did."""
 
     def __init__(self, bench: Bench, script: Script) -> None:
         self.bench = bench
@@ -80,11 +80,11 @@ class Desk:
         self.commands: dict[str, Callable[[], object]] = {}
         self.wire: list[tuple[float, bytes]] = []
         self.drawn: list[MapPoint] = []
-        #: What came from the robot, and when its last character had.
+        #: The characters from the robot, and when the last one came.
         self.frames: list[tuple[float, bytes]] = []
         self.files: dict[str, str] = dict(script.files)
         self.opened = ""
-        #: What the label about the robot says.
+        #: The text of the label about the robot.
         self.label = ""
         #: Points of a drive that was loaded; where the axes have them.
         self.loaded = 0
@@ -110,13 +110,13 @@ class Desk:
         return (self.bench.clock.now - self._start) / SYSCLK_HZ
 
     def wait(self, duration_s: float) -> None:
-        """The program sleeps; nobody looks at the window."""
+        """The program sleeps; the window is not updated."""
         self.bench.run_for(duration_s)
         while self._noise and self._noise[0][0] <= self.now_s:
             self._take(self._noise.pop(0)[1])
 
     def update(self) -> None:
-        """The program looks at the window: what was clicked meanwhile is done."""
+        """The program updates the window: it handles the clicks that came meanwhile."""
         self.wait(UPDATE_S)
         if self.now_s >= self.script.seconds:
             raise Over
@@ -128,7 +128,7 @@ class Desk:
                 self.errors.append(f"{type(error).__name__}: {error}")
 
     def draw(self, robot: tuple[float, float], left: tuple[float, float], right: tuple[float, float]) -> None:
-        """A point of the map, and what the sonars see from there."""
+        """Draw a point of the map, and what the sonars see from there."""
         self.drawn.append(MapPoint(self.now_s, robot, left, right))
         self.wait(self.script.drawing_s)
 
@@ -173,7 +173,7 @@ class Desk:
         return len(self._received)
 
     def read(self, size: int = 1, timeout_s: float = 0.25) -> bytes:
-        """So many characters, or what has come when the time is up."""
+        """Read `size` characters, or those that have come when the time is up."""
         until_s = self.now_s + timeout_s
         while len(self._received) < size and self.now_s < until_s:
             self.wait(UPDATE_S)

@@ -1,8 +1,9 @@
-"""The console of TFG annex 2 as its robot and its user see it: what each button sends and when, and what it makes of
-what comes.  With the ids of catalogue entries (`CONS-...`) it does right what they are about.
+"""A model of the console of TFG annex 2: what each button sends and when, and what it shows of the robot's frames.
 
-A description in our words and not the program, which this project carries no copy of; where the program is at hand,
-`tests/hil/audit/test_console_model.py` holds the two to the same bytes at the same times.
+With the ids of catalogue entries (`CONS-...`) it is correct where they have a defect.
+
+It is a description in our words.  This project carries no copy of the program.  Where the program is at hand,
+`tests/hil/audit/test_console_model.py` checks that both send the same bytes at the same times.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ GONE_S: Final = 1.0
 
 
 def on_axis(values: Sequence[str] | Sequence[float]) -> list[float]:
-    """Where matplotlib puts them: texts are names, one beside the other in the order in which they first come."""
+    """The positions of values on a matplotlib axis: texts are categories, in the order in which they first come."""
     if not any(isinstance(value, str) for value in values):
         return [float(value) for value in values]
     places: dict[object, float] = {}
@@ -35,13 +36,13 @@ def on_axis(values: Sequence[str] | Sequence[float]) -> list[float]:
 
 
 class ConsoleModel:
-    """The console on a desk; `corrected`: ids of what it does right."""
+    """The console on a desk; `corrected`: the ids of its corrected entries."""
 
     def __init__(self, desk: Desk, corrected: Container[str] = ()) -> None:
         self.desk = desk
         self.corrected = corrected
         self.v_m_s = self.w_rad_s = 0.0
-        #: The last numbers of a frame, as text, and what came behind.
+        #: The numbers of the last frame, as text, and the characters after it.
         self.text = ""
         self.pending = ""
         self.points: list[tuple[int, ...]] = []
@@ -185,7 +186,7 @@ class ConsoleModel:
                 break
 
     def _receive(self) -> bool:
-        """Take in what came; whether there is something to draw."""
+        """Take in the characters that came.  Returns whether there is something to draw."""
         newest = self.fixed("CONS-oldest-first")
         came = self.desk.read(self.desk.waiting)
         text = came.decode("utf-8", "replace" if self.fixed("CONS-byte-ends-map") else "strict")

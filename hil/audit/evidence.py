@@ -1,7 +1,7 @@
-"""What one demonstration saw: findings of detectors, or a property with what was measured against its bounds.
+"""The evidence of one demonstration: findings of detectors, or a number measured against its bounds.
 
-A defect is never stated by hand here: it is seen if a detector reported the entry's rule at the entry's function, or
-if a measured number lies outside the bounds that its source gives.  What is only read, says so.
+A defect is never stated by hand here.  It is seen if a detector reported the entry's rule at the entry's function, or
+if a measured number lies outside the bounds that its source gives.  Evidence that is only read says so.
 """
 
 from __future__ import annotations
@@ -24,23 +24,23 @@ class Series:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A plot that helps to see the defect.  The first line is what the firmware gives; the others are drawn dashed."""
+    """A plot that helps to see the defect.  The first line comes from the firmware; the others are drawn dashed."""
 
     title: str
     x_label: str
     y_label: str
     series: Sequence[Series]
-    #: x and y are places in the plane: one scale for both.
+    #: Whether x and y are places in the plane, which need one scale for both.
     plane: bool = False
 
 
 class By(Enum):
-    """What kind of evidence it is.  Only the first two are proofs."""
+    """The kind of evidence.  Only the first two are proofs."""
 
     DETECTOR = "detector"
     #: A number measured on the running firmware.
     PROPERTY = "property"
-    #: Nothing ran: numbers of the text against each other.
+    #: Nothing ran: numbers of the text are compared with each other.
     READ = "read"
 
 
@@ -50,13 +50,13 @@ class Evidence:
 
     by: By
     seen: bool
-    #: One line: what was measured against what would be right, with units, or the finding's message.
+    #: One line: the measured value and the right one, with units; or the finding's message.
     line: str
     findings: tuple[Finding, ...] = ()
     picture: Picture | None = field(default=None, compare=False)
 
     def shown(self, picture: Picture) -> Evidence:
-        """The same with a plot."""
+        """The same evidence with a plot."""
         return replace(self, picture=picture)
 
 
@@ -77,7 +77,7 @@ def reported(findings: Iterable[Finding], rule: str, *, function: str = "", obje
 def measured(
     what: str, value: float, unit: str = "", *, low: float = float("-inf"), high: float = float("inf")
 ) -> Evidence:
-    """Seen if `value` is not within `low`..`high` (both allowed); a value that is no number is never within."""
+    """Seen if `value` is not within `low`..`high` (both allowed).  NaN is never within."""
     holds = low <= value <= high
     if f"{low:g}" == f"{high:g}":
         right = f"{low:g}"
@@ -92,5 +92,5 @@ def measured(
 
 
 def read(what: str, value: float, unit: str, *, low: float, high: float) -> Evidence:
-    """As `measured`, of numbers that stand in the text or follow from such alone."""
+    """As `measured`, for numbers of the text, or numbers that follow from these alone."""
     return replace(measured(what, value, unit, low=low, high=high), by=By.READ)

@@ -1,7 +1,7 @@
-"""Functions called in child processes that begin as copies of this one: what is linked and booted here is so there.
+"""Calls functions in child processes that begin as copies of this one, with everything that is linked and booted here.
 
-What a function returns comes back by pickle over a pipe.  A child never returns into the code that forked it, leaves no
-zombie, and ends when nobody waits for it any more.
+The return value comes back by pickle over a pipe.  A child never returns into the code that forked it, leaves no
+zombie, and ends when its parent does not wait for it any more.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class ChildDied(Exception):
 
 
 def possible() -> bool:
-    """Whether this process can be copied: the system can do that, and no other thread would be missing in the copy."""
+    """Whether this process can be copied: the system supports it, and there is no other thread, which a copy lacks."""
     return hasattr(os, "fork") and threading.active_count() == 1
 
 
@@ -50,17 +50,17 @@ class Child:
             os.close(write)
 
     def fileno(self) -> int:
-        """What becomes readable when there is something for `receive`."""
+        """The file descriptor that becomes readable when there is something for `receive`."""
         return self._read
 
     def receive(self) -> bool:
-        """Take what has come; waits if nothing has.  True when that was all."""
+        """Take the data that has come; wait if there is none.  Returns True when all has come."""
         piece = os.read(self._read, _PIECE)
         self._pieces.append(piece)
         return not piece
 
     def result(self) -> Any:
-        """What the function returned, when all was received.  Raises ChildDied if that is nothing, or it raised."""
+        """The return value, once all was received.  Raises ChildDied if there is none, or if the function raised."""
         status = self._reap()
         try:
             returned, value = pickle.loads(b"".join(self._pieces))
@@ -85,7 +85,7 @@ class Child:
 
 
 def _live(function: Callable[[], Any], write: int) -> NoReturn:
-    """The life of a child.  It has its parent's stack below it, and must not come back there."""
+    """The whole run of a child.  Its parent's stack is below it, and it must not return there."""
     status = 1
     try:
         for number in SIGNALS:
@@ -113,7 +113,7 @@ def _ended(status: int) -> str:
 
 @contextlib.contextmanager
 def _undisturbed() -> Generator[None, None, None]:
-    """What ends a command waits until a new child is known, so that none is left behind."""
+    """Hold signals that end a command back until a new child is known, so that no child is left behind."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
     try:
         yield
@@ -122,7 +122,7 @@ def _undisturbed() -> Generator[None, None, None]:
 
 
 def in_child(function: Callable[[], Any]) -> Any:
-    """What `function` returns in a child of its own.  Raises ChildDied."""
+    """The return value of `function`, called in its own child.  Raises ChildDied."""
     child = Child(function)
     try:
         while not child.receive():
@@ -137,7 +137,8 @@ def in_children(
 ) -> Generator[tuple[Key, Any], None, None]:
     """Each call's key, and its result or the ChildDied, as they come; at most `at_once` run side by side.
 
-    A call is taken when a child is free for it, so it finds what was made ready before.  Closing ends every child.
+    A call is taken when a child is free for it, so it finds everything that was prepared before.  Closing the generator
+    ends every child.
     """
     waiting = iter(calls)
     running: dict[Child, Key] = {}

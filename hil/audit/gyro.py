@@ -18,7 +18,7 @@ from hil.audit.task_rig import TaskRig
 from hil.golden.scripted_gyro import OUT_TEMP, ScriptedGyro
 from hil.robot.board import GYRO_CS_GPIO
 
-#: A rig with GYRO.c and what it stands on: a program that is made sooner than the whole robot's.
+#: A rig with GYRO.c and the modules that it needs.  It is built faster than the whole robot's program.
 _rig: Final = partial(Rig, modules=("firmware_model.gyro",))
 
 X: Final = 0
@@ -36,7 +36,7 @@ def _scripted(fixes: Fixes, axis: int = Z, raw: int = 0, **options: Any) -> tupl
 
 
 def _rates(rig: Rig, gyro: ScriptedGyro, most_rad_s: float) -> Picture:
-    """What get_GYRO makes of the rates up to `most_rad_s`, either way."""
+    """The results of get_GYRO for rates up to `most_rad_s` in both directions."""
     true = [most_rad_s * i / 50 for i in range(-50, 51)]
     read = [properties.rate_read(rig, gyro, Z, round(rate / properties.RAD_S_PER_DIGIT)) for rate in true]
     lines = [Series("get_GYRO", true, read), Series("true", true, true)]

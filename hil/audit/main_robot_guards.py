@@ -1,4 +1,4 @@
-"""Demonstrations of what main_Robot.c ought to notice and does not, by id: the robot in a world, with a broken part."""
+"""Demonstrations of faults that main_Robot.c should detect and does not, by id: the robot in a world, with a fault."""
 
 from __future__ import annotations
 

@@ -179,7 +179,7 @@ def comp_undefined(fixes: Fixes) -> Evidence:
 
 
 def _comp(fixes: Fixes, before_cm: float, now: int) -> float:
-    """What Comp makes of a front distance that was `before_cm`, when converter and server both say `now`."""
+    """The result of Comp for a front distance that was `before_cm`, when converter and server both give `now`."""
     rig = TaskRig(fixes, Read_Channel=lambda _ch: now, read_front_distance=lambda: float(now))
     return float(rig.fw.main_robot.Comp(51, before_cm))
 

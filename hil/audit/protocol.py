@@ -13,7 +13,7 @@ from hil.audit.properties import MonitorValues
 from hil.audit.rig import Fixes, Rig, robot
 from hil.client.orders import checked, set_reference
 
-#: A rig with protocol.c and what it stands on: a program that is made sooner than the whole robot's.
+#: A rig with protocol.c and the modules that it needs.  It is built faster than the whole robot's program.
 _rig: Final = partial(Rig, modules=("firmware_model.protocol",))
 
 COMMA: Final = ord(",")

@@ -1,4 +1,4 @@
-"""What a demonstration runs on: one board with the firmware, or the whole robot, with or without corrections.
+"""The rigs of demonstrations: one board with the firmware, or the whole robot, with or without corrections.
 
 rig = Rig(fixes)                 # board and linked drivers, no kernel running: call functions of the firmware
 with robot(fixes) as bench:      # the whole robot, booted, in a world
@@ -31,7 +31,7 @@ TICK_S: Final = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """Which firmware a demonstration runs on: corrections by id (or "all"), C files in the place of modules."""
+    """The firmware of a demonstration: corrections by id (or "all"), and C files that replace modules."""
 
     fixes: frozenset[str] = frozenset()
     #: C files, folders of headers, macros: as in `Setup`.
@@ -41,7 +41,7 @@ class Variant:
 
     @classmethod
     def of(cls, fixes: Variant | Iterable[str]) -> Variant:
-        """The port with these corrections, where there is no more to say."""
+        """The variant for `fixes`; corrections alone mean the port with these corrections."""
         return fixes if isinstance(fixes, Variant) else cls(frozenset(fixes))
 
     def __contains__(self, name: str) -> bool:
@@ -49,11 +49,11 @@ class Variant:
 
     @property
     def common(self) -> bool:
-        """No corrections, or all: what every entry is shown on."""
+        """Whether it has no corrections, or all: every entry runs on these two."""
         return self.fixes in (frozenset(), frozenset({ALL}))
 
 
-#: What a demonstration is given: corrections by id (or "all"), or a whole variant.
+#: The argument of a demonstration: corrections by id (or "all"), or a whole variant.
 Fixes = frozenset[str] | Variant
 
 
@@ -67,7 +67,7 @@ class BoardOrder:
 
     @property
     def common(self) -> bool:
-        """Every rig has one."""
+        """True, because every rig has a board."""
         return True
 
     def make(self) -> RobotBoard:
@@ -77,7 +77,7 @@ class BoardOrder:
 
 @dataclass(frozen=True, slots=True)
 class RigOrder:
-    """A board with linked drivers: what decides how it is linked.  `replaced` are stood in for later, by name."""
+    """A board with linked drivers: all options of the linking.  `replaced` are names that get other functions later."""
 
     variant: Variant
     fill: str
@@ -90,7 +90,7 @@ class RigOrder:
 
     @property
     def common(self) -> bool:
-        """What a demonstration stands in for, it often does alone."""
+        """Whether other demonstrations will probably need the same: replaced functions are rarely shared."""
         return self.variant.common and len(self.replaced) == 1
 
     def make(self) -> tuple[RobotBoard, Firmware]:
@@ -119,7 +119,7 @@ class RobotOrder:
 
     @property
     def common(self) -> bool:
-        """Robots are the same in most demonstrations."""
+        """Whether other demonstrations will probably need the same robot."""
         return self.world_map is None and Variant(frozenset(self.setup.fixes)).common
 
     def make(self) -> Bench:
@@ -137,7 +137,8 @@ class RobotOrder:
 class Rig:
     """One board with ideal devices and the linked firmware; its functions are called one by one.
 
-    All detectors are on.  Task_sleep waits; semaphores and gates need tasks: use `robot`, or replace them in `externs`.
+    All detectors are on.  Task_sleep waits.  Semaphores and gates need tasks: use `robot`, or replace them in
+    `externs`.
     """
 
     def __init__(
@@ -162,11 +163,11 @@ class Rig:
             raise EndlessPoll(finding.message)
 
     def codes(self, codes: Iterable[int] | Callable[[int], int] | None) -> None:
-        """What the next conversions yield, whatever the volts."""
+        """Set the results of the next conversions, whatever the voltage."""
         self.board.adc["A"].force_codes(codes)
 
     def scripted_gyro(self) -> ScriptedGyro:
-        """Put a slave in the gyro's place whose registers the demonstration sets."""
+        """Replace the gyro by a slave whose registers the demonstration sets."""
         gyro = ScriptedGyro()
         self.board.spi_bus["A"].attach(self.board.pins[GYRO_CS_GPIO], gyro)
         return gyro
@@ -176,11 +177,11 @@ class Rig:
         self.board.clock.delay(round(duration_s * SYSCLK_HZ))
 
     def frame(self, text: str, room: int = 200) -> Array:
-        """A buffer that holds `text` and a NUL, never written behind it."""
+        """A buffer that holds `text` and a NUL; the words after it were never written."""
         return self.fw.array("char", [*(ord(c) for c in text), 0, *[None] * max(0, room - len(text) - 1)])
 
     def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
-        """Call a firmware function; a poll that nothing can end is a finding and gives None."""
+        """Call a firmware function.  A poll that nothing can end is a finding; the result is then None."""
         try:
             return function(*arguments)
         except EndlessPoll:

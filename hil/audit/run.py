@@ -1,12 +1,14 @@
-"""Runs demonstrations: each on the faithful firmware, with its own correction, and with all corrections (without the
-one that takes the entry's function out of the image, if there is one: nothing could be shown of it then).  On demand
-with all corrections but its own, too: what is seen again then, no other correction hides.
+"""Runs demonstrations: on the faithful firmware, with the entry's own correction, and with all corrections.
 
-An entry is proven when the faithful firmware shows the defect and neither corrected one does; what is only read is
-shown, not proven.  A demonstration that raises, or whose process dies, is a failed entry, not the end of the audit.
+A correction that removes the entry's function from the image is left out of the last run, because nothing could be
+shown then.  On demand there is one more run, with all corrections but the entry's own.  If the defect is seen again
+there, no other correction hides it.
 
-Where this process can be copied, each entry runs in a child forked from it, which finds the rigs and robots that
-earlier entries wanted too, linked and booted (`templates`).  Elsewhere each links its own.  The outcomes are the same.
+An entry is proven when the faithful firmware shows the defect and neither corrected one does.  A defect that is only
+read is shown, not proven.  A demonstration that raises, or whose process dies, is a failed entry; the audit goes on.
+
+Where this process can be copied, each entry runs in a forked child.  The child finds the rigs and robots that earlier
+entries also needed, linked and booted (`templates`).  Elsewhere each entry links its own.  The outcomes are the same.
 """
 
 from __future__ import annotations
@@ -33,7 +35,7 @@ from hil.workers import workers
 
 @dataclass(frozen=True, slots=True)
 class DemonstrationOutcome:
-    """What an entry's demonstration gave; `error` says why there is no evidence."""
+    """The outcome of an entry's demonstration; `error` says why there is no evidence."""
 
     id: str
     faithful: Evidence | None
@@ -81,13 +83,13 @@ class DemonstrationOutcome:
 
 
 def all_corrections(name: str) -> frozenset[str]:
-    """Every correction but the one that takes the function of the entry `name` out of the image."""
+    """All corrections except one that removes the function of the entry `name` from the image."""
     gone_with = CATALOGUE[name].gone_with
     return resolve([ALL]) - {gone_with} if gone_with else frozenset({ALL})
 
 
 def all_but_one(name: str) -> frozenset[str]:
-    """Every correction but that of the entry `name`, those that cover it, and the one that takes its function away."""
+    """All corrections except that of the entry `name`, those that cover it, and one that removes its function."""
     entry = CATALOGUE[name]
     every = {other.id for other in CATALOGUE.values() if other.in_firmware or other.kind is entry.kind}
     return frozenset(every - {name, entry.gone_with, *entry.covered_by})
@@ -135,7 +137,7 @@ def audit(
 def _audit_forked(
     names: Sequence[str], processes: int, show: Callable[[str], DemonstrationOutcome]
 ) -> Generator[DemonstrationOutcome, None, None]:
-    """Each entry in a copy of this process, which makes ready what several of them want."""
+    """Run each entry in a copy of this process.  This process prepares what several entries need."""
     templates = Templates()
     if len(names) > 2:
         # Every entry links a program of its own.  Most of what is parsed and written for one is the same for all.
@@ -158,7 +160,7 @@ def _audit_forked(
 def _audit_spawned(
     names: Sequence[str], processes: int, show: Callable[[str], DemonstrationOutcome]
 ) -> Generator[DemonstrationOutcome, None, None]:
-    """Each entry in one of a pool of processes that begin with nothing."""
+    """Run each entry in a pool of processes in which nothing is prepared."""
     with workers(processes) as pool:
         futures = {name: pool.submit(show, name) for name in names}
         for name, future in futures.items():

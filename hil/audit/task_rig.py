@@ -1,4 +1,4 @@
-"""Tasks of the firmware turned by hand: a given number of turns of a task's endless loop, without a kernel."""
+"""Runs tasks of the firmware by hand: a given number of turns of a task's endless loop, without a kernel."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ class _EnoughError(Exception):
 
 
 class TaskRig(Rig):
-    """A rig on which tasks run: gates are always free, a pend is one turn, and what starts peripherals is left out.
+    """A rig on which tasks run.  Gates are always free, a pend is one turn, calls that start peripherals are left out.
 
-    `each_turn()` happens before each turn.
+    `each_turn()` is called before each turn.
     """
 
     def __init__(

@@ -1,7 +1,7 @@
-"""Rigs and robots made ready before the process is copied: a child finds them linked and booted.
+"""Rigs and robots that are prepared before the process is copied, so that a child finds them linked and booted.
 
-An `Order` says what is wanted.  `take` gives what was made ready for it, or makes it; which of the two does not show in
-anything but the time.
+An `Order` describes a rig or robot.  `take` returns the one that was prepared for the order, or makes one.  The two
+cases differ only in time.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ from hil.collector import uncollected
 Made = TypeVar("Made", covariant=True)
 Result = TypeVar("Result")
 
-#: So often something is missed until it is made ready for the next child, if nothing speaks for it before.
+#: An order that is not `common` is prepared for the next child after it was missing this many times.
 _AGAIN = 2
 
 
 class Order(Protocol[Made]):
-    """Everything that determines a rig or a robot: equal orders make equal ones.  Hashable, and can be pickled."""
+    """All that determines a rig or robot: equal orders make equal ones.  It is hashable and can be pickled."""
 
     @property
     def common(self) -> bool:
-        """Whether others will want the same, so that it is made ready as soon as it was missed once."""
+        """Whether other entries will need the same.  Then it is prepared as soon as it was missing once."""
 
     def make(self) -> Made:
-        """A new one."""
+        """Make a new rig or robot."""
 
 
 class Templates:
-    """What was made ready in this process.  A copy of the process has it, each thing once."""
+    """The prepared rigs and robots of this process.  A copy of the process has each of them once."""
 
     def __init__(self) -> None:
         self._ready: dict[Order[Any], Any] = {}
@@ -41,7 +41,7 @@ class Templates:
         self._missed: list[Order[Any]] = []
 
     def take(self, order: Order[Result]) -> Result:
-        """What is ready for `order`, which is then gone; or a new one."""
+        """The prepared object for `order`, which is removed here; or a new one."""
         if order in self._ready:
             made: Result = self._ready.pop(order)
             return made
@@ -49,9 +49,9 @@ class Templates:
         return order.make()
 
     def using(self, function: Callable[[], Result]) -> tuple[Result, list[Order[Any]]]:
-        """What `function` returns where `take` finds these; and the orders for which nothing was ready.
+        """Call `function` so that `take` uses these templates.  Returns its result, and the orders that were missing.
 
-        For a copy of the process: what was taken is gone.
+        Use it in a copy of the process, because objects that are taken are removed.
         """
         token = _TEMPLATES.set(self)
         try:
@@ -60,7 +60,7 @@ class Templates:
             _TEMPLATES.reset(token)
 
     def make_ready(self, missed: Iterable[Order[Any]]) -> None:
-        """Learn what was missed in a copy, and make ready what was missed again."""
+        """Count the orders that were missing in a copy, and prepare those that were missing often enough."""
         for order in missed:
             self._asked[order] += 1
             if self._asked[order] == (1 if order.common else _AGAIN):
@@ -72,6 +72,6 @@ _TEMPLATES: ContextVar[Templates | None] = ContextVar("templates", default=None)
 
 
 def take(order: Order[Result]) -> Result:
-    """What `order` wants, ready or new."""
+    """The rig or robot for `order`, prepared or new."""
     templates = _TEMPLATES.get()
     return order.make() if templates is None else templates.take(order)

@@ -1,6 +1,7 @@
-"""Demonstrations of the slips in the text: each figure as printed, against what the emulated robot does; or against
-what `hil rta` makes of the text's own numbers, which is only read.  With its id, the corrected figure stands in the
-place of the printed one.
+"""Demonstrations of errors in the text: each figure as printed is compared with the emulated robot.
+
+Some are compared with the result of `hil rta` for the text's own numbers; such evidence is only read.  With its id, the
+corrected figure replaces the printed one.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ def _sonar_codes(range_m: float) -> float:
 
 
 def left_at_40() -> float:
-    """What Read_Distance makes of 40 cm before it calibrates: the sum of twelve conversions divided by 2.3."""
+    """The value of Read_Distance for 40 cm before it calibrates: the sum of twelve conversions divided by 2.3."""
     return _sonar_codes(0.4) * 12 / 2.3
 
 
@@ -61,7 +62,7 @@ def _frame() -> str:
 
 
 def place_of_left() -> float:
-    """Which of the frame's six numbers is the left distance."""
+    """The position of the left distance among the frame's six numbers."""
     return _frame().split(" ")[1].strip().split(",").index("20") + 1
 
 
@@ -186,14 +187,14 @@ def _cell(table: str, name: str, unit: str = "us") -> PrintedNumber:
 
 
 def exact(table: str, name: str) -> float:
-    """What a number of the text is by exact analysis of the text's task set."""
+    """The value of a number of the text by exact analysis of the text's task set."""
     value = _cell(table, name).exact
     assert value is not None
     return value
 
 
 def own_rule(table: str, name: str) -> float:
-    """What a number of the text is by the formula that stands beside it."""
+    """The value of a number of the text by the formula printed beside it."""
     value = _cell(table, name).own_rule
     assert value is not None
     return value
@@ -259,7 +260,7 @@ FIGURES: Final[Mapping[str, Figure]] = {
 
 @cache
 def _right(name: str) -> float:
-    """What a figure must be; corrections of the firmware have no part in it."""
+    """The right value of a figure.  Corrections of the firmware do not change it."""
     return FIGURES[name].right()
 
 

@@ -10,7 +10,7 @@ from hil.audit import properties
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
 from hil.audit.rig import Fixes, Rig
 
-#: A rig with us.c and what it stands on: a program that is made sooner than the whole robot's.
+#: A rig with us.c and the modules that it needs.  It is built faster than the whole robot's program.
 _rig: Final = partial(Rig, modules=("firmware_model.us",))
 
 #: Counts of a wall at 1.2 m, where the window of the C applies, and at 50 cm, where the robot navigates.

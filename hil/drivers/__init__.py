@@ -1,1 +1,1 @@
-"""Somebody's own driver files, checked: what their text, calls of their functions, and their tasks show."""
+"""Checks a user's own driver files: their source, calls of their functions, and runs of their program or tasks."""

@@ -1,4 +1,4 @@
-"""Driver files, checked: translated, looked at, called, run."""
+"""Checks driver files: translates them, searches their source, calls their functions, runs their program."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from hil.reports.model import CalledFunction
 DEFAULT_CALLS = 30
 DEFAULT_SECONDS = 3.0
 
-#: Told what is done now, and how far it has come (0..1).
+#: Called with the present step, and its progress (0..1).
 Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True)
 class DriverFiles:
-    """What is checked, and how."""
+    """The files to check, and the options of the check."""
 
     files: Sequence[Path]
     include: Sequence[str | Path] = ()
@@ -37,32 +37,32 @@ class DriverFiles:
     abi: str = ""
     fill: str = "zero"
     seed: int = 1
-    #: Argument lists a function.
+    #: The number of argument lists per function.
     calls: int = DEFAULT_CALLS
-    #: What the chip is soldered to; its project adds headers and functions to C.
+    #: The board of the chip.  Its project adds headers and functions to C.
     board: type[Board] = Board
-    #: The user has said so: what its parts say of the program counts.
+    #: Whether the user has named the board.  Then reports of its parts count.
     board_named: bool = False
-    #: Its run is made once more, with sources that fall silent: outputs that follow what is too old.
+    #: Whether the program runs once more with sources that fall silent, to find outputs that follow old values.
     silence: bool = False
-    #: How long dividing floats takes, by how the C is built.
+    #: The price of a float division, which depends on how the C is compiled.
     float_division: str = DEFAULT_FLOAT_DIVISION
-    #: Virtual time that `main` or the tasks run.
+    #: The virtual time in seconds that `main` or the tasks run.
     seconds: float = DEFAULT_SECONDS
-    #: What breaks on purpose, in the run and in each fresh image of the calls; times count from its power-up.
+    #: Faults to inject into the run and into each fresh image of the calls.  Times count from power-up.
     faults: Sequence[str] = ()
-    #: Takes up how often each statement of the files is begun.
+    #: Counts how often each statement of the files begins.
     coverage: Coverage | None = None
 
 
 @dataclass
 class Checked:
-    """What was found, and which functions were called."""
+    """The result of a check: the findings, and the functions that were called."""
 
     findings: list[Finding] = field(default_factory=list)
     functions: list[CalledFunction] = field(default_factory=list)
     ran: Ran | None = None
-    #: What came of each fault, of the run and all calls together.
+    #: The effect of each fault, in the run and all calls together.
     faults: tuple[Fired, ...] = ()
 
 
@@ -105,7 +105,7 @@ def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction:
 
 
 def _add(checked: Checked, findings: Iterable[Finding], keys: dict[Key, Finding]) -> dict[Key, Finding]:
-    """Take findings up, each once: what says more (seen for certain, not by a generated call) comes first."""
+    """Add findings, each once.  A certain finding replaces one of a generated call."""
     for finding in findings:
         key = key_of(finding)
         if key not in keys:

@@ -1,4 +1,4 @@
-"""Which driver files are meant: files as they are named, and the driver files that lie directly in a folder."""
+"""Finds the driver files to check: files by name, and the driver files directly in a folder."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import Final
 
 from hil.image import SUFFIXES
 
-#: No driver is larger: a file that is cannot be one.
+#: A larger file is not accepted as a driver.
 LARGEST_BYTES: Final = 2_000_000
-#: What a Python file of a folder must mention to be a driver, and not something that lies beside it.
+#: A Python file in a folder is a driver only if it mentions this.
 _MARK: Final = "emulator.c28x.language"
 _ENDINGS: Final = " or ".join(f"*{suffix}" for suffix in SUFFIXES)
 
@@ -22,9 +22,9 @@ def is_driver_name(path: Path) -> bool:
 
 
 def driver_files(paths: Iterable[Path]) -> list[Path]:
-    """The driver files that `paths` mean, each once, in their order; those of a folder by name.
+    """The driver files of `paths`, each once, in their order; those of a folder by name.
 
-    Raises ValueError, one line with the path, for what is none; OSError for what cannot be looked at.
+    Raises ValueError, one line with the path, for a path that is no driver; OSError for one that cannot be read.
     """
     found: dict[Path, Path] = {}
     for path in paths:
@@ -69,7 +69,7 @@ def folders(given: Iterable[Path]) -> list[Path]:
 
 
 def defines(given: Iterable[str]) -> list[str]:
-    """Macros (`-D NAME`, `-D NAME=VALUE`).  Raises ValueError for what is no name."""
+    """Macros (`-D NAME`, `-D NAME=VALUE`).  Raises ValueError for a name that is not valid."""
     listed = list(given)
     for define in listed:
         name = define.partition("=")[0]

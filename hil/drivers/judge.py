@@ -1,16 +1,16 @@
-"""Calls with generated arguments, and what they prove.
+"""Calls functions with generated arguments, and judges what their findings prove.
 
-A function may be right and still do wrong when it is called with what its contract excludes: other arguments, or
-before the driver was initialised.  The contract is not written down, so a finding of a generated call counts fully only
-where no contract can explain it:
+A correct function may fail when a call breaks its contract: with other arguments, or before the driver was initialised.
+The contract is not written down.  So a finding of a generated call counts fully only where no contract can explain it:
 
-* it comes with every one of the first argument lists, or with a constant of an enumeration that no count or "none" is,
-* in the circumstances that suit the function best: on a fresh image, after the functions that initialise (as their
-  names say), after any one other function, whatever gives the fewest findings.
+* It comes with every one of the first argument lists, or with a constant of an enumeration that is not a count or
+  "none".
+* It comes in the circumstances that suit the function best: on a fresh image, after the functions that initialise (by
+  their names), or after any one other function; the circumstances with the fewest findings count.
 
-Everything else is `how = "generated"`, a note that says with which arguments it came.  So is what waits for something
-that only the outside of the chip, an interrupt or another function brings about, and all that is found of functions
-when a `main` says by itself how they are used.
+All other findings are `how = "generated"`, notes that name the arguments.  The same holds for waits that only the
+outside of the chip, an interrupt or another function can end, and for all findings of calls if the files have a `main`,
+because this shows how the functions are used.
 """
 
 from __future__ import annotations
@@ -44,26 +44,26 @@ from hil.reports.model import rule_of
 from hil.testing.guard import guard
 from hil.testing.stops import STOPS
 
-#: How many argument lists a finding must come with to be one whatever the arguments.
+#: A finding that comes with this many argument lists does not depend on the arguments.
 PROBES: Final = 8
-#: Virtual time after a call, for the interrupts that it set going.
+#: Virtual time after a call, for the interrupts that it has started.
 SETTLE_MS: Final = 5
-#: After how many other functions a function is tried.
+#: A function is tried after at most this many other functions.
 _MOST_OTHERS: Final = 16
-#: Numbers that functions which initialise are given.
+#: Numbers that initialising functions get as arguments.
 _SIZES: Final = (1, 10, 100)
-#: Calls of a function that may compute for too long.
+#: A function is not called any more after this many calls that computed for too long.
 _CUTS: Final = 2
-#: Calls a function when all are called in turns.
+#: The number of calls per function when all functions are called in turns.
 _TURNS: Final = 20
 #: Names of functions that make others ready.
 INITIALISES: Final = re.compile(r"(?i)init|setup|config|reset|begin|start|open|enable|clear")
 
-#: What is found of a function that was called too early.
+#: Rules of findings that a call before the initialisation can cause.
 _UNPREPARED: Final = (
     "adc-not-powered", "clock-gated", "endless-poll", "not-configured", "null-dereference", "uninitialised",
 )  # fmt: skip
-#: What is found of a peripheral that is not ready.
+#: Rules of findings about a peripheral that is not ready.
 _NOT_READY: Final = (
     "adc-not-powered", "clock-gated", "data-lost", "endless-poll", "not-configured", "result-not-ready",
 )  # fmt: skip
@@ -72,15 +72,15 @@ _PIN: Final = re.compile(r"\bGPIO\d+ has function\b")
 #: Registers, and functions of TI's files, that switch clocks on and set pins.
 _CLOCKS: Final = re.compile(r"PCLKCR\d+$|InitSysCtrl$|InitPeripheralClocks$")
 _PINS: Final = re.compile(r"GP[A-F]G?MUX[12]$|GPIO_SetupPinMux$")
-#: What a call too early does to a peripheral: where a `main` says in which order all is called, not even a note.
+#: Rules of findings that a call before a peripheral's setup causes.  If a `main` gives the order, they are dropped.
 _UNPOWERED: Final = ("adc-not-powered", "clock-gated", "not-configured")
 #: Families of rules that are about values.
 _OF_VALUES: Final = ("memory", "arithmetic", "control")
 
-#: What is found of an access outside of an object.
+#: Rules of findings about accesses outside of an object.
 _OUTSIDE: Final = ("memcpy-octets", "memcpy-outside", "pointer-outside")
 
-#: What makes two findings the same.
+#: Two findings with the same key are the same.
 Key = tuple[str, str, int, str]
 
 
@@ -92,12 +92,12 @@ def key_of(finding: Finding) -> Key:
 
 
 class TooLong(Exception):
-    """A call computes for longer than anybody waits."""
+    """A call has exceeded its budget."""
 
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """A function that is called, and what its parameters get."""
+    """A function to call, and the values of its parameters."""
 
     function: Function
     parameters: tuple[Parameter, ...]
@@ -118,7 +118,7 @@ Step = tuple[Candidate, tuple[Value, ...]]
 
 @dataclass
 class Exercised:
-    """A function as the check dealt with it."""
+    """A function, and what the check did with it."""
 
     function: Function
     calls: int = 0
@@ -126,13 +126,13 @@ class Exercised:
     reason: str = ""
     #: Calls that were ended because they computed for too long.
     cut: int = 0
-    #: Calls of which nothing is told: they left an object whose size is a guess.
+    #: Calls without reports, because they accessed memory outside of an object whose size is a guess.
     strayed: int = 0
     #: Parameters of which the C does not tell how many elements they point to.
     guessed: tuple[str, ...] = ()
-    #: It does not return, and is written so.
+    #: Whether it never returns, by the way it is written.
     endless: bool = False
-    #: What is said of a call in which this tool failed.
+    #: The message about a call in which this tool itself failed.
     fault: str = ""
 
 
@@ -147,29 +147,29 @@ class Prepared:
     ready: dict[str, Pointer] = field(default_factory=dict)
 
     def close(self) -> None:
-        """The image is not wanted any more."""
+        """Release the image."""
         self.image.close()
 
 
 @dataclass
 class CallOutcome:
-    """What one call came to: its findings by key, and whether it came to its end."""
+    """The outcome of one call: its findings by key, and whether it returned."""
 
     findings: dict[Key, Finding] = field(default_factory=dict)
     ended: bool = True
     ready: dict[str, Pointer] = field(default_factory=dict)
     cut: bool = False
-    #: It is in a loop that is written without an end.
+    #: Whether it is in a loop that is endless by the way it is written.
     endless: bool = False
-    #: It left an object whose size is a guess: what is found of it says nothing.
+    #: Whether it accessed memory outside of an object whose size is a guess.  Then its findings prove nothing.
     strayed: bool = False
-    #: What the function has returned.
+    #: The return value.
     result: Any = None
 
 
 @dataclass(frozen=True)
 class Best:
-    """The circumstances that suit a function best so far: what is found in them, and what was called before."""
+    """The circumstances that suit a function best so far: their findings, and the calls before."""
 
     rank: tuple[int, int] = (0, 0)
     proven: dict[Key, Finding] = field(default_factory=dict)
@@ -210,9 +210,9 @@ class Judge:
         self._useless: set[tuple[str, ...]] = set()
         self._deciders: dict[str, set[str]] = {}
         self._budget = TimeBudget(CALLS)
-        #: Somebody else switches clocks on.
+        #: Whether other code switches clocks on.
         self._started = False
-        #: What is left of the whole when the function at hand has used its share up.
+        #: The rest of the whole budget at which the present function has used its share up.
         self._reserve = 0
 
     def _parameters(self, function: Function) -> tuple[Parameter, ...]:
@@ -230,7 +230,7 @@ class Judge:
         return ""
 
     def run(self, progress: Callable[[float], None]) -> list[Finding]:
-        """Call everything; gives the findings, each once."""
+        """Call all functions; returns the findings, each once."""
         for index, candidate in enumerate(self.callables):
             progress(index / len(self.callables))
             if self._budget.over:
@@ -245,12 +245,12 @@ class Judge:
         return list(self.found.values())
 
     def _ended(self) -> str:
-        """Why no more is called."""
+        """Why no more functions are called."""
         if self._budget.cut:
             return "this machine took too long, so that another one may find more"
         return "the calls of the others have computed as much as all may"
 
-    # What functions declare
+    # Declared properties
 
     def broken_properties(self) -> Iterator[Finding]:
         """A finding for each declared property that does not hold."""
@@ -280,7 +280,7 @@ class Judge:
         )
 
     def _alone(self, candidate: Candidate) -> Prepared | None:
-        """A fresh image as the function wants it."""
+        """A fresh image after the calls that the function needs; None if there is none."""
         path = candidate.function.path
         before, started = self._before.get(path) or (self._initialising(None, _SIZES[0]), self._started)
         return self._prepared(before, settle=True, started=started) or self._prepared((), settle=True, started=started)
@@ -316,7 +316,7 @@ class Judge:
         return found if len(found) == len(lists) else None
 
     def _late(self) -> bool:
-        """Whether the function at hand has used its share up."""
+        """Whether the present function has used its share of the budget up."""
         return self._budget.over or self._budget.left < self._reserve
 
     # One function
@@ -341,7 +341,7 @@ class Judge:
             self._too_early(candidate, probes[0], started=started)
 
     def _too_early(self, candidate: Candidate, values: tuple[Value, ...], *, started: bool) -> None:
-        """Call it before anything else: which pointers it takes for filled in."""
+        """Call a function before any other, to learn which pointers must be set before it is called."""
         prepared = self._prepared((), settle=True, started=started)
         assert prepared is not None
         for key, finding in self._one(prepared, candidate, values).findings.items():
@@ -350,7 +350,7 @@ class Judge:
         prepared.close()
 
     def _best(self, candidate: Candidate, probes: Sequence[tuple[Value, ...]], *, started: bool) -> Best:
-        """The circumstances in which least is found, clocks on from the start or not, and what is found in them."""
+        """The circumstances with the fewest findings, with clocks on from the start or not, and these findings."""
         if self.roles.main is not None:  # all that could be proven is a note: the program says how it is used
             return Best(before=self._initialising(candidate, _SIZES[0]))
         best: Best | None = None
@@ -373,7 +373,7 @@ class Judge:
         return best
 
     def _walk(self) -> None:
-        """Call all functions in turns, by chance, on one image: what only shows between them."""
+        """Call all functions on one image in random order, to find errors that show only between calls."""
         rng = Random(f"{self.seed}:turns")
         before = self._initialising(None, _SIZES[0])
         waiting = [c for c in self.callables if not self._prepares(c)]
@@ -398,7 +398,7 @@ class Judge:
             prepared.close()
 
     def _initialising(self, besides: Candidate | None, size: int) -> tuple[Step, ...]:
-        """Calls of the functions that initialise, those first that switch clocks on, then those that set pins."""
+        """Calls of the initialising functions: first those that switch clocks on, then those that set pins."""
         deciders = self._decided_by(besides) if besides else {c.function.path for c in self.callables}
         chosen = [
             c for c in self.callables if c is not besides and self._prepares(c) and c.function.path in deciders
@@ -407,12 +407,12 @@ class Judge:
         return tuple((c, moderate(c.parameters, size)) for c in chosen)
 
     def _prepares(self, candidate: Candidate) -> bool:
-        """Whether a function makes others ready: its name says so, or it switches clocks on or sets pins."""
+        """Whether a function initialises: by its name, or because it switches clocks on or sets pins."""
         name = candidate.function.name
         return bool(INITIALISES.search(name)) or any(self._switches(candidate, what) for what in (_CLOCKS, _PINS))
 
     def _switches(self, candidate: Candidate, registers: re.Pattern[str]) -> bool:
-        """Whether a function sets some of these registers, or calls what does."""
+        """Whether a function, or one that it calls, sets some of these registers."""
         bodies = reached(candidate.function, self._own)
         return any(
             registers.match(name) for f in bodies
@@ -420,14 +420,14 @@ class Judge:
         )  # fmt: skip
 
     def _decided_by(self, candidate: Candidate) -> set[str]:
-        """The paths of the functions that can change what a call of this one does."""
+        """The paths of the functions that can change the behaviour of this one."""
         path = candidate.function.path
         if path not in self._deciders:
             self._deciders[path] = deciding(candidate.function, self.roles, self._own)
         return self._deciders[path]
 
     def _circumstances(self, candidate: Candidate) -> Iterator[tuple[Step, ...]]:
-        """What can have been called before: functions that initialise, nothing, everything, one other function."""
+        """The calls that can come before: initialising functions, none, all, one other function."""
         deciders = self._decided_by(candidate)
         others = [c for c in self.callables if c is not candidate and c.function.path in deciders]
         seen: set[tuple[str, ...]] = set()
@@ -454,7 +454,7 @@ class Judge:
     def _proven(
         self, candidate: Candidate, before: tuple[Step, ...], probes: Sequence[tuple[Value, ...]], *, started: bool
     ) -> dict[Key, Finding] | None:
-        """What is found with every argument list; None if what goes before does not come to its end."""
+        """The findings that come with every argument list; None if a call before does not return."""
         common: dict[Key, Finding] | None = None
         telling = _telling(candidate)
         by_constant: dict[Key, Finding] = {}
@@ -481,13 +481,13 @@ class Judge:
         return {**(common or {}), **by_constant}
 
     def _patience_ended(self, candidate: Candidate) -> bool:
-        """Whether so many calls of it computed for too long that no more are tried."""
+        """Whether too many calls of a function computed for too long, so that it is not called any more."""
         return self._by_path[candidate.function.path].cut > _CUTS
 
     def _try_all(
         self, candidate: Candidate, before: tuple[Step, ...], lists: Sequence[tuple[Value, ...]], *, started: bool
     ) -> None:  # fmt: skip
-        """Call it with every argument list, one call after the other on one image as long as they come to their end."""
+        """Call it with every argument list.  Calls follow each other on one image as long as they return."""
         prepared: Prepared | None = None
         exercised = self._by_path[candidate.function.path]
         cuts = 0
@@ -512,9 +512,9 @@ class Judge:
             prepared.close()
 
     def _prepared(self, before: tuple[Step, ...], *, settle: bool, started: bool) -> Prepared | None:
-        """A fresh image after some calls, and with `settle` some time; None if one does not come to its end.
+        """A fresh image after some calls, and with `settle` after some time; None if a call does not return.
 
-        `started`: all clocks are on before.
+        `started`: all clocks are on before the calls.
         """
         image = self.build.image()
         self._budget.image()
@@ -578,7 +578,7 @@ class Judge:
         return outcome
 
     def _patience(self, image: Image, candidate: Candidate) -> Callable[[], None]:
-        """End a call that computes for too long: TooLong.  Gives what ends the watch."""
+        """End a call that computes for too long with TooLong.  Returns a function that ends this watch."""
         findings, clock = image.board.findings, image.board.clock
         since, began = computed(image), clock.now
         waiting: list[Any] = []
@@ -610,7 +610,7 @@ class Judge:
         return end
 
     def _weighed(self, candidate: Candidate, finding: Finding) -> Finding:
-        """A finding that came whatever the arguments: as it is, or as a note where more than these files is needed."""
+        """A finding that does not depend on the arguments: unchanged, or as a note if other files may explain it."""
         whole = self.roles.main is not None
         if (
             whole or waits_for_others(finding, self.roles) or self._of_others(candidate, finding)
@@ -621,10 +621,10 @@ class Judge:
         return finding
 
     def _set_up_elsewhere(self, candidate: Candidate, finding: Finding) -> bool:
-        """Whether a peripheral is not ready, and other files may see to that.
+        """Whether a finding is about a peripheral that is not ready, and other files may set it up.
 
-        They may unless functions of these files that initialise, as their names say, write registers of it, and could
-        be called; where it is pins, unless these files set some.
+        They may not if initialising functions of these files (by their names) write its registers and could be called.
+        For pins, they may not if these files set some pins.
         """
         if finding.rule not in _NOT_READY:
             return False
@@ -642,10 +642,10 @@ class Judge:
         return bool(meant) and not {_family(block) for block in meant} & {_family(block) for block, _ in writes}
 
     def _of_others(self, candidate: Candidate, finding: Finding) -> bool:
-        """Whether other functions decide on it, in ways that no call here has shown.
+        """Whether other functions may decide about a finding, in ways that no call here has shown.
 
-        A value that was never written may be written by any of them.  Any other value may come from one that could not
-        be called, or that takes it from outside of the chip; what is said of peripherals comes from no value.
+        Any of them may write a value that was never written here.  Any other value may come from a function that could
+        not be called, or that reads it from outside of the chip.  A finding about a peripheral depends on no value.
         """
         if rule_of(finding.rule).family not in _OF_VALUES:
             return False
@@ -683,7 +683,7 @@ def _as_declared(one: Property) -> str:
 
 
 def _family(block: str) -> str:
-    """The block that sets up what `block` shows."""
+    """The block with the settings for `block`, which shows data or results."""
     return block.replace("ResultRegs", "Regs").lower()
 
 
@@ -693,7 +693,7 @@ def _serious(finding: Finding) -> bool:
 
 
 def _strays(finding: Finding) -> bool:
-    """Whether an object is left whose size is a guess."""
+    """Whether a finding is about an access outside of an object whose size is a guess."""
     return finding.rule in _OUTSIDE and f" {GUESSED}." in finding.message
 
 
@@ -703,9 +703,9 @@ def _blocks() -> dict[str, BlockType]:
 
 
 def _telling(candidate: Candidate) -> Callable[[Sequence[Value]], bool]:
-    """Whether an argument list holds nothing but constants that a contract includes.
+    """Whether an argument list holds only constants that a contract surely allows.
 
-    The greatest constant of an enumeration often is their number, a negative one stands for none of them.
+    The greatest constant of an enumeration is often their number, and a negative one stands for none of them.
     """
     if not candidate.parameters or not all(parameter.constants for parameter in candidate.parameters):
         return lambda values: False

@@ -1,4 +1,4 @@
-"""Findings at the line that one edits, in the files that were named; and those that are about somebody else's board."""
+"""Moves findings to lines of the files that were named, and finds those that are about another board."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _PARTS: Final = re.compile(r"sonar |AN of sonar |L3G4200D|XBee")
 
 
 def anchored(finding: Finding, files: Set[str], others: Set[str]) -> Finding | None:
-    """A finding at the innermost place of its call path that stands in `files`, or in a header of theirs.
+    """A finding at the innermost place of its call path that lies in `files`, or in one of their headers.
 
-    `others` are the modules that the files bring with them.  None: what is found there happens without the files.
+    `others` are the modules that the files need.  Returns None for a finding that occurs without the files.
     """
     if finding.place is None or finding.place.file not in others:
         return finding
@@ -35,16 +35,16 @@ def anchored(finding: Finding, files: Set[str], others: Set[str]) -> Finding | N
 
 
 def of_parts(finding: Finding) -> bool:
-    """Whether a finding is about the parts around the chip: a user's board has others than the robot's."""
+    """Whether a finding is about the parts around the chip.  A user's board has other parts than the robot's."""
     about = _PARTS.match(finding.object) or _PARTS.match(finding.message)
     return finding.rule in _WIRED or rule_of(finding.rule).family == "device-time" or about is not None
 
 
 def of_unused_part(finding: Finding, sonar_starts: Iterable[Wire], chip_selects: Iterable[Wire]) -> bool:
-    """Whether a finding is about a part that the program does not use: its board need not have it.
+    """Whether a finding is about a part that the program does not use.  Its board need not have such a part.
 
-    Whoever uses the sonars starts them, whoever uses a part on an SPI selects it: these are the wires.  What drives a
-    pin besides the chip is a part of the board in any case.
+    A program that uses the sonars starts them, and one that uses a part on an SPI selects it: `sonar_starts` and
+    `chip_selects` are these wires.  Another driver of a pin than the chip is a part of the board in any case.
     """
     if finding.object.startswith("sonar "):
         return not any(start.driven() for start in sonar_starts)

@@ -1,4 +1,4 @@
-"""The program of driver files, run: its `main` from the reset on, or its tasks under SYS/BIOS."""
+"""Runs the program of driver files: its `main` from the reset on, or its tasks under SYS/BIOS."""
 
 from __future__ import annotations
 
@@ -32,22 +32,23 @@ from hil.image import Build, Image
 from hil.machine import FirmwareStopped, fault_of_ours
 from hil.testing.stops import STOPS, announced
 
-#: Stack of a task that no text makes.
+#: The stack of a task that no statement creates, in words.
 _STACK_WORDS: Final = 1024
-#: So many addresses that nobody acknowledges are no part that is busy.
+#: After this many addresses in a row without acknowledge, the part is missing and not only busy.
 _REFUSALS: Final = 8
-#: From this part of the CPU's time on a `main` does more than poll.
+#: A `main` that uses at least this part of the CPU's time does more than poll.
 _BUSY: Final = 0.01
-#: How much longer the run in which ages are followed may be.
+#: The run that follows ages may be longer by this factor.
 _LONGER: Final = 3
-#: What it may compute.
+#: The budget of this run.
 _OBSERVED: Final = 2 * RUN
 
 
 @dataclass
 class Stood:
-    """Where a `main` stood when its time was over, the innermost place first, and the loops without a limit that it
-    has been in for half of its run; nothing if it ended by itself.
+    """Where a `main` stood at the end of its time; empty if it returned.
+
+    It holds the places, innermost first, and the loops without a limit that `main` was in for half of its run.
     """
 
     frames: list[Place] = field(default_factory=list)
@@ -55,12 +56,12 @@ class Stood:
 
 
 class _Over(Exception):
-    """The time of the run, or what it may compute, is over."""
+    """The time or the budget of the run is used up."""
 
 
 @dataclass(frozen=True)
 class Ran:
-    """What a run came to."""
+    """The outcome of a run."""
 
     findings: tuple[Finding, ...]
     virtual_s: float
@@ -76,9 +77,10 @@ def run_program(
 ) -> Ran:  # fmt: skip
     """Run `main`, or without one the tasks, for `for_s` seconds of virtual time.
 
-    Tasks without a `main` run as notes: what their program makes before them is not in these files.  A `main` that is
-    an endless loop over objects of interrupt routines is run again, with patience for it.  `board_named`: the program
-    is meant for this board.  `silence`: run it once more, with sources that fall silent (`stale`).
+    Findings of tasks without a `main` are notes: the part of their program that creates objects before they run is not
+    in these files.  If `main` ends in a loop that waits for objects of interrupt routines, it runs again, and such
+    loops are allowed.  `board_named`: the program is meant for this board.  `silence`: run it once more with sources
+    that fall silent (`stale`).
     """
     ran = _run(build, roles, for_s, progress, patient=False, board_named=board_named)
     if any(f.rule == "endless-loop" and meant_endless(f, roles) for f in ran.findings):
@@ -88,7 +90,7 @@ def run_program(
 
 
 def _stale(build: Build, roles: Roles, for_s: float) -> list[Finding]:
-    """Outputs of a whole program that follow what is too old, by a longer run in which the ages are followed."""
+    """Outputs of a whole program that follow values that are too old, found by a longer run that follows ages."""
     if roles.main is None:
         return []  # nobody knows what releases its tasks, and whom they follow
 
@@ -119,7 +121,7 @@ def _begin(build: Build, roles: Roles) -> Image:
 def _go(
     image: Image, roles: Roles, until: Callable[[], int], budget: TimeBudget, progress: Callable[[float], None]
 ) -> Stood:  # fmt: skip
-    """Run the program until `until()`, which may tell a later time when it comes; as `_bare`."""
+    """Run the program until the time `until()`.  At that time it may return a later one.  Returns as `_bare`."""
     if roles.main is not None and not roles.begins_kernel:
         return _bare(image, roles, roles.main, until, budget, progress)
     _kernel(image, roles, until, budget, progress)
@@ -186,7 +188,7 @@ def _run(
 
 
 def _retried(image: Image, stood: Stood, roles: Roles) -> None:
-    """Tell of a transaction that is repeated until it works, and that nobody answers."""
+    """Report a transaction that the program repeats until it succeeds, and that no device answers."""
     for letter, i2c in image.board.i2c.items() if stood.loops else ():
         found = retried(stood.loops or (), f"I2c{letter.lower()}Regs", roles) if i2c.refusals >= _REFUSALS else None
         if found is not None:
@@ -196,7 +198,7 @@ def _retried(image: Image, stood: Stood, roles: Roles) -> None:
 
 
 def _nobody(image: Image) -> Nobody:
-    """Who ends no wait any more, at the end of a run."""
+    """The interrupt routines and devices that can end no wait any more, at the end of a run."""
     board = image.board
     blocks = [f"I2c{letter.lower()}Regs" for letter in I2C_PIE]
     refused = [block for block in blocks if board.register(block, "I2CSTR").value & I2CSTR.NACK.mask]
@@ -207,9 +209,9 @@ def _bare(
     image: Image, roles: Roles, main: Function, until: Callable[[], int], budget: TimeBudget,
     progress: Callable[[float], None],
 ) -> Stood:  # fmt: skip
-    """A `main` without a kernel: it has the chip to itself until its time is over, or what it may compute.
+    """Run a `main` without a kernel until its time or its budget is used up.
 
-    A poll that it does nothing but is waited for beyond that, until it ends or is found to be endless.
+    If it then only polls, it runs on until the poll ends or is found to be endless.
     """
     stood = Stood()
     clock, position, places = image.board.clock, image.board.findings.position, image.board.findings.places

@@ -1,4 +1,4 @@
-"""Properties that the author declares of a function, in a line above it, and calls with generated arguments test.
+"""Properties that the author declares in a line above a function.  Calls with generated arguments test them.
 
 | declared | what must hold |
 |---|---|
@@ -26,14 +26,14 @@ from emulator.c28x.tree import Call, Function
 from emulator.c28x.tree_queries import source_text, within
 from hil.drivers.values import Parameter, Value, arguments, number, spread
 
-#: Values of one parameter that are tried, and lists of the others beside them.
+#: The number of values of one parameter that are tried, and of lists of the other parameters with them.
 _VALUES: Final = 40
 _LISTS: Final = 4
-#: How far floats may lie apart and still be the same.
+#: Two floats count as equal if their relative difference is no more than this.
 _RELATIVE: Final = 1e-6
 
-#: Calls a function with lists of arguments, one after the other on one board: the results, None where a call did not
-#: end; with `fresh` each on a board of its own.
+#: A function that calls the tested function with lists of arguments, one after the other on one board, or with `fresh`
+#: each on its own board.  It returns the results, None for a call that did not return.
 Results = Callable[[Sequence[tuple[Value, ...]], bool], list[Any]]
 
 
@@ -42,7 +42,7 @@ class Property:
     """One declared property of a function."""
 
     declared: UserDeclaration
-    #: The parameter that is meant; empty: the result, or the only number.
+    #: The parameter; empty: the result, or the only number.
     parameter: str = ""
     #: The ends of a range.
     low: float = 0.0
@@ -51,7 +51,10 @@ class Property:
 
 
 def properties(function: Function) -> list[Property]:
-    """What is declared of a function.  Raises ValueError, one line with file and line, for what is not written so."""
+    """The declared properties of a function.
+
+    Raises ValueError, one line with file and line, for a wrong declaration.
+    """
     return [
         _parsed(declared, function) for declared in declarations(function.where.file)
         if declared.word not in ("allow", "unit") and declared.is_about(function.where)
@@ -87,13 +90,13 @@ def _parsed(declared: UserDeclaration, function: Function) -> Property:
 
 
 def contracted(function: Function, wanted: Sequence[Parameter]) -> tuple[Parameter, ...]:
-    """Parameters with the ranges that are declared of them."""
+    """The parameters with their declared ranges."""
     ranges = {p.parameter: (p.low, p.high) for p in properties(function) if p.declared.word == "range" and p.parameter}
     return tuple(replace(one, within=ranges[one.name]) if one.name in ranges else one for one in wanted)
 
 
 def broken_contracts(functions: Sequence[Function]) -> Iterator[tuple[Place, str, Function]]:
-    """The calls that give a parameter nothing but values outside of its declared range: where, what, whom."""
+    """The calls that can pass only values outside of a parameter's declared range: place, message, called function."""
     ranges = {
         (function.path, p.parameter): p
         for function in functions for p in properties(function) if p.declared.word == "range" and p.parameter
@@ -117,7 +120,7 @@ def broken_contracts(functions: Sequence[Function]) -> Iterator[tuple[Place, str
 
 @dataclass(frozen=True, slots=True)
 class Tested:
-    """A function that declares something, its parameters, and how it is called."""
+    """A function with declared properties, its parameters, and how to call it."""
 
     function: Function
     parameters: tuple[Parameter, ...]
@@ -127,7 +130,7 @@ class Tested:
     seed: str
 
     def broken(self) -> Iterator[tuple[Property, str]]:
-        """Each declared property that does not hold, with the smallest example that was met."""
+        """Each declared property that does not hold, with the smallest example that was found."""
         for one in properties(self.function):
             test = _TESTS.get(one.declared.word)
             if test is None or (one.declared.word == "range" and one.parameter):
@@ -212,7 +215,7 @@ class Tested:
         return ""
 
     def _mapped_twice(self, only: Parameter, lists: list[tuple[Value, ...]]) -> str:
-        """Of a function that maps a number to one: whether the number that it gives is mapped to itself."""
+        """For a function from a number to a number: a result that it does not map to itself, as a message; or ""."""
         mapped = [
             (values, once) for values, once in zip(lists, self.results(lists, False), strict=True)
             if once is not None and _fits(once, only)
@@ -232,7 +235,7 @@ class Tested:
 
 
 def _fits(value: Any, parameter: Parameter) -> bool:
-    """Whether a value can be given to a parameter as it is."""
+    """Whether a parameter can take a value unchanged."""
     ctype, within = parameter.ctype, parameter.within
     if isinstance(ctype, IntType) and not (isinstance(value, int) and ctype.low <= value <= ctype.high):
         return False
@@ -240,7 +243,7 @@ def _fits(value: Any, parameter: Parameter) -> bool:
 
 
 def _size(values: tuple[Value, ...]) -> float:
-    """How far a list is from all zeros: the smaller, the easier an example is read."""
+    """The distance of an argument list from all zeros.  Smaller examples are easier to read."""
     return sum(abs(s) for value in values for s in value.scalars if isinstance(s, int | float))
 
 

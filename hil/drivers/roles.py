@@ -1,4 +1,4 @@
-"""What each function of driver files is for: an entry of the chip or the kernel, or one that other code calls."""
+"""The role of each function of driver files: the chip or the kernel enters it, or other code calls it."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import addressed, assigned_variables, parts, statements, variables, within
 
-#: Kernel functions that only a running kernel with its objects can serve.
+#: Kernel functions that need a running kernel with its objects.
 KERNEL: Final = (
     "BIOS_", "Clock_", "Event_", "GateAll_", "GateHwi_", "GateMutexPri_", "GateMutex_", "GateSwi_", "GateTask_",
     "HeapBuf_", "HeapMem_", "Hwi_", "Mailbox_", "Memory_", "Queue_", "Semaphore_", "Swi_", "Task_",
 )  # fmt: skip
-#: Functions that reach nothing but what they are given.
+#: Functions that access only their arguments.
 _LIBRARY: Final = frozenset(vars(rts))
-#: Kernel functions that anybody can call at any time.
+#: Kernel functions that can be called at any time.
 _HARMLESS: Final = re.compile(r"(Hwi|Swi|Task)_(disable|enable|restore)$|Clock_getTicks$|\w+_Params_init$")
-#: Whom the kernel calls: what makes an object of it -> what the function given to it is.
+#: Kernel function that creates an object -> the role of the function passed to it, which the kernel calls.
 _MAKERS: Final = {
     "Task_": "a task", "Hwi_": "an interrupt routine", "Swi_": "a Swi", "Clock_": "a clock function",
 }  # fmt: skip
@@ -45,27 +45,27 @@ _MAKERS: Final = {
 
 @dataclass
 class Roles:
-    """The functions of driver files by what they are for, in the order of the files."""
+    """The functions of driver files by their roles, in the order of the files."""
 
     functions: list[Function]
     #: The function where a program begins; None: these files are no whole program.
     main: Function | None = None
     #: Bodies of tasks of SYS/BIOS.
     tasks: list[Function] = field(default_factory=list)
-    #: Tasks that no text makes: a configuration outside of these files does.
+    #: Tasks that no statement creates; a configuration outside of these files does.
     unmade: list[Function] = field(default_factory=list)
-    #: `module.name` -> why it is no function for other code to call.
+    #: `module.name` -> why other code cannot call it.
     entries: dict[str, str] = field(default_factory=dict)
-    #: `module.name` -> the kernel function that it comes to.
+    #: `module.name` -> the kernel function that it calls, directly or not.
     kernel: dict[str, str] = field(default_factory=dict)
     #: `module.name` -> the objects that the function itself writes.
     writes: dict[str, set[Variable]] = field(default_factory=dict)
     #: `module.name` -> the registers, as (block, register), that the function itself writes.
     registers: dict[str, set[tuple[str, str]]] = field(default_factory=dict)
 
-    #: `module.name` -> the same without those that it writes nothing but 0 to.
+    #: `module.name` -> the same, without registers to which it writes only 0.
     set_up: dict[str, set[tuple[str, str]]] = field(default_factory=dict)
-    #: `module.name` -> whether the function itself reaches the chip: registers, or functions outside of the files.
+    #: `module.name` -> whether the function itself uses registers, or calls functions outside of the files.
     chip: dict[str, bool] = field(default_factory=dict)
 
     @property
@@ -80,7 +80,7 @@ class Roles:
 
 
 def roles(modules: Iterable[Module]) -> Roles:
-    """What the functions of `modules` are for."""
+    """The roles of the functions of `modules`."""
     modules = list(modules)
     functions = [function for module in modules for function in module.functions]
     by_path = {function.path: function for function in functions}
@@ -125,12 +125,12 @@ def roles(modules: Iterable[Module]) -> Roles:
 
 
 def _needs_kernel(name: str) -> bool:
-    """Whether a kernel function wants tasks or objects of a running program."""
+    """Whether a kernel function needs tasks or objects of a running program."""
     return name.startswith(KERNEL) and not _HARMLESS.match(name)
 
 
 def _like_a_task(function: Function) -> bool:
-    """Whether it has the parameters of a task and no end."""
+    """Whether it has the parameters of a task and never returns."""
     endless = any(
         isinstance(s, While) and isinstance(s.test, Const) and s.test.value for s in statements(function.body)
     )
@@ -138,7 +138,7 @@ def _like_a_task(function: Function) -> bool:
 
 
 def _named(value: Any) -> Iterator[Function]:
-    """The functions whose names stand in an expression as values."""
+    """The functions whose names an expression uses as values."""
     for part in parts(value):
         if isinstance(part, FunctionRef) and not part.function.extern:
             yield part.function
@@ -152,7 +152,7 @@ def called(body: Iterable[Stmt]) -> Iterator[Function]:
 
 
 def reached(function: Function, by_path: dict[str, Function]) -> list[Function]:
-    """A function and all that it comes to."""
+    """A function, and all functions that it calls, directly or not."""
     seen = {function.path: function}
     waiting = [function]
     while waiting:
@@ -165,7 +165,7 @@ def reached(function: Function, by_path: dict[str, Function]) -> list[Function]:
 
 
 def _of_chip(part: Any) -> bool:
-    """Whether an expression reaches the chip, by a register's name or by an address."""
+    """Whether an expression accesses the chip, by a register's name or by an address."""
     match part:
         case RegisterRef() | RegisterAt() | RegisterLoad() | RegisterAddress():
             return True
@@ -177,8 +177,9 @@ def _of_chip(part: Any) -> bool:
 
 
 def deciding(function: Function, roles: Roles, by_path: dict[str, Function]) -> set[str]:
-    """Paths of the functions whose calls can change what a call of `function` does: they write what it, or another one
-    of them, reads.  The chip counts as one object.
+    """Paths of the functions whose calls can change the behaviour of `function`.
+
+    They write an object that it, or another of these functions, reads.  The chip counts as one object.
     """
     bodies = {path: reached(other, by_path) for path, other in by_path.items()}
     read = {path: {v for f in inner for v in globals_of(f)} for path, inner in bodies.items()}

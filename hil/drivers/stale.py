@@ -1,11 +1,11 @@
 """Outputs that follow a value whose source has fallen silent: `stale-value`.
 
-The program runs once more, longer, and each value that came from outside (a received character, a conversion, a message
-of another task) carries the time at which it came in, from object to object.  Where an output is written, the age of
-what it is computed from is known.  How often a value ought to be new is measured in the same run, at the same
-statement.  A source falls silent by itself, or is cut off when the usual time of the run is over: the serial lines, and
-the parts on the I2C.  Whoever then goes on, to the end of the silence or of the run, with a value that is ten times
-older than any before does not look at its age, or looks in vain.
+The program runs once more, and longer.  Each value that came from outside (a received character, a conversion, a
+message of another task) carries the time at which it came in, from object to object.  So at each write of an output the
+age of its inputs is known.  The same run measures how often a value is usually new at this statement.  A source falls
+silent by itself, or is cut off when the usual time of the run is over: the serial lines, and the parts on the I2C.  If
+the program then goes on, to the end of the silence or of the run, with a value ten times older than any before, it does
+not check its age, or the check has no effect.
 
 Modelled
     Values that go through objects, parameters, results and locals; a pin that is set or cleared under a test of them.
@@ -55,37 +55,38 @@ from emulator.registers.cell import Cell
 from hil.drivers.roles import Roles
 from hil.image import Build, Image
 
-#: Registers, as `block.register`, in which something comes in that may be missing one day.
+#: Registers, as `block.register`, that take in data from outside, which may fail to come.
 _INPUT: Final = re.compile(
     r"(Sci\w*\.SCIRXBUF|I2c\w*\.I2CDRR|Spi\w*\.SPIRXBUF|Adc\w*ResultRegs\.ADCRESULT\d+|ECap\w*\.CAP[1-4]|"
     r"GpioDataRegs\.GP[A-F]DAT|EQep\w*\.(QCPRD\w*|QCTMR\w*))$"
 )
-#: Registers by which something outside is moved: a level, and a pin.
+#: Registers that act on the outside: a level, and a pin.
 _LEVEL: Final = re.compile(r"EPwm\w*\.CMP[AB]$|Dac\w*\.DACVALS$|ECap\w*\.(CAP2|CAP4)$")
 _PIN: Final = re.compile(r"GpioDataRegs\.GP[A-F](SET|CLEAR|DAT)$")
-#: A value is old from so many of its longest former paces on: whoever waits for two or three lost ones waits less.
+#: A value is old after this many times the longest former pace.  A program that tolerates two or three lost values
+#: waits for a shorter time.
 _PACES: Final = 10
-#: Within so many of them a source is not silent, and a use not over.
+#: Within this many paces a source does not count as silent, and a use does not count as over.
 _LOST: Final = 3
-#: New values from which on there is a pace.
+#: A pace is known after this many new values.
 _NEW: Final = 5
 
-#: What a value can be computed from: an object's word (path, word; None: any of it), or a register ("", name).
+#: An input of a value: an object's word (path, word; None: any word), or a register ("", name).
 Origin = tuple[str, "int | str | None"]
 _NOTHING: Final[frozenset[Origin]] = frozenset()
-#: Source -> when it gave what is in a value (cycles).
+#: Source -> the cycle at which it gave the data in a value.
 Ages = dict[str, int]
 
 
 class ValueSources:
-    """Where values of a program come from, read from its typed tree."""
+    """Finds the inputs of a program's values in its typed tree."""
 
     def __init__(self, functions: Iterable[Function]) -> None:
         self._functions = {function.path: function for function in functions}
         #: (file, line) -> statements there, each with its function and the tests around it.
         self.at: dict[tuple[str, int], list[tuple[Stmt, Function, tuple[Expr, ...]]]] = {}
         self._assigned: dict[Variable, list[Expr]] = {}
-        #: Results of functions that are being looked at: no recursion.
+        #: Functions whose results are being examined, to stop recursion.
         self._within: set[Any] = set()
         for function in self._functions.values():
             for s, tests in _with_tests(function.body, ()):
@@ -101,14 +102,14 @@ class ValueSources:
                         self._assigned.setdefault(root, []).append(start)
 
     def outputs(self) -> Iterator[tuple[Assign, Function, tuple[Expr, ...]]]:
-        """The assignments to registers that move something."""
+        """The assignments to registers that act on the outside."""
         for found in self.at.values():
             for s, function, tests in found:
                 if isinstance(s, Assign) and isinstance(s.target, RegisterRef) and _moves(s.target):
                     yield s, function, tests
 
     def used(self, s: Assign, tests: tuple[Expr, ...], calls: list[tuple[Place, str]]) -> frozenset[Origin]:
-        """What an output follows: its value, or if that is a constant what the tests around it look at."""
+        """The inputs of an output: those of its value, or for a constant value those of the tests around it."""
         if not isinstance(bare(s.value), Const):
             return self.origins(s.value, calls)
         if not isinstance(s.target, RegisterRef) or not _PIN.match(_name(s.target)):
@@ -116,7 +117,7 @@ class ValueSources:
         return frozenset().union(*(self.origins(test, calls) for test in tests))
 
     def chosen(self, s: Assign, tests: tuple[Expr, ...], calls: list[tuple[Place, str]]) -> int:
-        """How many calls up the value is chosen that an output follows: functions between only hand it down."""
+        """How many calls up the value of an output is chosen.  Functions in between only pass it on."""
         if self.used(s, tests, []):
             return 0
         for depth, (place, callee) in enumerate(calls, 1):
@@ -127,7 +128,7 @@ class ValueSources:
         return 0
 
     def written(self, s: Stmt, path: str, word: int, calls: list[tuple[Place, str]]) -> frozenset[Origin] | None:
-        """What a statement gives to a word of an object; None: it does not write it."""
+        """The inputs of the value that a statement writes to a word of an object; None: it does not write it."""
         match s:
             case Assign(target=LValue(root=Variable() as root) as target, value=value):
                 if root.declaration.path == path and (target.indices or target.words == word):
@@ -145,8 +146,10 @@ class ValueSources:
     def origins(
         self, e: Any, calls: list[tuple[Place, str]], given: Mapping[Variable, frozenset[Origin]] | None = None
     ) -> frozenset[Origin]:  # fmt: skip
-        """What an expression is computed from.  `calls` are the places that called its function, the innermost first;
-        `given` are the parameters' where that is known from the text.
+        """The inputs of an expression.
+
+        `calls` are the places that called its function, innermost first.  `given` are the inputs of the parameters,
+        where the source tells them.
         """
         match e:
             case Load(lvalue=LValue(root=Variable() as root) as lvalue):
@@ -170,7 +173,7 @@ class ValueSources:
     def _local(
         self, v: Variable, calls: list[tuple[Place, str]], given: Mapping[Variable, frozenset[Origin]] | None
     ) -> frozenset[Origin]:  # fmt: skip
-        """Of a local: what all its values have in common; of one that adds up, what it adds up."""
+        """The inputs of a local: those that all its values have in common; for a sum, those of the summands."""
         values = self._assigned.get(v, [])
         if v in self._within or not values:
             return _NOTHING
@@ -181,7 +184,7 @@ class ValueSources:
         return frozenset.intersection(*found)
 
     def _parameter(self, v: Variable, calls: list[tuple[Place, str]]) -> frozenset[Origin]:
-        """Of a parameter: what the call that is under way gave it."""
+        """The inputs of a parameter: those of the argument in the present call."""
         if not calls or v in self._within:
             return _NOTHING
         place, callee = calls[0]
@@ -207,7 +210,7 @@ class ValueSources:
         return frozenset.intersection(*found) if found else _NOTHING
 
     def wanted(self) -> tuple[set[str], set[str]]:
-        """The objects whose age matters, and the input registers that they come from; both empty: no output has any."""
+        """The objects whose age matters, and the input registers of their values.  Both empty: no output has any."""
         everything: dict[str, set[str]] = {}
         for function in self._functions.values():
             for s in statements(function.body):
@@ -244,15 +247,15 @@ class ValueSources:
 
 @dataclass
 class Followed:
-    """How an output has followed a source at one statement."""
+    """How an output has followed a source, at one statement."""
 
-    #: Where its value is chosen, and who called that.
+    #: The place where its value is chosen, and the calls to it.
     path: tuple[Place, ...]
     task: str
     output: str
-    #: Where it is written, if that is another place.
+    #: The place where it is written, if that is another one.
     within: str
-    #: When the value came in that is used now; the longest time between two, how many there were.
+    #: When the present value came in; the longest time between two values; how many values there were.
     birth: int
     pace: int = 0
     new: int = 1
@@ -262,11 +265,11 @@ class Followed:
     value: int = 0
     #: (when it came in, when it was last used, how often, what was written, the pace before it): the oldest one.
     oldest: tuple[int, int, int, int, int] | None = None
-    #: What carried the value here.
+    #: The objects that carried the value here.
     objects: set[str] = field(default_factory=set)
 
     def use(self, birth: int, now: int, value: int) -> None:
-        """The output gets `value`, computed from what came in at `birth`."""
+        """The output gets `value`, computed from data that came in at `birth`."""
         if birth != self.birth:
             self.judge(now)
             if birth > self.birth:
@@ -276,11 +279,11 @@ class Followed:
         self.uses += 1
 
     def goes_on(self, now: int) -> bool:
-        """Whether the value at hand moves something and is still in use."""
+        """Whether the present value acts on the outside and is still in use."""
         return self.new >= _NEW and bool(self.value) and now - self.last <= _LOST * self.pace
 
     def judge(self, now: int) -> None:
-        """The value at hand is over: was it too old, and used to the end?"""
+        """The use of the present value is over.  Note it if it was too old and used to the end."""
         age = self.last - self.birth
         if self.oldest is None and self.goes_on(now) and age >= _PACES * self.pace > 0 and self.uses > _LOST:
             self.oldest = self.birth, self.last, self.uses, self.value, self.pace
@@ -297,10 +300,10 @@ class AgeWatch:
         self._clock = image.board.clock
         self._ages: dict[tuple[str, int], Ages] = {}
         self._read: dict[str, int] = {}
-        #: The words of the last message that was taken, and the statement that took it: its end is a write of them too.
+        #: The words of the last message that was taken, and the statement that took it.  Its end also writes them.
         self._laid: set[tuple[str, int]] = set()
         self._laid_at = 0
-        #: By the place of the output, where its value is chosen, and the source.
+        #: (place of the output, place where its value is chosen, source) -> how the output followed the source.
         self.followed: dict[tuple[Place, Place, str], Followed] = {}
         #: When the sources were cut off.
         self._cut = 0
@@ -326,7 +329,7 @@ class AgeWatch:
             self._ages.update(dict.fromkeys(self._laid, ages))
 
     def _calls(self) -> list[tuple[Place, str]]:
-        """Who called the running function, the innermost first, each with the name of what it called."""
+        """The calls to the running function, innermost first, each with the name of the called function."""
         position = self._findings.position
         places = [self._findings.places[at] for at, _ in frames(position.at, position.calls)]
         return [(outer, inner.function) for inner, outer in pairwise(places)]
@@ -348,7 +351,7 @@ class AgeWatch:
         self._ages[path, word] = ages
 
     def _of(self, origins: frozenset[Origin], *, just_now: bool = False) -> Ages:
-        """The ages of what a value is computed from: of each source the newest."""
+        """The ages of a value's inputs; for each source the newest."""
         found: Ages = {}
         for path, word in origins:
             if path == "":
@@ -383,9 +386,9 @@ class AgeWatch:
                 known.use(birth, self._clock.now, word & mask)
 
     def until(self, usual: int, latest: int) -> int:
-        """How long to run: longer than usual while a value is in use whose source is silent, or may be.
+        """The end of the run.  It is later than usual while a value is in use whose source is silent, or may be.
 
-        Beyond the usual time all sources that can be cut off are silent.
+        After the usual time all sources that can be cut off are silent.
         """
         now = self._clock.now
         if now < usual or not self.followed:
@@ -403,7 +406,7 @@ class AgeWatch:
         return now
 
     def report(self) -> list[Finding]:
-        """A finding for each output that followed something too old."""
+        """A finding for each output that followed a value that was too old."""
         for (_, _, source), seen in self.followed.items():
             seen.judge(self._clock.now)
             if seen.oldest is None:
@@ -425,7 +428,7 @@ class AgeWatch:
 def watched(
     build: Build, roles: Roles, run: Callable[[Callable[[Image], AgeWatch]], None]
 ) -> list[Finding]:  # fmt: skip
-    """The findings of a run of its own; `run(prepare)` runs the program on an image that was given to `prepare`."""
+    """The findings of a separate run.  `run(prepare)` passes a new image to `prepare`, then runs the program on it."""
     flow = ValueSources(roles.functions)
     objects, inputs = flow.wanted()
     if not objects:

@@ -1,12 +1,13 @@
-"""Units that the author declares: whether each value goes where its unit is wanted.
+"""Checks declared units: does each value go only where its unit is expected?
 
     int16_t distance;                 // hil: unit cm
     // hil: unit mm                      (of the result)
     // hil: unit v mm/s                  (of the parameter v)
     int16_t braking_distance(int16_t v) { ... }
 
-Units are names: `cm` is not `mm`, and nothing is converted.  A value keeps its unit through assignments, casts, signs,
-sums and the local variables that take nothing else; a product, a quotient and a number have none that is known.
+Units are names: `cm` is not `mm`, and nothing is converted.  A value keeps its unit through assignments, casts, signs
+and sums, and in local variables that take only values of this unit.  A product, a quotient and a number have no known
+unit.
 """
 
 from __future__ import annotations
@@ -37,13 +38,13 @@ from emulator.c28x.tree import (
 )
 from emulator.c28x.tree_queries import parts, roots, source_text, statements
 
-#: Operators whose operands have one unit, which is that of the result.
+#: Operators whose operands must have the same unit; the result has this unit too.
 _KEEPS = ("+", "-")
 
 
 @dataclass(frozen=True, slots=True)
 class Mixed:
-    """A place where a value of one unit goes where another one is wanted."""
+    """A place where a value of one unit goes to a target of another unit."""
 
     place: Place
     message: str
@@ -61,7 +62,7 @@ def mixed_units(modules: Iterable[Module]) -> list[Mixed]:
 
 
 class _Units:
-    """The declared units of functions and variables, and what follows from them."""
+    """The declared units of functions and variables, and the units that follow from them."""
 
     def __init__(self, modules: list[Module]) -> None:
         self.results: dict[str, str] = {}
@@ -97,7 +98,7 @@ class _Units:
         self.variables.update(dict.fromkeys(meant, unit))
 
     def _infer(self, function: Function) -> None:
-        """Locals that take values of one unit only have it."""
+        """Give a unit to locals that take only values of this unit."""
         taken: dict[Variable, set[str]] = {}
         for target, value in _assignments(function):
             root = target.root
@@ -106,7 +107,7 @@ class _Units:
         self.variables.update({v: units.pop() for v, units in taken.items() if len(units) == 1 and "" not in units})
 
     def of(self, function: Function) -> list[Mixed]:
-        """What is mixed in one function."""
+        """The places in one function where units are mixed."""
         self._found = []
 
         def say(where: Where, message: str, what: str) -> None:
@@ -151,7 +152,7 @@ class _Units:
             say(where, f"{source_text(value)} is in {unit}, {target} in {wanted}", target)
 
     def _unit(self, e: Expr) -> str:
-        """The unit of a value; empty: none is known."""
+        """The unit of a value; empty if it is not known."""
         match e:
             case Load(lvalue=LValue(root=Variable() as root)):
                 return self.variables.get(root, "")

@@ -1,13 +1,13 @@
 """Generated arguments: boundary values of the C type first, then seeded random ones.
 
 A parameter gets values if it is a number, an enumeration, a structure, a pointer to a register block, or a pointer to
-objects whose number the C tells: a structure, an array parameter with a length, or what the function itself selects
-with indices of known range.
+objects whose number the C tells: a structure, an array parameter with a length, or elements that the function itself
+selects with indices of known range.
 
-Where the C does not tell the number, `ROOM` elements are given and every integer beside them is small: a length, or the
-product of two, stays within them.  That is a guess (`Parameter.guessed`): who leaves such an object may be right.  A
-`char *` gets texts, and first those that the files themselves pass or compare; a pointer to a function gets one that
-does nothing.
+Where the C does not tell the number, the object has `ROOM` elements, and every integer parameter besides is small, so
+that a length, or the product of two, stays within them.  The size is a guess (`Parameter.guessed`): a function that
+accesses memory outside of such an object may be right.  A `char *` gets texts, first those that the files themselves
+pass or compare.  A pointer to a function gets a function that does nothing.
 """
 
 from __future__ import annotations
@@ -57,18 +57,18 @@ from emulator.c28x.tree_queries import bare, children, parts, roots, statements
 if TYPE_CHECKING:
     from hil.image import Image
 
-#: No generated array is longer.
+#: The greatest length of a generated array.
 LONGEST: Final = 4096
-#: Elements behind a pointer where the C does not tell how many, and the largest integer beside one.
+#: The elements behind a pointer if the C does not tell their number, and the largest integer besides such a pointer.
 ROOM: Final = 256
 _WITHIN: Final = 16
 #: The module, for reports, of an object whose size is a guess.
 GUESSED: Final = "guessed"
-#: Texts that a `char *` gets besides those of the files.
+#: Texts that a `char *` gets, besides those of the files.
 _TEXTS: Final = ("0", "abc", "-1", "12.5")
-#: Texts of the files that a `char *` gets, and how long they are at most.
+#: The number of texts of the files that a `char *` gets, and their greatest length.
 _OWN_TEXTS: Final = 8
-#: How deep pointers in structures behind pointers are followed.
+#: Pointers in structures behind pointers are followed to this depth.
 _DEEPEST: Final = 3
 #: Scalars of an aggregate that a report writes out.
 _SHOWN: Final = 8
@@ -83,7 +83,7 @@ class NotGenerated(Exception):
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter that gets values: its type, and if it is a pointer the object that is made for it."""
+    """A parameter that gets values: its type, and for a pointer the object that is created for it."""
 
     name: str
     ctype: CType
@@ -93,26 +93,26 @@ class Parameter:
     compared: tuple[int, ...] = ()
     #: The type of the object that a pointer points to.
     pointed: CType | None = None
-    #: The C does not tell how much that is.
+    #: Whether the size of this object is a guess, because the C does not tell it.
     guessed: bool = False
-    #: What a `char *` may point to.
+    #: The texts for a `char *`.
     texts: tuple[str, ...] = ()
-    #: Another parameter is guessed: integers may be its length.
+    #: Whether another parameter has a guessed size.  Then integers may be its length.
     bounded: bool = False
     #: The register blocks, by their names in C, that a pointer to one may point to.
     blocks: tuple[str, ...] = ()
-    #: The range that is declared of it: nothing else is given (`properties.py`).
+    #: Its declared range; no values outside of it are passed (`properties.py`).
     within: tuple[float, float] | None = None
 
     @property
     def shared(self) -> str:
-        """The structure type of which calls one after the other share an object; empty: each has its own."""
+        """The structure type whose object successive calls share; empty: each call has its own."""
         return self.pointed.name if isinstance(self.pointed, StructType) else ""
 
 
 @dataclass(frozen=True)
 class Value:
-    """A value of a parameter: a number, or a number for every scalar of what it is or points to."""
+    """A value of a parameter: a number, or a number for every scalar in its object."""
 
     parameter: Parameter
     scalars: tuple[Any, ...]
@@ -176,7 +176,7 @@ def quoted(codes: Iterable[int]) -> str:
 
 
 def _nothing_done(result: CType) -> Callable[..., Any]:
-    """A function for a pointer to one: whatever it is given, it does nothing and returns 0."""
+    """A function for a function pointer.  It does nothing with any arguments, and returns 0."""
     nothing = 0.0 if isinstance(result, FloatType) else 0
 
     def function(*arguments: Any) -> Any:
@@ -249,7 +249,7 @@ def _pointer(function: Function, variable: Variable, ctype: PointerType, own: Ma
 
 
 def _compared(function: Function, variable: Variable, ctype: CType) -> tuple[int, ...]:
-    """The numbers that a function compares a parameter with, as its cases too, and their neighbours."""
+    """The numbers that a function compares a parameter with (also in `case`), and their neighbours."""
     found: list[int] = []
     for s in statements(function.body):
         if isinstance(s, Switch) and _is(bare(s.subject), variable):
@@ -268,9 +268,9 @@ def _row(element: CType, length: int) -> ArrayType:
 
 
 def _taken_as(function: Function, variable: Variable) -> CType:
-    """What a `void *` points to, as its function takes it: the one type that it is converted to, or else words.
+    """The type behind a `void *`: the one type that the function converts it to, or else words.
 
-    Raises NotGenerated where it goes to functions of which nothing is known, or is converted to several types.
+    Raises NotGenerated if it is passed to unknown functions, or converted to several types.
     """
     everything = [part for s in statements(function.body) for root in roots(s) for part in parts(root)]
     types = {
@@ -286,7 +286,7 @@ def _taken_as(function: Function, variable: Variable) -> CType:
 
 
 def _texts(function: Function, variable: Variable, own: Mapping[str, Function]) -> tuple[str, ...]:
-    """Texts of the files for a `char *`: those that calls give it, and those that the function itself holds."""
+    """Texts of the files for a `char *`: those that calls pass, and those that the function itself contains."""
     place = function.parameters.index(variable)
     found: dict[str, None] = {}
     for other in own.values():
@@ -300,7 +300,7 @@ def _texts(function: Function, variable: Variable, own: Mapping[str, Function]) 
 
 
 def _members(ctype: CType, what: str, deep: int) -> bool:
-    """Whether what is in `ctype` has to be guessed.  Raises NotGenerated for a scalar there that gets no values."""
+    """Whether a size within `ctype` has to be guessed.  Raises NotGenerated for a scalar there that gets no values."""
     guessed = False
     for _, scalar in scalars(ctype):
         match scalar:
@@ -317,11 +317,11 @@ def _members(ctype: CType, what: str, deep: int) -> bool:
     return guessed
 
 
-# How many elements a function wants behind a pointer
+# The number of elements that a function needs behind a pointer
 
 
 def elements(function: Function, variable: Variable, own: Mapping[str, Function], deep: int = 4) -> int | None:
-    """How many elements `function` selects behind its parameter; None: that cannot be told."""
+    """The number of elements that `function` selects behind its parameter; None if it is not known."""
     most = 0
     for s in statements(function.body):
         for root in roots(s):
@@ -335,7 +335,7 @@ def elements(function: Function, variable: Variable, own: Mapping[str, Function]
 
 
 def _selected(node: Any, variable: Variable, own: Mapping[str, Function], deep: int) -> Iterator[int | None]:
-    """For each use of the pointer below `node` the elements that it needs."""
+    """The number of elements that each use of the pointer below `node` needs."""
     match node:
         case LValue(root=Expr() as base, indices=indices) if _is(base, variable):
             bounds = indices[0].expr.bounds if indices and indices[0].bound is None else (0, 0)
@@ -372,7 +372,7 @@ def _is(e: Expr, variable: Variable) -> bool:
 
 @lru_cache(maxsize=64)
 def boundaries(ctype: CType, constants: tuple[int, ...] = ()) -> tuple[Any, ...]:
-    """The values at which a C type changes its ways: 0, 1, -1, its ends, powers of two and their neighbours."""
+    """The boundary values of a C type: 0, 1, -1, its ends, powers of two and their neighbours."""
     if isinstance(ctype, FloatType):
         return (*FLOATS, *map(float, _SMALL))
     if constants:
@@ -404,8 +404,10 @@ def arguments(wanted: Sequence[Parameter], count: int, seed: str) -> list[tuple[
 
 
 def spread(parameter: Parameter, count: int, seed: str) -> list[Any]:
-    """Values of a number, the least first: its boundary values and what it is compared with, `count` random ones, and
-    the same with the other sign.
+    """Values of a number, the least first.
+
+    They are its boundary values, the numbers that it is compared with, `count` random ones, and all of these with the
+    other sign.
     """
     ctype, rng = parameter.ctype, Random(seed)
     values = {*boundaries(ctype, parameter.constants), *parameter.compared}
@@ -417,7 +419,7 @@ def spread(parameter: Parameter, count: int, seed: str) -> list[Any]:
 
 
 def moderate(wanted: Sequence[Parameter], size: int) -> tuple[Value, ...]:
-    """Arguments that few contracts exclude: `size` where a number goes, the first constant of an enumeration."""
+    """Arguments that few contracts exclude: `size` for a number, the first constant for an enumeration."""
 
     def of(parameter: Parameter) -> Value:
         def plain(ctype: CType, *, free: bool) -> Any:
@@ -438,7 +440,7 @@ def _plain(ctype: CType, size: int, constants: Sequence[int]) -> Any:
     return 1 if ctype == BOOL else min(size, ctype.high)
 
 
-#: Turns in which every number is the same plain one.
+#: The number of argument lists in which all numbers are the same plain one.
 _ALIKE: Final = 2
 
 
@@ -465,7 +467,7 @@ def _value(parameter: Parameter, turn: int, place: int, rng: Random) -> Value:
 
 
 def _contracted(known: tuple[Any, ...], ctype: CType, parameter: Parameter) -> tuple[Any, ...]:
-    """The values that the declared range of a parameter leaves, its ends among them."""
+    """The values within the declared range of a parameter, including its ends."""
     if parameter.within is None:
         return known
     low, high = _ends(ctype, parameter.within)
@@ -487,7 +489,7 @@ def _clamped(value: Any, parameter: Parameter) -> Any:
 
 
 def _within(value: Any, ctype: CType, parameter: Parameter, rng: Random) -> Any:
-    """A random value, or one of the declared range where it lies outside."""
+    """A random value; one from the declared range if it lies outside of it."""
     if parameter.within is None or parameter.within[0] <= value <= parameter.within[1]:
         return value
     low, high = _ends(ctype, parameter.within)
@@ -495,7 +497,7 @@ def _within(value: Any, ctype: CType, parameter: Parameter, rng: Random) -> Any:
 
 
 def _filled(parameter: Parameter, scalar: Callable[..., Any], turn: int) -> Value:
-    """A value: its numbers by `scalar`, which is told whether any is as good as another (`free`)."""
+    """A value whose numbers come from `scalar`; `free` tells `scalar` that any number will do."""
     if parameter.blocks:
         return Value(parameter, (parameter.blocks[turn % len(parameter.blocks)],))
     if parameter.texts:

@@ -1,4 +1,4 @@
-"""Whom a loop waits for: the chip itself, or something that only the outside, an interrupt or another function does."""
+"""What a loop waits for: the chip itself, or something that only the outside, an interrupt or another function does."""
 
 from __future__ import annotations
 
@@ -42,22 +42,22 @@ from hil.drivers.roles import Roles, called, reached
 
 #: Rules about loops without an end.
 WAITING: Final = ("endless-poll", "endless-loop")
-#: Registers, as `block.register`, that change by what comes from outside of the chip.
+#: Registers, as `block.register`, that data from outside of the chip changes.
 _OUTSIDE: Final = re.compile(
     r"(?i)^(gpio\w*\.gp\w*dat|sci\w*\.(scirx\w*|sciffrx)|eqep\w*\.|ecap\w*\.|can\w*\.|i2c\w*\.|mcbsp\w*\.|xint\w*\.|"
     r"adc\w*\.adcevt\w*|epwm\w*\.tz\w*)"
 )
-#: Fields of I2CSTR that a refusal sets.
+#: Fields of I2CSTR that a missing acknowledge sets.
 _OF_REFUSAL: Final = ("NACK", "ARDY")
 
 
 @dataclass(frozen=True, slots=True)
 class Nobody:
-    """Who ends no wait any more, in a run that is over."""
+    """The parties that can end no wait any more, in a run that is over."""
 
-    #: Interrupt routines that never run again, by the function's name.
+    #: Names of interrupt routines that never run again.
     silent: Collection[str] = ()
-    #: Register blocks of the I2C whose part has refused what it was sent: they wait for the program.
+    #: Register blocks of I2C modules whose part did not acknowledge.  They wait for the program.
     refused: Collection[str] = ()
 
 
@@ -65,9 +65,9 @@ NOBODY: Final = Nobody()
 
 
 def waits_for_others(finding: Finding, roles: Roles, nobody: Nobody = NOBODY) -> bool:
-    """Whether a finding is a loop without an end that something outside of its function can bring to one.
+    """Whether a finding is about an endless loop that something outside of its function can end.
 
-    A loop that is written without an end is meant to have none: `for (;;)` of a function that never returns.
+    A loop that is written without an end, as `for (;;)`, in a function that never returns is endless on purpose.
     """
     if finding.rule not in WAITING or finding.place is None:
         return False
@@ -77,7 +77,7 @@ def waits_for_others(finding: Finding, roles: Roles, nobody: Nobody = NOBODY) ->
 
 
 def meant_endless(finding: Finding, roles: Roles) -> bool:
-    """Whether a finding is that a loop has no end which is written without one."""
+    """Whether a finding is about an endless loop that is written without an end."""
     place = finding.place
     if finding.rule not in WAITING or place is None:
         return False
@@ -86,9 +86,9 @@ def meant_endless(finding: Finding, roles: Roles) -> bool:
 
 
 def loop_waits(place: Place, roles: Roles, *, main: bool = False, nobody: Nobody = NOBODY) -> bool:
-    """Whether a place stands in a loop that something outside of its function can bring to an end.
+    """Whether a place lies in a loop that something outside of its function can end.
 
-    While `main` waits, nothing runs but what somebody else enters.
+    While `main` waits, only functions run that the chip or the kernel enters.
     """
     by_path = {function.path: function for function in roles.functions}
     meanwhile = set(_entered(roles, by_path, nobody.silent)) if main else set(roles.functions)
@@ -106,7 +106,7 @@ def loop_waits(place: Place, roles: Roles, *, main: bool = False, nobody: Nobody
 
 
 def retries(frames: Sequence[Place], functions: Iterable[Function]) -> set[tuple[str, int]]:
-    """The loops around `frames` that repeat something until it works, without a limit: file, and line of the loop."""
+    """The loops around `frames` that repeat something without limit until it succeeds: file, and line of the loop."""
     functions = list(functions)
     return {
         (place.file, loop.line)
@@ -118,7 +118,7 @@ def retries(frames: Sequence[Place], functions: Iterable[Function]) -> set[tuple
 
 
 def retried(loops: Collection[tuple[str, int]], block: str, roles: Roles) -> tuple[Function, While] | None:
-    """One of `loops` (as `retries` gives them) that uses a register block, and its function."""
+    """A loop of `loops` (from `retries`) that uses a register block, and its function; None if there is none."""
     by_path = {function.path: function for function in roles.functions}
     for function in roles.functions:
         for loop in statements(function.body):
@@ -132,8 +132,9 @@ def retried(loops: Collection[tuple[str, int]], block: str, roles: Roles) -> tup
 
 
 def vain_loop(frames: Sequence[Place], roles: Roles, nobody: Nobody) -> tuple[Place, str] | None:
-    """Of a `main` that stands in a loop which only interrupt routines could end, none of which runs any more: where
-    the loop begins, and an object that it tests.
+    """A loop of `main` that only interrupt routines could end, while none of them runs any more.
+
+    Returns where the loop begins, and an object that it tests; None if `main` is in no such loop.
     """
     by_path = {function.path: function for function in roles.functions}
     for place in frames if nobody.silent else ():
@@ -152,7 +153,7 @@ def vain_loop(frames: Sequence[Place], roles: Roles, nobody: Nobody) -> tuple[Pl
 
 
 def _written_within(loop: While, roles: Roles, by_path: dict[str, Function]) -> set[Variable] | None:
-    """The objects that a loop and what it calls write; None if it can be left, or if nobody knows."""
+    """The objects that a loop and the functions that it calls write; None if it can be left, or this is not known."""
     if any(isinstance(s, Break | Return) for s in statements(loop.body)):
         return None
     functions = {other.path: other for first in called([loop]) for other in reached(first, by_path)}
@@ -169,7 +170,7 @@ def _written_within(loop: While, roles: Roles, by_path: dict[str, Function]) -> 
 
 
 def waits_for_tasks(finding: Finding, roles: Roles) -> bool:
-    """Whether a Swi or an interrupt routine polls objects that only tasks, which wait for its end, change."""
+    """Whether a Swi or an interrupt routine polls objects that only tasks change.  These wait for its end."""
     place = finding.place
     if place is None or not finding.task.startswith(("Swi:", "Hwi:", "Isr:", "Clock:")):
         return False
@@ -193,7 +194,7 @@ def waits_for_tasks(finding: Finding, roles: Roles) -> bool:
 
 
 def in_last_loop(frames: Sequence[Place], main: Function) -> bool:
-    """Whether `main`, the last of `frames`, stands in the loop that it ends with."""
+    """Whether `main`, the last of `frames`, is in its last loop."""
     loop = last_loop(main)
     if loop is None or not frames or frames[-1].function != main.name or frames[-1].file != main.where.file:
         return False
@@ -201,7 +202,7 @@ def in_last_loop(frames: Sequence[Place], main: Function) -> bool:
 
 
 def _entered(roles: Roles, by_path: dict[str, Function], silent: Collection[str]) -> Iterable[Function]:
-    """What runs without `main` calling it: entries, functions whose address is taken, and what they call."""
+    """Functions that run without a call by `main`: entries, functions whose address is taken, and those they call."""
     taken = {node.function.path for f in roles.functions for node in within(f.body) if isinstance(node, FunctionRef)}
     for path in taken | set(roles.entries):
         if path in by_path and by_path[path] is not roles.main and by_path[path].name not in silent:
@@ -209,7 +210,7 @@ def _entered(roles: Roles, by_path: dict[str, Function], silent: Collection[str]
 
 
 def blocks_of_loop(place: Place, functions: Iterable[Function]) -> set[str]:
-    """The register blocks that the test of a loop of `functions` looks at; of all of theirs, if none is at `place`."""
+    """The register blocks that the test of the loop at `place` reads; without such a loop, those of all loops."""
     functions = list(functions)
     loops = [loop for function in functions for loop in _loops_at(function, place)]
     loops = loops or [s for function in functions for s in statements(function.body) if isinstance(s, While)]
@@ -218,7 +219,7 @@ def blocks_of_loop(place: Place, functions: Iterable[Function]) -> set[str]:
 
 
 def looks_outside(function: Function, by_path: dict[str, Function]) -> bool:
-    """Whether a function, or what it comes to, takes something from outside of the chip."""
+    """Whether a function, or one that it calls, reads data from outside of the chip."""
     return any(_outside(node) for other in reached(function, by_path) for node in _registers(within(other.body)))
 
 
@@ -230,7 +231,7 @@ def _outside(node: Any, refused: Collection[str] = ()) -> bool:
 
 
 def _loops_at(function: Function, place: Place) -> list[While]:
-    """The loops of a function that begin at a place, or else hold it."""
+    """The loops of a function that begin at a place, or else those that contain it."""
     if function.name != place.function:
         return []
     loops = [s for s in statements(function.body) if isinstance(s, While) and s.where.file == place.file]
@@ -243,7 +244,7 @@ def _last_line(loop: While) -> int:
 
 
 def _looked_at(loop: Stmt, by_path: dict[str, Function]) -> Iterable[Any]:
-    """The registers and variables that a loop looks at, and what it calls."""
+    """The registers and variables that a loop reads, also those in functions that it calls."""
     below = list(within([loop]))
     functions = {other.path: other for first in called([loop]) for other in reached(first, by_path)}
     for function in functions.values():

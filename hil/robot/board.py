@@ -1,11 +1,10 @@
-"""The robot's schematic: what is soldered to which pin of the chip.
+"""The robot's schematic: the parts, and the pins of the chip that they are connected to.
 
-The thesis names the parts and few pins; a pin that it does not name is a CHOICE, made where the LaunchPad's headers
-bring it out, and stands once, here.  Numbers that follow from measured behaviour:
+The thesis names the parts and few pins.  A pin that it does not name is a CHOICE among the pins on the LaunchPad's
+headers, written only here.  Numbers that follow from measured behaviour:
 
-* sonars are fed with 3.3 V and VREFHI is 3.0 V, because the calibration slopes of the firmware (0.0551..0.0569 cm a
-  count, 12 conversions summed and divided by 2.3) are those of Vcc/512 per inch at 3.3 V over a 3.0 V converter
-  within 4 %.
+* The sonars have a supply of 3.3 V and VREFHI is 3.0 V.  With these, Vcc/512 per inch at the converter gives, within
+  4 %, the calibration slopes of the firmware (0.0551..0.0569 cm a count, 12 conversions summed and divided by 2.3).
 """
 
 from __future__ import annotations
@@ -53,7 +52,7 @@ MOTOR_SUPPLY_V: Final = 7.2
 
 @dataclass(frozen=True, slots=True)
 class _Turning:
-    """What turns the gyro where a face was put, and no world does."""
+    """The rotation of the gyro when a test sets it, and not a world."""
 
     yaw_rate_rad_s: float
 
@@ -63,7 +62,7 @@ class _Turning:
 
 @dataclass(frozen=True, slots=True)
 class _Wall:
-    """What a sonar sees likewise."""
+    """The range of a sonar when a test sets it, and not a world."""
 
     range_m: float
 
@@ -74,14 +73,14 @@ class _Wall:
 class RobotBoard(Board):
     """The chip with the robot's parts.
 
-    `xbee` puts the radio between SCI and PC, otherwise a wire of the same baud.  What the parts measure comes from the
-    world (`mounting.py`): call `gyro.set_rate_source`, `sonars.set_range_source`, `bumper.press`, integrate the motors.
-    `options` are parts that the robot of the thesis does not have (`options/README.md`); a board made from this one may
-    name its own in the class.
+    `xbee` puts the radio between SCI and PC; otherwise there is a wire of the same baud rate.  The measured quantities
+    come from the world (`mounting.py`): call `gyro.set_rate_source`, `sonars.set_range_source`, `bumper.press`, and
+    integrate the motors.  `options` are parts that the robot of the thesis does not have (`options/README.md`); a
+    subclass may name its own.
 
-    CHOICE: the sonars have had power before the CPU starts (`sonars_powered_up`), as on a bench where the program is
-    loaded into a board that is on.  Switched on together, they need 250 ms, and the start pulse of Init_US at 10 ms
-    finds none of them ready: the ring never starts.
+    CHOICE: the sonars have power before the CPU starts (`sonars_powered_up`), as on a bench where the program is loaded
+    into a board that is on.  If all are switched on together, the sonars need 250 ms.  The start pulse of Init_US at
+    10 ms then finds none of them ready, and the ring never starts.
     """
 
     project: ClassVar[Project | None] = Project("firmware_model")
@@ -90,7 +89,7 @@ class RobotBoard(Board):
     vrefhi_v: ClassVar[float] = 3.0
     pulls: ClassVar[Mapping[int, int]] = {BUMPER_GPIO: 1, GYRO_CS_GPIO: 1}
     spi_pins: ClassVar[Mapping[str, tuple[int, int, int]]] = {"A": GYRO_SPI_GPIO}
-    #: Parts of `options/` that a board of this class has in any case.
+    #: Parts of `options/` that every board of this class has.
     options: Sequence[str] = ()
 
     def __init__(
@@ -105,7 +104,7 @@ class RobotBoard(Board):
         super().__init__(seed=seed, ideal=ideal)
 
     def solder(self) -> None:
-        """Every part at its pins."""
+        """Connect every part to its pins."""
         clock, ideal, reports = self.clock, self.ideal, self.reports
         self.gyro = self.on_spi(
             "gyro", L3G4200D(clock, rng=self.rng("gyro"), ideal=ideal, report=reports, mark=reports.mark),

@@ -43,10 +43,10 @@ def hil_bench(request: pytest.FixtureRequest, hil_seed: int, hil_fill: str, hil_
 
 
 def own_c(item: pytest.Item) -> dict[str, Any]:
-    """The C files that a test with `bench` has in the place of modules of the robot, as `Setup` takes them.
+    """The C files that replace modules of the robot in a test with `bench`, as arguments for `Setup`.
 
-    An ini key that names no file of the robot is for other tests.  Raises ValueError for a marker that names anything
-    but C files, or another ABI than the robot's.
+    An ini key that names no file of the robot is for other tests.  Raises ValueError for a marker that names other
+    files than C files, or another ABI than the robot's.
     """
     from firmware_model.c_files import FILES, module_of
 

@@ -1,4 +1,4 @@
-"""How the robot stands in the world: what its sensors see of it, and what its wheels do to it."""
+"""Connects the robot's board with the world: its sensors measure the world, and its wheels move the robot there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A drive as a moving picture: the robot in its world, what its sonars see, where it believes to be."""
+"""A drive as a moving picture: the robot in its world, what its sonars see, and its own estimate of its pose."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from hil.world.robot_params import RobotParams
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-#: So much faster than the robot drives, at so many pictures a second, the last of which stays a while.
+#: The picture runs faster by this factor, at this many pictures a second; the last picture stays for a while.
 SPEED: Final = 8.0
 RATE_HZ: Final = 10
 LAST_MS: Final = 1500
-#: What is drawn in half a second of CPU.
+#: The number of pictures that take half a second of CPU time.
 FEW: Final = 30
 #: Flat colours need no more.
 _COLOURS: Final = 32
 _WIDTH_IN, _DPI = 7.0, 100
-#: Air around the walls.
+#: Margin around the walls in m.
 _MARGIN_M: Final = 0.3
 #: A drive in a world without walls is drawn in a square as large as this at least.
 _LEAST_M: Final = 1.0
@@ -36,9 +36,9 @@ _LEAST_M: Final = 1.0
 def save_moving(
     path: Path, robot: RobotMachine, frames: Sequence[tuple[float, OdometryFrame]], title: str, *, hurried: bool = False
 ) -> bool:
-    """Write the drive up to now as a GIF; `frames` are what it has sent, each with the virtual time at its end.
+    """Write the drive up to now as a GIF; `frames` are those that it has sent, each with the virtual time at its end.
 
-    `hurried`: with no more than `FEW` pictures.  Returns whether all are there.
+    `hurried`: use no more than `FEW` pictures.  Returns whether no picture was left out.
     """
     want("matplotlib")
     from PIL.Image import Dither
@@ -61,7 +61,7 @@ def save_moving(
 
 
 class _Scene:
-    """What is drawn once, and what moves in it."""
+    """The background, which is drawn once, and the moving parts."""
 
     def __init__(self, robot: RobotMachine, frames: Sequence[tuple[float, OdometryFrame]], title: str) -> None:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -131,7 +131,7 @@ class _Scene:
 
 
 def _bounds(robot: RobotMachine, path: Sequence[PathPoint]) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Lower left and upper right corner of what is shown: walls, posts, the path."""
+    """Lower left and upper right corner of the area that contains walls, posts and the path."""
     points = [*(end for wall in robot.walls for end in wall), *((point.x_m, point.y_m) for point in path)]
     points += [(x + sign * radius, y + sign * radius) for x, y, radius in robot.posts for sign in (-1, 1)]
     low, high = (tuple(pick(axis) for axis in zip(*points, strict=True)) for pick in (min, max))

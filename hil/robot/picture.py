@@ -1,4 +1,4 @@
-"""A robot's drive as a figure: where it was, where it believed to be, and what its sonars saw, in the world's frame."""
+"""A robot's drive as a figure, in world coordinates: its path, its own estimate of it, and what its sonars saw."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def drive_of(robot: RobotMachine, frames: Iterable[tuple[float, OdometryFrame]], title: str) -> Figure:
-    """The drive up to now; `frames` are what it has sent, each with the virtual time in seconds at its end."""
+    """The drive up to now; `frames` are those that it has sent, each with the virtual time in seconds at its end."""
     true_path = robot.true_path()
     believed = robot.odometry_path()
     start = true_path[0] if true_path else PathPoint(0.0, 0.0, 0.0, 0.0)

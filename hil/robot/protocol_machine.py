@@ -1,9 +1,9 @@
-"""The serial protocol of the robot, fed with orders in pieces, beside a model of what an order must change.
+"""Tests the serial protocol of the robot: it sends orders in pieces, and compares the robot with a model.
 
-`ProtocolModel` states the protocol and knows nothing of the emulator: a frame runs from `#` to a carriage return, a `#`
-inside begins it anew, a frame that does not fit the buffer is dropped, an order that is none changes nothing.
-`ProtocolMachine` is the Hypothesis machine.  A subclass says which firmware it holds against the model, and what it is
-fed with:
+`ProtocolModel` describes the protocol without the emulator.  A frame runs from `#` to a carriage return.  A `#` inside
+begins a new frame.  A frame that does not fit the buffer is dropped.  An invalid order changes nothing.
+`ProtocolMachine` is the Hypothesis machine.  A subclass chooses the firmware that is compared with the model, and the
+frames that it gets:
 
     class TestProtocol(ProtocolMachine.TestCase): ...
 
@@ -34,7 +34,7 @@ STATES: Final = {
 }  # fmt: skip
 _NUMBER: Final = rb"[+-]?(?:\d+\.?\d*|\.\d+)"
 _REFERENCE: Final = re.compile(rb"#SETR(%b),(%b)\r" % (_NUMBER, _NUMBER))
-#: Virtual time in which an order has its effect, once its end mark is in.
+#: The virtual time after the end mark within which an order takes effect.
 EFFECT_S: Final = 0.01
 
 
@@ -43,7 +43,7 @@ EFFECT_S: Final = 0.01
 
 @dataclass
 class ProtocolModel:
-    """What the robot has understood."""
+    """The state and reference that the robot must have."""
 
     state: str = "STOP"
     v_m_s: float = 0.0
@@ -51,7 +51,7 @@ class ProtocolModel:
     _frame: bytes | None = None
 
     def receive(self, data: bytes) -> None:
-        """Bytes off the line."""
+        """Take bytes from the line."""
         for byte in data:
             if byte == ord("#"):
                 self._frame = b""
@@ -75,7 +75,7 @@ class ProtocolModel:
 
 
 class RobotUnderTest:
-    """The robot as the machine sees it: bytes in, state out."""
+    """The robot as the machine uses it: bytes go in, the state comes out."""
 
     def __init__(self, setup: Setup) -> None:
         self.bench = Bench(setup, traced=False)
@@ -106,11 +106,11 @@ class RobotUnderTest:
 
 
 class ProtocolMachine(RuleBasedStateMachine):
-    """Frames whole, cut at any places, given up half-way, with noise between; then state and reference are compared."""
+    """Sends frames: whole, in pieces, incomplete, with noise in between.  Then it compares state and reference."""
 
-    #: The robot: ideal parts, so that its tasks have nothing but orders to react to.
+    #: The robot has ideal parts, so that its tasks react only to orders.
     setup: ClassVar[Setup] = Setup(world="box", realistic=False)
-    #: What is sent as a frame.
+    #: The frames to send.
     frames: ClassVar[st.SearchStrategy[bytes]] = strategies.orders()
 
     robot: RobotUnderTest
@@ -139,7 +139,7 @@ class ProtocolMachine(RuleBasedStateMachine):
 
     @rule(beginning=strategies.truncated_orders())
     def frame_given_up(self, beginning: bytes) -> None:
-        """The beginning of an order; what comes next is none of it, unless it has no begin mark of its own."""
+        """Send the beginning of an order only.  Later bytes do not belong to it, unless they have no begin mark."""
         self._send(beginning)
 
     @rule(data=strategies.noise())
@@ -149,7 +149,7 @@ class ProtocolMachine(RuleBasedStateMachine):
 
     @invariant()
     def understood(self) -> None:
-        """State and reference are what the frames so far say."""
+        """State and reference agree with the frames so far."""
         if "robot" not in self.__dict__:
             return
         self.robot.wait(EFFECT_S)

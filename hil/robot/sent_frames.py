@@ -25,7 +25,7 @@ class FrameRow(NamedTuple):
 
 
 class SentFrames:
-    """Bytes as they were sent; they are decoded on demand."""
+    """The bytes that were sent; frames are decoded from them on demand."""
 
     def __init__(self) -> None:
         self._bytes = bytearray()

@@ -1,1 +1,1 @@
-"""What the corrected robot does when something breaks: each fault alone, and many at random."""
+"""The behaviour of the corrected robot under faults: each fault alone, and many at random."""

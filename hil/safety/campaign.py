@@ -1,17 +1,18 @@
-"""A campaign: short runs with worlds, faults and orders at random, and what must hold whatever breaks.
+"""A campaign: short runs with random worlds, faults and orders, and requirements that must hold under every fault.
 
-Each run is a scenario file, made from a seed and a number; so what fails can be run again by `hil scenario`, and is
-made shorter before it is shown: without the orders, faults and seconds that the failure does not need.
+Each run is a scenario file, made from a seed and a number.  So `hil scenario` can repeat a failed run.  A failed run is
+shortened before it is shown: orders, faults and seconds that the failure does not need are left out.
 
-What must hold of the corrected robot, and follows from what breaks:
+The requirements of the corrected robot, which depend on the faults:
 
-* it never drives on a sensor of which it could know that it is dead, nor on orders of a link that is silent, and its
-  frames say so (`HELD`);
-* it stands when a task of its hangs: the watchdog has reset the chip;
-* it stands when it was told to, as far as the order can come through;
-* no motor is driven against a wheel that stands, and a mission drives into nothing that its front sonar has heard.
+* It never drives by a sensor that it can know to be dead, nor by orders of a silent link, and its frames say so
+  (`HELD`).
+* It stands when one of its tasks hangs: the watchdog has reset the chip.
+* It stands when it was told to, if the order can arrive.
+* No motor is driven against a wheel that is held, and a mission never hits an obstacle that its front sonar has heard.
 
-Left out: a flipped bit of memory, which may do anything; a gyro that tells another name, which nobody asks for.
+Left out: a flipped bit of memory, which may do anything; and a gyro with a wrong identity, which the firmware does not
+read.
 """
 
 from __future__ import annotations
@@ -37,16 +38,16 @@ from hil.workers import workers
 from hil.world.geometry import within
 from hil.world.maps import START_CLEARANCE_M, WorldMap, builtin_maps, load_map
 
-#: How long a run is, in s, when its fault begins, and how long that lasts.
+#: The length of a run in s, the time when its fault begins, and the duration of the fault.
 SECONDS: Final = (5.0, 9.0)
 BEGINS_S: Final = (0.3, 2.5)
 LASTS_S: Final = (0.5, 6.0)
-#: A console repeats its reference so often.
+#: The time in s between two references of a console.
 REPEAT_S: Final = 0.4
 #: A sonar's input.
 _INPUTS: Final = ("A2", "A3", "A4")
 _LEFT_OUT: Final = ("ram-bit-flip", "gyro-who-am-i")
-#: A task of these hangs, a second in each turn, for the rest of the run: each begins a turn in every period.
+#: One of these tasks hangs for a second in each turn, for the rest of the run.  Each begins a turn in every period.
 _TASKS: Final = ("TaskUS", "TaskGYRO", "TaskSERVO", "TaskNAVIGATION", "TaskODO")
 _HANGS: Final = "task-slow"
 _FOREVER_US: Final = 1e6
@@ -54,19 +55,20 @@ _FOREVER_US: Final = 1e6
 #: longest period (250 ms), the longest wait of a release (500 ms and a look), the watchdog (105 ms).
 _ARMED_S: Final = 1.0
 HANG_S: Final = 1.1
-#: A stop is heard, and the wheels stand, within this time.
+#: Within this time a stop is received and the wheels stand.
 STOPS_S: Final = 0.5
-#: Longer than this no motor is driven against a wheel that stands: 16 periods of 25 ms, and to notice it.
+#: A motor is driven against a held wheel for no longer than this: 16 periods of 25 ms, plus the time to detect it.
 STALLED_S: Final = 1.0
-#: Room around a start: the robot may turn.
+#: Free room around a start, so that the robot can turn.
 _ROOM_M: Final = 0.3
 
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """What holds while a fault lasts: from `after_s` behind its begin on, `mode` stands and tells `number`.
+    """A requirement while a fault lasts: from `after_s` after its begin, a robot in `mode` stands and sends `number`.
 
-    `after_s` is the period of whoever looks, one of TaskNAVIGATION and TaskSERVO (75 ms), and the wheels' 0.2 s.
+    `after_s` is the period of the task that detects it, one of TaskNAVIGATION and TaskSERVO (75 ms), and the wheels'
+    0.2 s.
     """
 
     mode: str
@@ -74,7 +76,7 @@ class Held:
     number: int
 
 
-#: Kind of a fault -> what holds.  1: no distance, 4: gyro silent, 7: link silent (`single_faults.SEEN`).
+#: Kind of a fault -> its requirement.  1: no distance, 4: gyro silent, 7: link silent (`single_faults.SEEN`).
 HELD: Final[Mapping[str, Held]] = {
     "adc-dead": Held("mission", 0.7, 1),
     "adc-input-shorted": Held("mission", 0.7, 1),
@@ -86,15 +88,15 @@ HELD: Final[Mapping[str, Held]] = {
     "serial-bit-flipped": Held("tele", 3.2, 7),
     "radio-loss": Held("tele", 3.2, 7),
 }
-#: Faults that keep frames or orders from coming through.
+#: Faults that can stop frames or orders.
 _OF_LINE: Final = ("serial-", "radio-", "oscillator-drift")
-#: Faults after which what the front sonar hears is not what the firmware reads.
+#: Faults after which the firmware does not read what the front sonar hears.
 _OF_SONAR: Final = ("adc-",)
 
 
 @dataclass(frozen=True, slots=True)
 class Failed:
-    """A run in which something did not hold: which, what was seen, and the text of the shortest scenario."""
+    """A run that broke a requirement: its number, what was seen, and the text of the shortest scenario."""
 
     number: int
     broken: tuple[str, ...]
@@ -103,9 +105,9 @@ class Failed:
 
 @dataclass(frozen=True, slots=True)
 class Campaign:
-    """What came of the runs: how many ended, which of them failed, and all findings, each with the runs that show it.
+    """The outcome of all runs: how many ended, which failed, and all findings, each with the runs that show it.
 
-    Findings are those of a robot that is not watched and whose source is not searched.
+    Findings are those without `watch` and without a search of the source.
     """
 
     runs: int
@@ -183,7 +185,7 @@ def _orders(random: Random, mode: str, seconds: float) -> list[str]:
 
 
 def _start(random: Random, world: WorldMap) -> Table:
-    """Somewhere with room around it; as the map says where none is found."""
+    """A start pose with room around it; the map's own pose if none is found."""
     left, low, right, high = world.bounds()
     for _ in range(50):
         x_m, y_m = round(random.uniform(left, right), 2), round(random.uniform(low, high), 2)
@@ -195,7 +197,7 @@ def _start(random: Random, world: WorldMap) -> Table:
 
 
 def expectations(table: Table) -> list[Table]:
-    """What must hold of a run: it follows from its orders and faults."""
+    """The requirements of a run, which follow from its orders and faults."""
     found: list[Table] = [{"name": "no motor is driven against a wheel that stands", "quantity": "stalled_s",
                            "most": STALLED_S}]  # fmt: skip
     faults, seconds = table.get("faults", []), table["seconds"]
@@ -238,7 +240,7 @@ def _toward(fault: Table) -> bool:
 
 
 def _frame(fault: Table, held: Held) -> str:
-    """A pattern of the frames that tell it: no distance stands in the place of that distance."""
+    """A pattern for the frames that report a fault.  "No distance" is at the place of the distance that is missing."""
     if held.number != 1 or fault["kind"] == "adc-dead":
         return f"^#ODO (-?[0-9]+,){{3}}-{10 * held.number},"
     place = {"A3": 3, "A4": 4, "A2": 5}[fault["input"]]
@@ -249,7 +251,7 @@ def _frame(fault: Table, held: Held) -> str:
 
 
 def text_of(table: Table) -> str:
-    """The file of a scenario, with what must hold of it."""
+    """The text of a scenario file, with its requirements."""
     lines = [f"{key} = {_toml(value)}" for key, value in table.items() if not _is_tables(value)]
     tables = {key: value for key, value in table.items() if _is_tables(value)} | {"expect": expectations(table)}
     for key, value in tables.items():
@@ -269,12 +271,12 @@ def _toml(value: Any) -> str:
 
 
 def broken(table: Table) -> tuple[str, ...]:
-    """What does not hold of a run, a sentence each."""
+    """The broken requirements of a run, one sentence each."""
     return _judged(table)[0]
 
 
 def _judged(table: Table) -> tuple[tuple[str, ...], tuple[Finding, ...]]:
-    """What does not hold of a run, and its findings."""
+    """The broken requirements of a run, and its findings."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / f"campaign{running.SUFFIX}"
         file.write_text(text_of(table), encoding="utf-8")
@@ -290,7 +292,7 @@ def _judged(table: Table) -> tuple[tuple[str, ...], tuple[Finding, ...]]:
 
 
 def shortest(table: Table) -> Table:
-    """The same with as little as fails in the same way."""
+    """The smallest scenario that fails in the same way."""
     names = {sentence.partition(":")[0].partition(" (")[0] for sentence in broken(table)}
     changed = True
     while changed:
@@ -303,7 +305,7 @@ def shortest(table: Table) -> Table:
 
 
 def _less(table: Table) -> Iterator[Table]:
-    """Tables with something taken away, the most first."""
+    """Tables with a part removed, the largest part first."""
     for key in ("faults", "orders"):
         for n in range(len(table[key]) - 1, -1, -1):
             if len(table[key]) > 1:
@@ -318,7 +320,7 @@ def _less(table: Table) -> Iterator[Table]:
         yield {**table, "seconds": round(table["seconds"] - 1.0, 1)}
 
 
-#: What a run came to: its number, how it failed if it did, its findings.
+#: The outcome of a run: its number, its failure if it failed, its findings.
 _Ran = tuple[int, Failed | None, tuple[Finding, ...]]
 
 
@@ -335,7 +337,7 @@ def campaign(
     runs: int, *, seed: int = 1, jobs: int = 1, faithful: bool = False,
     told: Callable[[Failed | None], object] = lambda failed: None,
 ) -> Campaign:  # fmt: skip
-    """So many runs, `jobs` at a time; after Ctrl-C those that have ended.  `told` hears of each as it ends."""
+    """Run `runs` runs, `jobs` at a time; after Ctrl-C return those that have ended.  `told` is called as each ends."""
     ended: list[_Ran] = []
     with suppress(KeyboardInterrupt), closing(_each(runs, seed, jobs, faithful)) as each:
         for ran in each:

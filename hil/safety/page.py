@@ -20,7 +20,7 @@ _END: Final = "<!-- end -->"
 
 
 def row_cells(told: MeasuredFault) -> tuple[str, ...]:
-    """A row: what cannot be noticed stands in brackets, with why."""
+    """The cells of a row.  A fault that cannot be noticed has its reason in brackets."""
     return (
         told.row.of, told.row.fault, told.noticed or f"({told.row.blind})", _ms(told.noticed_ms), told.does,
         _ms(told.does_ms), told.goes_on, _ms(told.goes_on_ms),
@@ -47,7 +47,7 @@ def markdown(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def page(told: Iterable[MeasuredFault], driven: Iterable[Mission]) -> str:
-    """The page with these tables in the place of those that it has."""
+    """The page with its tables replaced by these."""
     text = PAGE.read_text(encoding="utf-8")
     for name, headings, rows in (
         ("faults", ROW_HEADINGS, [row_cells(one) for one in told]),

@@ -1,13 +1,13 @@
-"""A table of single faults: by what the corrected firmware notices each, how soon it stops, and how it goes on.
+"""A table of single faults: how the corrected firmware notices each one, how soon it stops, and how it goes on.
 
-Each row is a run of the emulated robot with all corrections, and beside it the same run without the fault.  Nothing of
-a row is written down but the fault and, where nothing on board can notice it, why; a row with such a reason whose run
-shows a notice is a mistake of this table, and a test holds that there is none.
+Each row compares a run of the emulated robot, with all corrections, with the same run without the fault.  Only the
+fault is written down, and the reason if nothing on board can notice it.  If a run with such a reason shows that the
+firmware noticed the fault, the table is wrong; a test checks that there is no such row.
 
-A run is `FAULT_S` of driving, the fault for `LASTS_S`, `BEYOND_S` without it, then what somebody would do: STOP, and
-the order to drive again.  Times count from the moment the fault begins, or ends, in true milliseconds.
+A run is `FAULT_S` of driving, `LASTS_S` with the fault, `BEYOND_S` without it, then the orders of a user: STOP, and the
+order to drive again.  Times count from the begin or the end of the fault, in true milliseconds.
 
-The firmware says what it knows to be wrong by a number in its frames (`Seen` of the corrected main_Robot.c).
+The firmware reports faults that it has detected by a number in its frames (`Seen` of the corrected main_Robot.c).
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ FAULT_S: Final = 3.0
 LASTS_S: Final = 4.0
 BEYOND_S: Final = 3.0
 AGAIN_S: Final = 2.0
-#: How often is looked.
+#: The time in s between two samples.
 LOOK_S: Final = 0.01
-#: A console sends its reference so often.
+#: The time in s between two references of a console.
 REPEAT_S: Final = 0.1
-#: Of a mission on a free way, and what the console orders.
+#: The speed in m/s of a mission on a free way, which is also the console's order.
 SPEED_M_S: Final = 0.15
 #: A robot slower than this stands.
 STANDS_M_S: Final = 0.005
@@ -43,18 +43,18 @@ STANDS_RAD_S: Final = 0.05
 #: One that is faster than this backwards goes back; one below this share of its speed is slower.
 BACKS_M_S: Final = 0.02
 SLOWER: Final = 0.85
-#: What lasts less is none of these.
+#: A behaviour that lasts less does not count.
 HELD_S: Final = 0.1
-#: From the middle between the wheels to a wall, at the start; and how long a mission before it is looked at.
+#: The distance from the middle between the wheels to a wall at the start; the time that a mission before it is watched.
 WALL_M: Final = 1.2
 MISSION_S: Final = 25.0
 #: It is on its way again at half of its speed.
 DRIVES: Final = 0.5
-#: A heading further off than this from that without the fault: it turns away.
+#: The robot turns away if its heading differs by more than this from the heading without the fault.
 ELSEWHERE_RAD: Final = 0.15
-#: In the place of a number: the watchdog has reset the chip, and no frames come any more.
+#: In place of a number: the watchdog has reset the chip, so no frames come any more.
 RESET: Final = -1
-#: What the firmware tells by the numbers of its frames.
+#: The meaning of the numbers in the firmware's frames.
 SEEN: Final = {
     RESET: "watchdog",
     1: "no distance", 2: "old distance", 3: "front distance stuck", 4: "gyro silent", 5: "gyro and wheels at odds",
@@ -146,7 +146,7 @@ WALLS_DEG: Final = (0, 15, 30, 40, 45, 50, 60, 75)
 
 @dataclass(frozen=True, slots=True)
 class RobotSample:
-    """One look at the robot; times in s after start-up."""
+    """One sample of the robot's state; times in s after start-up."""
 
     time_s: float
     v_m_s: float
@@ -165,19 +165,19 @@ class RobotSample:
 
 @dataclass(frozen=True)
 class FaultRun:
-    """What a drive came to."""
+    """The outcome of a drive."""
 
     looks: tuple[RobotSample, ...]
     fired: int
     collisions: int
 
     def between(self, first_s: float, last_s: float) -> list[RobotSample]:
-        """Looks of a time."""
+        """The samples between two times."""
         return [look for look in self.looks if first_s <= look.time_s < last_s]
 
 
 def drive(row: SingleFault | None, *, tele: bool = False, xbee: bool = False, seed: int = 1) -> FaultRun:
-    """The drive of a row; without one as it is if nothing breaks."""
+    """The drive of a row; without a row, the drive without a fault."""
     faults: tuple[str, ...] = ()
     watch = False
     if row is not None:
@@ -203,7 +203,7 @@ def drive(row: SingleFault | None, *, tele: bool = False, xbee: bool = False, se
 
 
 def _orders(step: int, tele: bool) -> list[bytes]:
-    """What the PC sends at a look."""
+    """The orders that the PC sends at a sample."""
     stop, again = (round(s / LOOK_S) for s in (FAULT_S + LASTS_S + BEYOND_S, FAULT_S + LASTS_S + BEYOND_S + 0.5))
     if step == stop:
         return [order("stop")]
@@ -215,17 +215,17 @@ def _orders(step: int, tele: bool) -> list[bytes]:
 
 @dataclass(frozen=True)
 class MeasuredFault:
-    """A row, measured.  Times in ms after the fault began, or ended; None: it did not happen."""
+    """A measured row.  Times in ms after the begin or the end of the fault; None: it did not happen."""
 
     row: SingleFault
     fired: int
-    #: By what the firmware noticed it, and when.
+    #: How the firmware noticed the fault, and when.
     noticed: str
     noticed_ms: float | None
-    #: What the robot did, and when it did so.
+    #: What the robot did, and when.
     does: str
     does_ms: float | None
-    #: How it went on when the fault was over, and when.
+    #: How it went on after the fault, and when.
     goes_on: str
     goes_on_ms: float | None
     collisions: int
@@ -243,7 +243,7 @@ class MeasuredFault:
 def table(
     rows: Sequence[SingleFault] = ROWS, *, progress: Callable[[int], None] = lambda done: None
 ) -> Iterator[MeasuredFault]:
-    """Each row, measured, in order; `progress` is told how many are done."""
+    """Measure each row, in order.  `progress` is called with the number of rows that are done."""
     sound = cache(lambda tele, xbee: drive(None, tele=tele, xbee=xbee))
     for done, row in enumerate(rows, 1):
         yield measured(row, drive(row), sound(row.tele, row.xbee))
@@ -251,7 +251,7 @@ def table(
 
 
 def measured(row: SingleFault, run: FaultRun, sound: FaultRun) -> MeasuredFault:
-    """What the drive of a row shows beside the sound one."""
+    """Measure a row: compare its drive with the drive without a fault."""
     fault = parse(row.fault)
     end_s = FAULT_S + min(fault.lasts_s, LASTS_S)
     noticed, noticed_ms = _noticed(run, sound)
@@ -271,7 +271,7 @@ def _noticed(run: FaultRun, sound: FaultRun) -> tuple[str, float | None]:
 
 
 def _does(run: FaultRun, sound: FaultRun) -> tuple[str, float | None]:
-    """What it does other than without the fault, while it lasts."""
+    """How the robot's behaviour differs from the drive without a fault, while the fault lasts; and when."""
     looks, others = (each.between(FAULT_S, FAULT_S + LASTS_S) for each in (run, sound))
     speed = others[0].v_m_s
     held = round(HELD_S / LOOK_S)
@@ -297,7 +297,7 @@ def _after(look: RobotSample) -> float:
 
 
 def _goes_on(run: FaultRun, does: str, does_ms: float | None, end_s: float) -> tuple[str, float | None]:
-    """How it drives when the fault is over."""
+    """How the robot drives after the fault, and when it does so."""
     if does_ms is None:
         return "", None
     if run.looks[-1].seen == RESET:
@@ -326,7 +326,7 @@ class Mission:
     nearest_m: float
     touched: int
     bumps: int
-    #: What the firmware told, in this order.
+    #: The reports of the firmware, in their order.
     noticed: tuple[str, ...]
     #: Its way in the last 5 s.
     goes_on_m: float
@@ -337,7 +337,7 @@ class Mission:
 
 
 def places() -> dict[str, WorldMap]:
-    """Where a mission is looked at: before a wall at several angles, in a dead end, on a slippery floor."""
+    """The maps of the missions: before a wall at several angles, in a dead end, on a slippery floor."""
     found = {}
     for angle_deg in WALLS_DEG:
         a = radians(angle_deg)
@@ -360,7 +360,7 @@ _HALL: Final = _lines((-6.0, -6.0), (6.0, -6.0), (6.0, 6.0), (-6.0, 6.0), (-6.0,
 
 
 def missions(*, progress: Callable[[int], None] = lambda done: None) -> Iterator[Mission]:
-    """A mission in each of the places."""
+    """Run a mission in each of the places."""
     for done, (name, world) in enumerate(places().items(), 1):
         yield mission(name, world)
         progress(done)

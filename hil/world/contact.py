@@ -5,8 +5,8 @@ of zero and may use only so much impulse: dry friction of a motor, grip of a tyr
 pulls, and its rubbing.  They are solved in a fixed order until settled (projected Gauss-Seidel), which is stable for
 any step and gives the same result every time.
 
-An overlap is no business of velocities: whatever removes it by a speed gives the robot that speed to keep, and the
-shorter the step the more of it.  `pushed_out` moves the body instead.
+Velocities do not remove an overlap: a speed that removes it would stay with the robot, and the shorter the step, the
+greater it would be.  `pushed_out` moves the body instead.
 
 Modelled
     Coulomb friction in motors, between tyre and floor along the wheel, between body and wall; inelastic impact; a
@@ -24,7 +24,8 @@ from typing import Final
 
 from hil.world.geometry import Post, Segment
 
-#: Passes at most; solving ends when no impulse changes by what this force (N, or N.m about a wheel) gives in the step.
+#: The greatest number of passes.  Solving ends earlier when each impulse changes by less than this force (N, or N.m
+#: about a wheel) gives in the step.
 ITERATIONS: Final = 16
 SETTLED_N: Final = 2e-7
 #: Rounds among walls that push a body to each other; a corner of 90 degrees takes one.
@@ -32,7 +33,7 @@ ROUNDS: Final = 8
 
 
 class Touch:
-    """A point of the round body near something solid: (nx, ny) points from it to the body, `gap_m` is what is left."""
+    """A point of the round body near a wall or post.  (nx, ny) points from it to the body; `gap_m` is the distance."""
 
     __slots__ = ("gap_m", "nx", "ny")
 
@@ -43,7 +44,7 @@ class Touch:
 def nearby(
     x: float, y: float, reach_m: float, walls: tuple[Segment, ...], posts: list[Post]
 ) -> tuple[tuple[Segment, ...], list[Post]]:
-    """The walls and posts that come nearer than `reach_m` to (x, y)."""
+    """The walls and posts that are nearer than `reach_m` to (x, y)."""
     return (
         tuple([wall for wall in walls if wall.distance(x, y) < reach_m]),
         [post for post in posts if post.distance(x, y) < reach_m],
@@ -53,7 +54,7 @@ def nearby(
 def touches(
     x: float, y: float, radius_m: float, within_m: float, walls: tuple[Segment, ...], posts: list[Post]
 ) -> list[Touch]:
-    """What is nearer than `within_m` to a disc of `radius_m` about (x, y)."""
+    """The walls and posts that are nearer than `within_m` to a disc of `radius_m` about (x, y)."""
     found: list[Touch] = []
     reach = radius_m + within_m
     for wall in walls:
@@ -68,14 +69,14 @@ def touches(
 
 
 def _from_wall(wall: Segment, x: float, y: float) -> tuple[float, float, float]:
-    """Unit vector from a wall to (x, y), and how far; on the wall itself its left is as good as its right."""
+    """Unit vector from a wall to (x, y), and the distance.  On the wall itself either side may be chosen."""
     px, py = wall.nearest(x, y)
     away = hypot(x - px, y - py)
     return ((x - px) / away, (y - py) / away, away) if away > 1e-12 else (wall.nx, wall.ny, 0.0)
 
 
 def _from_post(post: Post, x: float, y: float) -> tuple[float, float, float]:
-    """Unit vector from a post's middle to (x, y), and how far; in its middle one way is as good as another."""
+    """Unit vector from a post's middle to (x, y), and the distance.  In its middle any direction may be chosen."""
     away = hypot(x - post.x_m, y - post.y_m)
     return ((x - post.x_m) / away, (y - post.y_m) / away, away) if away > 1e-12 else (1.0, 0.0, 0.0)
 
@@ -109,7 +110,7 @@ def _add(found: list[Touch], nx: float, ny: float, gap_m: float) -> None:
 
 
 class ContactRow:
-    """One contact: coefficients of the four velocities, wanted velocity, bounds of its impulse."""
+    """One contact: coefficients of the four velocities, the target velocity, bounds of its impulse."""
 
     __slots__ = ("high", "impulse", "low", "mass", "q", "rubs_on", "want")
 
@@ -136,7 +137,7 @@ class ContactRow:
 def solve(
     velocities: list[float], rows: list[ContactRow], inverse_masses: tuple[float, float, float, float], span_s: float
 ) -> None:
-    """Change `velocities` in place by impulses within bounds over `span_s`; leaves each row's impulse in it."""
+    """Change `velocities` in place by impulses within bounds over `span_s`.  Each row stores its own impulse."""
     settled_n_s = SETTLED_N * span_s
     m0, m1, m2, m3 = inverse_masses
     v0, v1, v2, v3 = velocities

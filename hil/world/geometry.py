@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from math import acos, degrees, hypot, inf, pi, sqrt
 from typing import Final
 
-#: Two wall ends closer than this are one corner; a line of sight may end this close to what it looks at.
+#: Two wall ends closer than this are one corner; a line of sight may end this close to its target.
 TOUCH_M: Final = 1e-6
 
 
@@ -49,7 +49,7 @@ class Segment:
         return self.nx * x + self.ny * y - self.offset_m
 
     def along(self, x: float, y: float) -> float:
-        """Where the foot of the perpendicular lies, in metres from the first end."""
+        """The position of the foot of the perpendicular, in metres from the first end."""
         return (x - self.ax) * self.ux + (y - self.ay) * self.uy
 
     def nearest(self, x: float, y: float) -> tuple[float, float]:
@@ -74,7 +74,7 @@ class Segment:
     def ray(self, x: float, y: float, dx: float, dy: float) -> float:
         """Distance from (x, y) along the unit vector (dx, dy) to the wall; inf when it misses.
 
-        A ray that passes an end so closely that it touches hits it: no rounding lets one slip between two that meet.
+        A ray that touches an end hits the wall.  So rounding never lets a ray slip between two walls that meet.
         """
         approach = self.nx * dx + self.ny * dy
         if approach == 0.0:

@@ -149,7 +149,7 @@ class _MapReader:
         return world
 
     def inside(self, world: WorldMap, closed: list[list[Segment]]) -> None:
-        """Where one closed wall encloses all the rest, the robot starts within it."""
+        """Check that the robot starts inside, if one closed wall encloses all the rest."""
         x, y, _ = world.start
         for outline in closed:
             xs, ys = [wall.ax for wall in outline], [wall.ay for wall in outline]
@@ -308,7 +308,7 @@ class _MapReader:
 
 
 def _right(of: Mapping[str, Any]) -> str:
-    """What a number must be, by its schema."""
+    """The range of a number by its schema, in words."""
     return f"give a number from {of['minimum']:g} to {of['maximum']:g}"
 
 

@@ -20,17 +20,17 @@ from math import hypot
 
 @dataclass(frozen=True, slots=True)
 class Mover:
-    """A post of the map, by its place there, and its way."""
+    """A post of the map, by its index there, and its path."""
 
     post: int
     points: tuple[tuple[float, float], ...]
     speed_m_s: float
     from_s: float = 0.0
-    #: Back and forth for ever; otherwise it stays at the end.
+    #: Whether it goes back and forth for ever; otherwise it stays at the end.
     and_back: bool = False
 
     def at(self, time_s: float) -> tuple[float, float]:
-        """Where it is."""
+        """Its position at a time."""
         length = sum(hypot(bx - ax, by - ay) for (ax, ay), (bx, by) in pairwise(self.points))
         way = max(0.0, time_s - self.from_s) * self.speed_m_s
         if self.and_back:

@@ -1,4 +1,4 @@
-"""Where something was, in order of time, in bounded memory."""
+"""The positions of an object in order of time, in bounded memory."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _FIELDS: Final = 4
 
 
 class Path:
-    """At most `most` points.  Beyond, every second one goes and every second one of those to come, and so on."""
+    """At most `most` points.  When full, it drops every second point, and from then on keeps half as many new ones."""
 
     def __init__(self, most: int = MOST_POINTS) -> None:
         self._most = most

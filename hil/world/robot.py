@@ -55,7 +55,7 @@ class Robot:
         self.second_cycles = float(SYSCLK_HZ)
         self.x_m = self.y_m = self.heading_rad = self.v_m_s = self.w_rad_s = 0.0
         self.bumper_pressed = False
-        #: How often the body met something; how far the tyres slid on the floor.
+        #: The number of collisions of the body; the way that the tyres slid on the floor.
         self.collisions = 0
         self.slipped_m = 0.0
         self.grip = 1.0
@@ -72,7 +72,7 @@ class Robot:
     def hamper(
         self, *, slip_left: float = 0.0, slip_right: float = 0.0, hold_left_nm: float = 0.0, hold_right_nm: float = 0.0
     ) -> None:
-        """From now on wheels lose this part more of their way (0..1), and this much more torque holds them."""
+        """From now on the wheels lose this much more of their way (0..1), and this much more torque holds them."""
         params, left, right = self.params, self.left, self.right
         radius, track = params.wheel_radius_m, params.track_m
         r_left = radius * (1.0 - params.slip_left) * (1.0 - slip_left)
@@ -93,12 +93,12 @@ class Robot:
         self._settled = False
 
     def set_second(self, cycles: float) -> None:
-        """What a second lasts from now on, for the chassis and its motors."""
+        """Set the length of a second in cycles from now on, for the chassis and its motors."""
         self.second_cycles = self.left.second_cycles = self.right.second_cycles = cycles
 
     @property
     def pose(self) -> Pose:
-        """Where the middle between the wheels is."""
+        """The pose of the middle between the wheels."""
         return Pose(self.x_m, self.y_m, self.heading_rad)
 
     def _tyre_load_n(self) -> float:
@@ -140,7 +140,7 @@ class Robot:
             now = until
 
     def _inputs(self) -> tuple[float, ...]:
-        """What decides the torque of a motor at rest."""
+        """The inputs that decide the torque of a motor at rest."""
         left, right = self.left.bridge, self.right.bridge
         a, b, c, d = left.in1, left.in2, right.in1, right.in2
         return (
@@ -151,7 +151,7 @@ class Robot:
     # Rolling: both tyres hold, nothing is near.
 
     def _roll(self, now: int, until: int) -> None:
-        """One step with both tyres holding, cut where a wheel stops or starts."""
+        """One step with both tyres holding.  It ends early where a wheel stops or starts."""
         left, right = self.left, self.right
         m11, m12, m22 = self._m
         inverse = self._inverse_det
@@ -184,7 +184,7 @@ class Robot:
                 v1, turn1 = one_wheel(w1, t1 - s1 * dry_left, d1, m11, span) if s1 else (0.0, 0.0)
                 v2, turn2 = one_wheel(w2, t2 - s2 * dry_right, d2, m22, span) if s2 else (0.0, 0.0)
             if v1 * s1 < 0.0 or v2 * s2 < 0.0:
-                # A wheel stops on the way: go there first (it passes zero nearly straight), then look again.
+                # A wheel stops within the step: go to that time first (the speed passes zero nearly straight), then on.
                 share = min(w1 / (w1 - v1) if v1 * s1 < 0.0 else 1.0, w2 / (w2 - v2) if v2 * s2 < 0.0 else 1.0)
                 if share <= 0.0:
                     break
@@ -226,7 +226,7 @@ class Robot:
         return s1, s2
 
     def _tyres_slide(self, a1: float, a2: float) -> bool:
-        """Whether accelerating the chassis this much asks more of a tyre than it can hold."""
+        """Whether this acceleration of the chassis needs more force of a tyre than its grip allows."""
         params = self.params
         r1, r2 = self._radii
         v_rate = 0.5 * (r1 * a1 + r2 * a2)
@@ -265,12 +265,12 @@ class Robot:
     # Sliding or near something.
 
     def _middle(self) -> tuple[float, float]:
-        """Where the middle of the body is."""
+        """The position of the middle of the body."""
         ahead = self.params.body_ahead_m
         return self.x_m + ahead * cos(self.heading_rad), self.y_m + ahead * sin(self.heading_rad)
 
     def _bump(self, now: int, until: int) -> None:
-        """Implicit steps for whatever is not plain rolling; finds out when it is over."""
+        """Take implicit steps while the robot slides or touches something; find out when that is over."""
         params = self.params
         if self._settled:
             if (
@@ -362,7 +362,7 @@ class Robot:
         right.turn(v2 * span, now, until, v2)
 
     def _leave(self, push_m: float, walls: tuple[Segment, ...], posts: list[Post]) -> None:
-        """Leave what the body overlaps, on skidding tyres; wheels and velocities have no part in it."""
+        """Move the body out of an overlap, on skidding tyres.  Wheels and velocities do not change."""
         cx, cy = self._middle()
         x, y = pushed_out(cx, cy, self.params.body_radius_m, push_m, walls, posts)
         self.x_m += x - cx
@@ -371,7 +371,7 @@ class Robot:
             self._settled = False
 
     def _approach(self, near: list[Touch], ex: float, ey: float) -> float:
-        """Fastest speed in m/s at which the body comes up against what it is about to touch."""
+        """The greatest speed in m/s at which the body approaches a wall or post that it is about to touch."""
         fastest = 0.0
         ahead = self.params.body_ahead_m
         for touch in near:
@@ -382,7 +382,7 @@ class Robot:
         return fastest
 
     def _press(self, walls: tuple[Segment, ...], posts: list[Post]) -> None:
-        """Look whether something pushes the bumper, with its travel as hysteresis."""
+        """Update whether something presses the bumper, with its travel as hysteresis."""
         limit = self.params.bumper_travel_m if self.bumper_pressed else 2e-4
         ex, ey = cos(self.heading_rad), sin(self.heading_rad)
         cx, cy = self._middle()

@@ -1,4 +1,4 @@
-"""What each sonar of the robot has in its beam: mirrors, corners, posts, in order of range.
+"""The reflectors in the beam of each sonar: walls as mirrors, corners, posts, in order of range.
 
 Modelled
     A wall answers from the foot of its perpendicular, if the foot lies on the wall and nothing stands in
@@ -42,7 +42,7 @@ CORNER_NONE_DEG: Final = 15.0
 
 @dataclass(frozen=True, slots=True)
 class SonarMount:
-    """Where a sonar sits on the robot (x ahead of the axle, y to the left) and where it looks."""
+    """The position of a sonar on the robot (x ahead of the axle, y to the left) and its direction."""
 
     x_m: float
     y_m: float
@@ -133,16 +133,16 @@ class SonarRays:
         return heard
 
     def echo(self, sensor: str, pose: tuple[float, float, float]) -> tuple[float, float] | None:
-        """The nearest reflector in the beam: range in m, and how surely one ping hears it (0..1]; None: nothing."""
+        """The nearest reflector in the beam: range in m, and probability (0..1] that one ping hears it; None: none."""
         heard = self.reflectors(sensor, pose)
         return heard[0] if heard else None
 
     def echoes(self, sensor: str, pose: tuple[float, float, float]) -> Echo | None:
-        """The same as the sonar device takes it: each reflector with the next one behind it."""
+        """The reflectors in the form for the sonar device: each with the next one behind it."""
         return in_order([Echo(away, strength) for away, strength in self.reflectors(sensor, pose)])
 
     def cross_path(self, source: str, listener: str, pose: tuple[float, float, float]) -> float | None:
-        """Shortest way in m of a ping from one sonar by way of one wall or post to another; None: none is heard.
+        """Shortest path in m of a ping from one sonar by one wall or post to another; None: it is not heard.
 
         CHOICE: both sonars must have the reflecting point within the angle at which they hear a wall at all.
         """
@@ -197,5 +197,5 @@ def _by_range(item: tuple[float, float, float, float, object]) -> float:
 
 
 def _off(x: float, y: float, px: float, py: float, look: float) -> float:
-    """Angle in rad between a direction of looking and the way from (x, y) to (px, py)."""
+    """Angle in rad between the direction `look` and the line from (x, y) to (px, py)."""
     return abs(remainder(atan2(py - y, px - x) - look, 2.0 * pi))

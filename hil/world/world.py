@@ -73,13 +73,13 @@ class World:
         self.map = world_map
         self.robot = Robot(left, right, params, max_step_s)
         self.posts: list[Post] = [Post(p.x_m, p.y_m, p.radius_m, p.name) for p in world_map.posts]
-        #: What moves by itself: the post's name, and its way.
+        #: The posts that move by themselves: the name, and the mover.
         self._moving: list[tuple[str, Mover]] = [(world_map.posts[m.post].name, m) for m in world_map.movers]
         self.sonars = SonarRays(world_map.walls, self.posts, mounts, sonar_vcc_v)
         self.time_cycles = 0
-        #: When a second began to last what it does, in cycles and in seconds of the world.
+        #: The time since when a second has its present length, in cycles and in seconds of the world.
         self._paced = (0, 0.0)
-        #: Where the robot was, a point each centimetre or 3 degrees.
+        #: The path of the robot, a point each centimetre or 3 degrees.
         self.path = Path()
         self.travelled_m = 0.0
         self.clock: Clock | None = None
@@ -87,7 +87,7 @@ class World:
         #: (pressed): the bumper is pressed or released (within 10 ms of it).
         self.bumper_changed: Signal[bool] = Signal()
         self._pressed = False
-        #: Time in cycles, heading in rad, yaw rate in rad/s of each look, and both headings where it was put down.
+        #: Time in cycles, heading in rad, yaw rate in rad/s of each update; two headings where it was put down.
         self._past: list[tuple[int, float, float]] = []
         self.robot.surround(world_map.walls, self.posts, world_map.grip)
         self.place(Pose(*world_map.start))
@@ -95,7 +95,7 @@ class World:
     # Assembly
 
     def attach(self, clock: Clock) -> None:
-        """Live on this clock: encoder reads and motor inputs sync the plant, which also looks up every 10 ms."""
+        """Run on this clock: encoder reads and motor inputs sync the plant, and so does an event every 10 ms."""
         if self.clock is not None:
             raise ValueError("the world is attached already; make a new World for a new board")
         self.clock = clock
@@ -118,7 +118,7 @@ class World:
         clock.schedule(clock.now + LOOK_CYCLES, self._look)
 
     def _carry(self, time_s: float) -> None:
-        """Put what moves where it is now; what was removed stays away."""
+        """Put moving posts at their present positions.  Removed posts stay away."""
         moved = False
         for name, mover in self._moving:
             for index, post in enumerate(self.posts):
@@ -153,7 +153,7 @@ class World:
             self._tell()
 
     def set_second(self, cycles: float) -> None:
-        """What a second of the world lasts from now on: a chip whose oscillator is fast counts more cycles in it."""
+        """Set the length of a second of the world in cycles from now on.  With a fast oscillator it has more cycles."""
         self._change()
         since, since_s = self._paced
         now = self.time_cycles
@@ -184,7 +184,7 @@ class World:
         self._logged = (robot.x_m, robot.y_m, robot.heading_rad)
         self.path.add(self.time_cycles / SYSCLK_HZ, robot.x_m, robot.y_m, robot.heading_rad)
 
-    # World face
+    # For the bench
 
     @property
     def pose(self) -> Pose:
@@ -224,7 +224,7 @@ class World:
         self._changed()
 
     def remove_obstacle(self, name: str) -> None:
-        """Take an obstacle, or a post of the map, away."""
+        """Remove an obstacle, or a post of the map."""
         post = self._post(name)
         self._change()
         self.posts.remove(post)
@@ -246,14 +246,14 @@ class World:
         if self.robot.bumper_pressed is not self._pressed:
             self._tell()
 
-    # What sensors ask
+    # For the sensors
 
     def yaw_rate_rad_s(self, cycles: int) -> float:
         """Rotation about the vertical at a virtual time: now, or up to some seconds ago.
 
-        Its integral from one look at the robot to a later one is what the heading changed between them.  In between
-        the rate goes from one to the other along a parabola of that area; where none does without turning round
-        (something was hit) it is the mean rate.
+        Its integral from one update of the robot to a later one is the change of the heading between them.  In between,
+        the rate follows a parabola of that area from one rate to the other.  If such a parabola would turn back
+        (something was hit), the rate is the mean rate.
         """
         if cycles >= self.time_cycles:
             self.sync(cycles)
