@@ -231,7 +231,7 @@ class CanBus:
         #: The first cycle at which a frame may begin.
         self.free_at = 0
         self._spoilt: list[int] = []
-        #: The error in which the present frame will end; None if it will arrive.
+        #: The error in which the present frame will end, if it does not arrive.
         self._failure = CanError.STUFF
 
     # Nodes

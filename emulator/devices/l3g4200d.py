@@ -55,7 +55,7 @@ class L3G4200D:
     `temperature_zero_c` is where OUT_TEMP reads 0 (CHOICE: the sheet leaves the offset open).
     """
 
-    #: Address -> name, for who decodes the bus.
+    #: Address -> name, for code that decodes the bus.
     register_names: ClassVar[Mapping[int, str]] = {register.address: register.name for register in r.REGISTERS}
 
     def __init__(

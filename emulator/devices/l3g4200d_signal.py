@@ -339,5 +339,5 @@ class SignalPath:
 
 
 def _saturated(digit: int) -> int:
-    """Held at the limits of 16 bits (CHOICE: no figure in the sheet)."""
+    """The value limited to 16 bits (CHOICE: no figure in the sheet)."""
     return INT16_MAX if digit > INT16_MAX else INT16_MIN if digit < INT16_MIN else digit

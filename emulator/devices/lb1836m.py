@@ -128,8 +128,10 @@ class Lb1836m:
         self._a_gone, self._g_gone = 1.0 - self._a, 1.0 - self._g
 
     def _off(self, emf: float, total: float) -> tuple[float, float]:
-        """Never driven: braked, coasting, or alternating between the two (only a motor turned from outside conducts
-        while it coasts)."""
+        """The current while the winding is not driven: it brakes, coasts, or alternates between the two.
+
+        While it coasts, only a motor that is turned from outside conducts.
+        """
         share = 1.0 - self.coast
         threshold = self.params.brake_v if share > 0.0 else self._off_v
         share = share if share > 0.0 else 1.0

@@ -85,7 +85,7 @@ class Lis3dh:
     It is called once when a measurement begins, and at the end of each period; it returns the mean over the period.
     """
 
-    #: Address -> name, for who decodes the bus.
+    #: Address -> name, for code that decodes the bus.
     register_names: ClassVar[Mapping[int, str]] = {
         WHO_AM_I: "WHO_AM_I", CTRL_REG0: "CTRL_REG0", 0x1F: "TEMP_CFG_REG", STATUS_REG: "STATUS_REG",
         **{CTRL_REG1 + n: f"CTRL_REG{1 + n}" for n in range(6)},

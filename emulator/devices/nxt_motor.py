@@ -190,7 +190,7 @@ def _relax(start: float, final: float, rate: float, span_s: float) -> tuple[floa
 
 
 def _fraction(distance: float, delta: float, reach: float, bend: float) -> float:
-    """When, as a fraction of the span, `reach * u + bend * u * u` passes `distance`; linear if it would turn round."""
+    """The fraction `u` of the span at which `reach * u + bend * u * u` passes `distance`; linear if it turns back."""
     under = reach * reach + 4.0 * bend * distance
     if under >= 0.0:
         root = sqrt(under)

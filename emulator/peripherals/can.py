@@ -123,7 +123,7 @@ class Can:
         self.ram = MessageRam()
         #: Frames in loopback that none of its objects took.
         self.passed_by = 0
-        #: The bus at the pins, the one within a controller that nobody hears, and where it is now.
+        #: The bus at the pins; the inner bus, which no other node hears; the bus that it is on now.
         self._bus, self._inside = bus, CanBus(clock, f"{port.name} inside")
         self._at: CanBus | None = None
         self._on = False
@@ -548,7 +548,7 @@ class Can:
                 each.data[0] = data_a.value
             if word & DATA_B:
                 each.data[1] = data_b.value
-        # What is read shows IntPnd and NewDat as they were; what is not moved to the object comes back from it.
+        # A read shows IntPnd and NewDat as they were.  Parts that a write does not move are read back from the object.
         writing = bool(word & WRITE)
         if writing or word & MASK:
             mask.value = each.mask

@@ -115,7 +115,7 @@ class MessageObject:
 
 
 def _placed(frame: CanFrame) -> int:
-    """The identifier of a frame where objects have it."""
+    """The identifier of a frame, at its position in the arbitration word."""
     return frame.identifier if frame.extended else frame.identifier << STANDARD_SHIFT
 
 

@@ -227,7 +227,7 @@ class ECap:
         self._event = None
         if self.output.heard:
             self.output.tell()
-        if self._event is None and self._runs:  # who was told may have written
+        if self._event is None and self._runs:  # a listener may have written to the module
             ticks = self._until_flag()
             if self.output.heard and self._apwm:
                 edge = self._until_edge()

@@ -126,7 +126,7 @@ class I2c:
         #: Whether a refused message holds the bus; when the program first read I2CSTR after that.
         self._forgotten = False
         self._seen_held_at: int | None = None
-        #: How many addresses in a row nobody has acknowledged.
+        #: The number of addresses in a row without an acknowledge.
         self.refusals = 0
         #: SYSCLK cycles a module clock, and d; they follow I2CPSC when IRS is set.
         self._module_cycles, self._delay = 1, DELAYS[0]
@@ -192,8 +192,8 @@ class I2c:
     def _obey(self, mode: int, before: int) -> None:
         """Carry out a valid command."""
         if self._state != IDLE:
-            # What is under way looks at both bits when it ends.  CHOICE: so a START that comes too early is made behind
-            # the STOP, or behind the byte.
+            # The operation under way reads both bits when it ends.  CHOICE: so a START that comes too early is made
+            # after the STOP, or after the byte.
             if mode & STT and before & STP and not before & STT and self._state in (BYTE, STOPPING):
                 self._doubts.early()
             if self._finished or not self._data.overrun:

@@ -102,7 +102,7 @@ class InputXbar:
 
 
 def _nothing() -> None:
-    """What ends to hear a pin that does not exist."""
+    """Stop listening to a pin that does not exist: there is nothing to do."""
 
 
 class XbarInput:

@@ -44,8 +44,7 @@ class Format:
 
 @dataclass(frozen=True, slots=True)
 class Character:
-    """What the receiver hands over.  `end` is where the hunt for the next start bit begins, in cycles from the
-    waveform's start."""
+    """A decoded character.  The hunt for the next start bit begins at `end`, in cycles from the waveform's start."""
 
     data: int
     parity_error: bool

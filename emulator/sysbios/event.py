@@ -22,7 +22,7 @@ from emulator.sysbios.task import TaskModule
 
 
 class Event(KernelObject):
-    """An event: what an `Event_Handle` points to; `posted` are the bits that nobody has consumed."""
+    """An event: what an `Event_Handle` points to; `posted` are the bits that no pend has consumed."""
 
     __slots__ = ("posted", "waiters")
 
@@ -151,6 +151,6 @@ class EventModule:
         event.sync(event_id, count)
 
     def Event_getPostedEvents(self, event: Event) -> int:
-        """The bits that nobody has consumed."""
+        """The bits that no pend has consumed."""
         self.core.clock.charge(self.core.costs["event_service"])
         return event.posted

@@ -86,7 +86,7 @@ class GateMutexModule:
         return FIRST_ENTER
 
     def GateMutex_leave(self, gate: GateMutex, key: int) -> None:
-        """Release the gate if `key` is 0, whoever calls."""
+        """Release the gate if `key` is 0.  The caller need not be the owner."""
         core = self.core
         core.clock.charge(core.costs["gate_mutex"])
         if key != FIRST_ENTER:

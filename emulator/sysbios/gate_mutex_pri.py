@@ -125,7 +125,7 @@ class GateMutexPriModule:
         gate.waiters.append(waiter)
 
     def GateMutexPri_leave(self, gate: GateMutexPri, key: int) -> None:
-        """Release the gate if `key` is 0, whoever calls; the first waiter owns it from now on."""
+        """Release the gate if `key` is 0.  The caller need not be the owner.  The first waiter owns it from now on."""
         core = self.core
         clock = core.clock
         clock.now += self._cost_leave

@@ -151,7 +151,7 @@ class MailboxModule:
         return mailbox.places
 
     def Mailbox_getNumPendingMsgs(self, mailbox: Mailbox) -> int:
-        """Messages that nobody has taken."""
+        """The number of messages that no pend has taken."""
         self.core.clock.charge(self.core.costs["mailbox_service"])
         return mailbox.count - mailbox.places
 

@@ -100,7 +100,7 @@ def read(core: KernelCore, struct: str, pointer: Any) -> dict[str, Any]:
     """The members by name; the defaults when the pointer is NULL."""
     if pointer is None:
         return {name: default for name, _, default in STRUCTS[struct]}
-    # Firmware may pass any address: a function's has no members, and the kernel would find no size in it.
+    # Firmware may pass any address.  A function has no members, so the kernel would find no size there.
     core.check(hasattr(pointer, "member"), "Core_A_initializedParams", f"what was passed points to no {struct}")
     values = {name: pointer.member(name).load() for name, _, _ in STRUCTS[struct]}
     core.check(

@@ -175,7 +175,7 @@ class TaskStatistics:
             self._running.waits = True
 
     def _hwi(self, cycles: int, name: str) -> None:
-        # The core took its entry before the kernel could tell.
+        # The interrupt entry of the core took its cycles before the kernel's trace event.
         self._account(cycles - INTERRUPT_ENTRY_CYCLES)
         self._nested.append(f"Hwi:{name}")
 

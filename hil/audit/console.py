@@ -46,7 +46,7 @@ def _shown(script: Script, look: Callable[[Bench, Desk], Evidence], fixes: Fixes
     """What `look` sees after a script, with the firmware and console for `fixes`."""
     variant = Variant.of(fixes)
     corrected = IDS if ALL in variant else variant.fixes & IDS
-    # What the console does is measured, so that nobody watches the firmware.
+    # The behaviour of the console is measured, so the firmware need not be watched.
     with robot(replace(variant, fixes=variant.fixes - IDS), watch=False, static=False) as bench:
         return look(bench, run_console(bench, script, corrected))
 

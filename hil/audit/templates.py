@@ -64,7 +64,7 @@ class Templates:
         for order in missed:
             self._asked[order] += 1
             if self._asked[order] == (1 if order.common else _AGAIN):
-                with uncollected(), suppress(Exception):  # whoever asks for it meets the error
+                with uncollected(), suppress(Exception):  # a later `take` of the order raises the error again
                     self._ready[order] = order.make()
 
 

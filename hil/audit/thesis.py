@@ -139,7 +139,7 @@ def ceiling_of_odometry() -> float:
 
 
 def priority_inside() -> float:
-    """The priority of TaskNAVIGATION as it leaves the gate of the sonars, which nobody waited for."""
+    """The priority of TaskNAVIGATION when it leaves the gate of the sonars, while no task waits for the gate."""
     return max(_priorities("GateMutexPri_leave", "US_server", b"", "TaskNAVIGATION"))
 
 
@@ -212,8 +212,10 @@ def w_us_with_interrupts() -> float:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A number of the text: as printed, as corrected, and what it must be: how the robot does it, or `only_read`, by
-    `hil rta` from numbers of the text alone."""
+    """A number of the text: as printed, as corrected, and the right value.
+
+    The right value comes from the robot, or (`only_read`) from `hil rta` and numbers of the text alone.
+    """
 
     what: str
     unit: str

@@ -326,7 +326,7 @@ class Judge:
         probes = lists[:PROBES]
         best = self._best(candidate, probes, started=False)
         started = any(f.rule == "clock-gated" for f in best.proven.values())
-        if started:  # whoever has the `main` of these files may have called InitSysCtrl, which switches all clocks on
+        if started:  # the `main` for these files may have called InitSysCtrl, which switches all clocks on
             for key, finding in best.proven.items():
                 if finding.rule == "clock-gated":
                     self._keep(key, replace(finding, how="generated"))

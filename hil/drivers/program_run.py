@@ -92,7 +92,7 @@ def run_program(
 def _stale(build: Build, roles: Roles, for_s: float) -> list[Finding]:
     """Outputs of a whole program that follow values that are too old, found by a longer run that follows ages."""
     if roles.main is None:
-        return []  # nobody knows what releases its tasks, and whom they follow
+        return []  # it is not known what releases its tasks
 
     def run(prepare: Callable[[Image], AgeWatch]) -> None:
         image = _begin(build, roles)
@@ -114,7 +114,7 @@ def _stale(build: Build, roles: Roles, for_s: float) -> list[Finding]:
 def _begin(build: Build, roles: Roles) -> Image:
     """A fresh image for the program."""
     bare = roles.main is not None and not roles.begins_kernel
-    # Nobody waits for the return of a `main` without a kernel: `_bare` ends it.
+    # A `main` without a kernel need not return: `_bare` ends it.
     return build.image(driven=(lambda: True) if bare else None)
 
 

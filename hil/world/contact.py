@@ -84,8 +84,10 @@ def _from_post(post: Post, x: float, y: float) -> tuple[float, float, float]:
 def pushed_out(
     x: float, y: float, radius_m: float, push_m: float, walls: tuple[Segment, ...], posts: list[Post]
 ) -> tuple[float, float]:
-    """Where a disc about (x, y) goes that overlaps something: each post pushes it by `push_m` at most, then walls,
-    which do not give way, all the way."""
+    """The new middle of a disc about (x, y) that overlaps walls or posts.
+
+    Each post pushes it by `push_m` at most.  Then walls push it all the way out.
+    """
     for post in posts:
         if post.distance(x, y) < radius_m:
             nx, ny, away = _from_post(post, x, y)

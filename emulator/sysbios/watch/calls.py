@@ -50,7 +50,7 @@ class Calls:
         self, name: str, function: Callable[..., Any], before: list[Before], after: list[After]
     ) -> Callable[..., Any]:  # fmt: skip
         kernel = self._kernel
-        # Nobody is told of a wrong handle: the function itself looks, but behind those who are told before.
+        # Listeners never get a wrong handle.  The function checks handles itself, but only after the listeners.
         checked = kernel.handles.checked if before else None
 
         def call(*arguments: Any) -> Any:

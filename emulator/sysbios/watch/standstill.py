@@ -1,4 +1,4 @@
-"""Tasks that wait for ever: for each other through a gate and a semaphore (`deadlock`), or for nobody (`never-posted`).
+"""Tasks that wait for ever: for each other (`deadlock`), or for a post that never comes (`never-posted`).
 
 In such a deadlock a task pends on a semaphore while it holds a gate, and the only task that posts the semaphore waits
 for that gate.  `gates.py` finds cycles of gates alone.
