@@ -169,7 +169,7 @@ class HeldLow(OfLine):
 
 
 class WrongBaud(OfLine):
-    """The bits are of another length than was agreed."""
+    """The bits are of another length than was agreed.  As with a drift, the registers at both ends are not at fault."""
 
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
         """What becomes of a frame."""
@@ -177,8 +177,9 @@ class WrongBaud(OfLine):
         if bit == frame.bit_cycles:
             return (frame,)
         self.hit()
-        return (replace(frame, bit_cycles=bit, start=frame.end - round((frame.end - frame.start) * bit
-                                                                       / frame.bit_cycles)),)  # fmt: skip
+        longer = bit / frame.bit_cycles
+        start = frame.end - round((frame.end - frame.start) * longer)
+        return (replace(frame, bit_cycles=bit, start=start, drift=frame.drift * longer),)
 
 
 _NEEDS: Final = "a line to a PC"

@@ -114,7 +114,7 @@ class RequestGuard:
 
 
 def _again(first: MutableMapping[str, Any], receive: Receive) -> Receive:
-    """`receive`, with a message that was already taken put back in front."""
+    """`receive`, with a message that was already taken put back at its head."""
     taken = [first]
 
     async def receiving() -> MutableMapping[str, Any]:

@@ -264,7 +264,7 @@ def test_the_acknowledge_that_is_missing_is_named_not_the_flag_that_it_holds(tmp
 def test_the_flag_of_an_eqep_is_told_where_its_routine_begins(tmp_path: Path) -> None:
     text = RIGHT.replace("    EQep1Regs.QCLR.bit.INT = 1;\n", "")
     assert text != RIGHT
-    (finding,) = told(tmp_path, text, "flag-not-cleared")
+    (finding,) = told(tmp_path, text, "flag-not-cleared", seconds=0.02)
     assert finding.object == "EQep1Regs.QFLG.INT"
     assert finding.place is not None
     assert finding.place.function == "unit"

@@ -165,7 +165,8 @@ def f() -> float32:
 """
     w = Workshop(source)
     assert w.f() == 1.0
-    assert w.rules() == ["uninitialised"]
+    # Where it is copied, and where the copy is read.
+    assert w.rules() == ["uninitialised", "uninitialised"]
 
 
 def test_a_function_that_falls_off_its_end_owes_a_value() -> None:
