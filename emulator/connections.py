@@ -750,9 +750,7 @@ class Connections:
             return
         made = self._wanting(condition, event) if self._value(condition, event) else None
         polled = not {(name, "TZFLG", event), (name, "TZFLG", "")}.isdisjoint(self._source.read_fields)
-        acted = self._could(f"{name}.TZCTL", lambda action: True, event) or any(
-            self._writes(f"{name}.{other}") for other in ("TZCTL2", "TZCTLDCA", "TZCTLDCB")
-        )
+        acted = self._could(f"{name}.TZCTL", lambda action: True, event) or self._acts_elsewhere(name)
         if made is None or polled or acted or any(self._could(register, bool, field) for register, field in users):
             return
         missing = Missing(f"{name}.TZSEL.{event} = 0, and no statement uses it", f"{name}.TZSEL", event)
@@ -766,7 +764,7 @@ class Connections:
             place = self._source.last(name, "TZSEL")
             if place is None or not self._value(select, ""):
                 continue
-            if any(self._writes(f"{name}.{other}") for other in ("TZCTL2", "TZCTLDCA", "TZCTLDCB")):
+            if self._acts_elsewhere(name):
                 continue
             control = self._source.writes.get((name, "TZCTL"), []) + self._source.pointed.get("TZCTL", [])
             for x in "AB":
@@ -784,11 +782,21 @@ class Connections:
             name = f"EPwm{n}Regs"
             force, control = self._source.last(name, "TZFRC"), f"{name}.TZCTL"
             outputs = [x for x in "AB" if self._writes(f"{name}.AQCTL{x}")]
-            if force is None or not outputs or any(self._could(f"{name}.TZEINT", bool, way) for way in ("OST", "CBC")):
+            if force is None or not outputs or not self._sets_trip(name, "TZFRC"):
+                continue
+            if self._sets_trip(name, "TZEINT") or self._acts_elsewhere(name):
                 continue
             if all(self._stuck(control, f"TZ{x}", lambda action: action != NO_CHANGE) for x in outputs):
                 missing = Missing(f"{control}.TZ{outputs[0]} = 3: no change", control, f"TZ{outputs[0]}")
                 self._tell(force, f"{name}.TZFRC trips the outputs, which go on switching", missing, control)
+
+    def _sets_trip(self, name: str, register: str) -> bool:
+        """Whether the program can set the bit OST or CBC of a trip register of a module."""
+        return any(self._could(f"{name}.{register}", bool, kind) for kind in ("OST", "CBC"))
+
+    def _acts_elsewhere(self, name: str) -> bool:
+        """Whether the program writes what a trip does by the counter's direction, which TZCTL does not say."""
+        return any(self._writes(f"{name}.{other}") for other in ("TZCTL2", "TZCTLDCA", "TZCTLDCB"))
 
     def _post_processing(self) -> None:
         """Check the interrupting events of ADC post-processing blocks: does their SOC convert, is the event cleared?"""

@@ -139,10 +139,13 @@ class Findings:
 
     def report(
         self, rule: str, message: str, *, object: str = "", declaration: str = "", value: Any = None,
-        details: tuple[str, ...] = (), at: int = 0,
+        details: tuple[str, ...] = (), at: int = 0, cause: Cause | None = None,
     ) -> Finding:  # fmt: skip
-        """Record an occurrence of `rule` at the statement that executes now; `at`: its number, if known."""
-        cause = self.cause
+        """Record an occurrence of `rule` at the statement that executes now; `at`: its number, if known.
+
+        `cause`: an earlier statement that it belongs to, if known.
+        """
+        cause = cause or self.cause
         if cause is None:
             path, task = self.path(at or self.position.at, self.position.calls), ""
         else:

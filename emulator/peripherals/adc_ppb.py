@@ -174,28 +174,22 @@ class PostProcessing:
 
     def _overridden(self, block: _Block, last: _Block) -> None:
         lost, soc = block.offcal, block.config.value & 0xF
-        self._report(
-            lost, "not-configured",
+        self._cpu.findings.report(
+            "not-configured",
             f"{lost.path} = {signed(lost.value, 10)} has no effect: PPB{last.number} has SOC{soc} too, and the OFFCAL "
             f"of the highest block is used, which is {signed(last.offcal.value, 10)}",
-            lost.path, lost.value,
+            object=lost.path, value=lost.value, cause=self._set_by.get(lost),
         )  # fmt: skip
 
     def _signed_limit(self, block: _Block, error: int) -> None:
         path = block.result.path
-        self._report(
-            block.config if block.config.value & TWOSCOMPEN else block.offref, "adc-limit-signed",
+        setting = block.config if block.config.value & TWOSCOMPEN else block.offref
+        self._cpu.findings.report(
+            "adc-limit-signed",
             f"{path} is {error}, and the limits of PPB{block.number} do not compare signed results on this silicon: "
             "leave ADCPPBxOFFREF at 0 and TWOSCOMPEN off where TRIPHI or TRIPLO interrupt",
-            path, error,
+            object=path, value=error, cause=self._set_by.get(setting),
         )  # fmt: skip
-
-    def _report(self, register: Cell, rule: str, message: str, object: str, value: int) -> None:
-        """Report an effect of a register's setting at the statement that set it."""
-        findings = self._cpu.findings
-        before, findings.cause = findings.cause, self._set_by.get(register)
-        findings.report(rule, message, object=object, value=value)
-        findings.cause = before
 
     # --- register handlers -------------------------------------------------------------------------------------------
 

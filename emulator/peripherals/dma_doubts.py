@@ -65,10 +65,10 @@ class TransferDoubts:
     def started_again(self, left: int) -> None:
         """RUN was set within a transfer without ONESHOT that only the program triggers; `left` bursts still follow."""
         bursts = self._registers["TRANSFER_SIZE"].value + 1
-        self._report(
-            self._mode, "dma-unfinished",
+        self._findings.report(
+            "dma-unfinished",
             f"{self._path} is started again after {bursts - left} of {bursts} bursts: MODE.ONESHOT = 0, and each "
-            "PERINTFRC moves one burst", f"{self._path}.MODE.ONESHOT",
+            "PERINTFRC moves one burst", object=f"{self._path}.MODE.ONESHOT", cause=self._mode,
         )  # fmt: skip
 
     # A transfer
@@ -101,10 +101,10 @@ class TransferDoubts:
             self._step(between, f"each burst {verb} the last word of the burst before it again", words)
 
     def _step(self, name: str, what: str, words: int) -> None:
-        self._report(
-            self._causes.get(name), "dma-step",
+        self._findings.report(
+            "dma-step",
             f"{self._path}.{name} = {self._signed(name)}: {what}; an access moves {16 * words} bits",
-            f"{self._path}.{name}",
+            object=f"{self._path}.{name}", cause=self._causes.get(name),
         )  # fmt: skip
 
     def beyond(self, side: str, address: int) -> bool:
@@ -115,10 +115,10 @@ class TransferDoubts:
         moved = (self._registers["BURST_SIZE"].value + 1) * (self._registers["TRANSFER_SIZE"].value + 1)
         verb = "reads" if side == "SRC" else "writes"
         sizes = (self._causes.get("TRANSFER_SIZE"), self._causes.get("BURST_SIZE"))
-        self._report(
-            sizes[0] or sizes[1], "dma-range",
+        self._findings.report(
+            "dma-range",
             f"{self._path} {verb} {address:#x}, outside of {region.name}: a transfer has {moved} words, the object "
-            f"{region.words}", f"{self._path}.{side}_ADDR_ACTIVE",
+            f"{region.words}", object=f"{self._path}.{side}_ADDR_ACTIVE", cause=sizes[0] or sizes[1],
         )  # fmt: skip
         return True
 
@@ -138,10 +138,3 @@ class TransferDoubts:
     def _signed(self, name: str) -> int:
         word = self._registers[name].value
         return (word & 0xFFFF ^ 0x8000) - 0x8000
-
-    def _report(self, cause: Cause | None, rule: str, message: str, object: str) -> None:
-        before, self._findings.cause = self._findings.cause, cause or self._findings.cause
-        try:
-            self._findings.report(rule, message, object=object)
-        finally:
-            self._findings.cause = before

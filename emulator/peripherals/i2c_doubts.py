@@ -53,15 +53,11 @@ class I2cDoubts:
                 self._not_configured(f"{divider.path} = 0: the manual wants it not to be zero", divider.path)
         hertz = SYSCLK_HZ / module_cycles
         if not SLOWEST_HZ <= hertz <= FASTEST_HZ:
-            before, self._findings.cause = self._findings.cause, self._prescaled or self._findings.cause
-            try:
-                self._findings.report(
-                    "i2c-clock",
-                    f"{self._name} runs at {hertz / 1e6:.2f} MHz, SYSCLK / {module_cycles}: the manual wants 7 to 12 "
-                    "MHz", object=self._psc.path, value=module_cycles - 1,
-                )  # fmt: skip
-            finally:
-                self._findings.cause = before
+            self._findings.report(
+                "i2c-clock",
+                f"{self._name} runs at {hertz / 1e6:.2f} MHz, SYSCLK / {module_cycles}: the manual wants 7 to 12 MHz",
+                object=self._psc.path, value=module_cycles - 1, cause=self._prescaled,
+            )  # fmt: skip
         bus_hz = SYSCLK_HZ / bit_cycles
         if bus_hz > FASTEST_BUS_HZ:
             self._findings.report(

@@ -141,18 +141,14 @@ class SciReceiver:
             self._deliver(frame.data, 0)
             return
         if rates := frame.rates_differ(own.bit_cycles):
-            self._tell_rates(rates)
+            name = self._regs.name
+            self._cpu.findings.report(
+                "serial-rate", f"{name}: {rates}", object=f"{name}.SCILBAUD", cause=self.rate_set_by
+            )  # fmt: skip
         hunt = max(0.0, self._busy_until - frame.start)
         for character in sample(frame_waveform(frame), own, hunt):
             self._busy_until = frame.start + character.end
             self._deliver(character.data, _errors(character))
-
-    def _tell_rates(self, rates: str) -> None:
-        """Report a character of another speed at the statement that set this end's speed."""
-        findings = self._cpu.findings
-        before, findings.cause = findings.cause, self.rate_set_by
-        findings.report("serial-rate", f"{self._regs.name}: {rates}", object=self._regs.registers["SCILBAUD"].path)
-        findings.cause = before
 
     # --- the line --------------------------------------------------------------------------------------------------
 
@@ -346,16 +342,12 @@ class SciReceiver:
         self._came_to_closed += 1
         if self._came_to_closed != DEPTH:
             return
-        findings, path = self._cpu.findings, self._ffrx.path
-        findings.cause = self._closed_by
-        try:
-            findings.report(
-                "data-lost",
-                f"{path}: the FIFO is held in reset since RXFIFORESET was cleared: the {DEPTH} characters that came "
-                "since then are lost", object=path,
-            )  # fmt: skip
-        finally:
-            findings.cause = None
+        path = self._ffrx.path
+        self._cpu.findings.report(
+            "data-lost",
+            f"{path}: the FIFO is held in reset since RXFIFORESET was cleared: the {DEPTH} characters that came since "
+            "then are lost", object=path, cause=self._closed_by,
+        )  # fmt: skip
 
     def _lost(self, what: str) -> None:
         """Report a lost character.  In loopback, a loss does not count before the program begins to read."""

@@ -150,15 +150,10 @@ class SysCtrl:
         low, high = _CRYSTALS_HZ if crystal else (_OSC_HZ, _OSC_HZ)
         if not low * factor <= SYSCLK_HZ <= high * factor:
             made = f"{low * factor / 1e6:g} MHz" + (f" with a crystal of {low / 1e6:g} MHz" if crystal else "")
-            findings = self._cpu.findings
-            findings.cause = self._set_by
-            try:
-                findings.report(
-                    "unmodelled", f"SYSCLK is set to {made}, which is not modelled: it is {SYSCLK_HZ / 1e6:g} MHz here",
-                    object=clkcfg["SYSPLLMULT"].path, value=clkcfg["SYSPLLMULT"].value,
-                )  # fmt: skip
-            finally:
-                findings.cause = None
+            self._cpu.findings.report(
+                "unmodelled", f"SYSCLK is set to {made}, which is not modelled: it is {SYSCLK_HZ / 1e6:g} MHz here",
+                object=clkcfg["SYSPLLMULT"].path, value=clkcfg["SYSPLLMULT"].value, cause=self._set_by,
+            )  # fmt: skip
 
     @property
     def _quarters(self) -> int:

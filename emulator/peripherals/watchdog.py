@@ -105,14 +105,12 @@ class Watchdog:
             self._bite("expired")
 
     def _bite(self, why: str) -> None:
-        findings = self._cpu.findings
         if self._key_seen:
             why += "; 0x55 was written to WDKEY, and 0xAA did not follow"
-            findings.cause = self._begun
-        try:
-            findings.report("watchdog-reset", f"the watchdog resets the device: {why}", object=self._regs.name)
-        finally:
-            findings.cause = None
+        self._cpu.findings.report(
+            "watchdog-reset", f"the watchdog resets the device: {why}", object=self._regs.name,
+            cause=self._begun if self._key_seen else None,
+        )  # fmt: skip
         self._reset_device()
 
     # --- register handlers -------------------------------------------------------------------------------------------

@@ -11,6 +11,15 @@ from hil.board import load
 from hil.drivers.check import DriverFiles, check_files
 from tests.corpus.corpus import chosen, measured
 
+#: How each of these programs begins.
+START_UP = """    InitSysCtrl();
+    DINT;
+    InitPieCtrl();
+    IER = 0x0000;
+    IFR = 0x0000;
+    InitPieVectTable();
+"""
+
 #: ePWM1 triggers a conversion and interrupts, ePWM2 drives a pin, a pin interrupts, timer 0 and eQEP1 tick.
 RIGHT = """#include "F28x_Project.h"
 volatile Uint16 Count, Order;
@@ -31,13 +40,7 @@ interrupt void unit(void)
 }
 void main(void)
 {
-    InitSysCtrl();
-    DINT;
-    InitPieCtrl();
-    IER = 0x0000;
-    IFR = 0x0000;
-    InitPieVectTable();
-    EALLOW;
+""" + START_UP + """    EALLOW;
     PieVectTable.ADCA1_INT = &converted;
     PieVectTable.XINT1_INT = &edge;
     PieVectTable.TIMER0_INT = &tick;
@@ -290,13 +293,7 @@ interrupt void tripped(void)
 }
 void main(void)
 {
-    InitSysCtrl();
-    DINT;
-    InitPieCtrl();
-    IER = 0x0000;
-    IFR = 0x0000;
-    InitPieVectTable();
-    EALLOW;
+""" + START_UP + """    EALLOW;
     PieVectTable.EPWM4_TZ_INT = &tripped;
     GpioCtrlRegs.GPAMUX1.bit.GPIO6 = 1;
     GpioCtrlRegs.GPAMUX1.bit.GPIO7 = 1;
@@ -502,13 +499,7 @@ interrupt void edge(void)
 void Put(Uint16 a, Uint16 b) { EPwm2Regs.CMPA.bit.CMPA = a; EPwm2Regs.CMPB.bit.CMPB = b; }
 void main(void)
 {
-    InitSysCtrl();
-    DINT;
-    InitPieCtrl();
-    IER = 0x0000;
-    IFR = 0x0000;
-    InitPieVectTable();
-    EALLOW;
+""" + START_UP + """    EALLOW;
     PieVectTable.ADCA_EVT_INT = &over;
     PieVectTable.ECAP1_INT = &edge;
     GpioCtrlRegs.GPAMUX1.bit.GPIO0 = 1;
@@ -583,6 +574,11 @@ def test_a_part_that_is_set_up_for_nobody(tmp_path: Path, was: str, now: str, ru
     # Compare B triggers the conversion.
     ("CBU = AQ_CLEAR", "CAU = AQ_CLEAR; EPwm2Regs.ETSEL.bit.SOCASEL = 6"),
     ("INPUT7SELECT", "INPUT8SELECT = 25; ECap2Regs.ECCTL1.bit.CAPLDEN = 1; InputXbarRegs.INPUT7SELECT"),
+    # What a trip does stands in the other register; the forced trip is one of the digital compare.
+    ("TZA = TZ_FORCE_LO;\n    EPwm2Regs.TZCTL.bit.TZB = TZ_FORCE_LO", "TZA = TZ_NO_CHANGE;\n    "
+     "EPwm2Regs.TZCTL.bit.TZB = TZ_NO_CHANGE; EPwm2Regs.TZCTL2.bit.ETZE = 1"),
+    ("TZA = TZ_FORCE_LO;\n    EPwm2Regs.TZCTL.bit.TZB = TZ_FORCE_LO", "TZA = TZ_NO_CHANGE;\n    "
+     "EPwm2Regs.TZCTL.bit.TZB = TZ_NO_CHANGE;\n#define OST DCAEVT1\n"),
     # A trip that only interrupts.
     ("TZA = TZ_FORCE_LO;\n    EPwm2Regs.TZCTL.bit.TZB = TZ_FORCE_LO", "TZA = TZ_NO_CHANGE;\n    "
      "EPwm2Regs.TZCTL.bit.TZB = TZ_NO_CHANGE; EPwm2Regs.TZEINT.bit.OST = 1"),
@@ -624,13 +620,7 @@ interrupt void heard(void)
 }
 void main(void)
 {
-    InitSysCtrl();
-    DINT;
-    InitPieCtrl();
-    IER = 0x0000;
-    IFR = 0x0000;
-    InitPieVectTable();
-    EALLOW;
+""" + START_UP + """    EALLOW;
     PieVectTable.SCIA_RX_INT = &heard;
     EDIS;
     SciaRegs.SCICCR.all = 0x0017;
@@ -683,13 +673,7 @@ interrupt void full(void)
 }
 void main(void)
 {
-    InitSysCtrl();
-    DINT;
-    InitPieCtrl();
-    IER = 0x0000;
-    IFR = 0x0000;
-    InitPieVectTable();
-    EALLOW;
+""" + START_UP + """    EALLOW;
     PieVectTable.DMA_CH1_INT = &full;
     EDIS;
     Filled = 0;
