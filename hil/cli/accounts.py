@@ -14,7 +14,8 @@ from emulator.rules import Severity
 from hil.client.plot import MOVING, save
 from hil.machine import START_UP, Machine, RobotMachine, Setup
 from hil.reports.json_report import findings_of
-from hil.reports.model import report_of, rule_of
+from hil.reports.model import report_of
+from hil.reports.policy import Policy
 from hil.robot.moving_picture import FEW, save_moving
 from hil.robot.picture import drive_of
 from hil.session import Session
@@ -28,12 +29,13 @@ OF_ROBOTS: Final = ("world", "xbee", "fixes")
 _AT: Final = re.compile(r"^[\d.]+:")
 
 
-def status_line(session: Session) -> str:
+def status_line(session: Session, policy: Policy) -> str:
     """What a run is at, in one line short enough for 100 columns; what matters least stands last."""
     machine, pacer = session.machine, session.pacer
     lag = pacer.lag
     time = f"{machine.clock.now / SYSCLK_HZ:.1f}s x{pacer.ratio(machine.clock.now):.2f} lag {lag.last_s * 1e3:.0f}ms"
-    traffic = f"in {session.bytes_to_robot} out {session.bytes_from_robot}B findings {_findings(machine.findings)}"
+    found = _findings(policy.weighed(machine.findings))
+    traffic = f"in {session.bytes_to_robot} out {session.bytes_from_robot}B findings {found}"
     counters = session.port.counters if session.port else None
     if isinstance(machine, RobotMachine):
         dropped = f"dropped {counters.frames_dropped if counters else 0}"
@@ -42,9 +44,9 @@ def status_line(session: Session) -> str:
     return f"{time} {traffic} {dropped} lag max {lag.max_s * 1e3:.0f}ms"
 
 
-def _findings(findings: Iterable[Finding]) -> str:
+def _findings(weighed: Iterable[tuple[Finding, Severity]]) -> str:
     """The number of findings, and how many of them are errors."""
-    severities = [rule_of(finding.rule).severity for finding in findings]
+    severities = [severity for _, severity in weighed]
     errors = severities.count(Severity.ERROR)
     return f"{len(severities)} ({errors} error{'s' * (errors != 1)})" if errors else str(len(severities))
 

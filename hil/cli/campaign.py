@@ -49,6 +49,7 @@ def campaign(
         from hil.safety.campaign import campaign as run
         from hil.scenarios.running import SUFFIX
 
+        show.policy()
         if keep is not None:
             keep.mkdir(exist_ok=True)
         terminal = show.console()

@@ -61,6 +61,7 @@ def diff(
         from firmware_model.c_files import own
         from hil.diff.compare import Wanted, compare_firmware
 
+        show.policy()
         for file in own(firmware).left_out:
             show.say(f"note: {file}: no file of the robot, left out", to_stderr=True)
         folders, defines = own_c.read_as(firmware, project, include, define)

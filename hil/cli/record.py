@@ -133,6 +133,7 @@ def replay(
       hil replay run.wire --to-console --link COM3
     """
     with show.user_errors():
+        show.policy()
         recording = read_log(log)
         for statement in recording.statements():
             show.say(f"hil: {statement}", to_stderr=True)

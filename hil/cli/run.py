@@ -34,6 +34,7 @@ from hil.recording.wire import header_of, record
 from hil.reports.json_report import findings_of
 from hil.reports.lcov import write_lcov
 from hil.reports.model import report_of
+from hil.reports.policy import Policy
 from hil.robot.options.names import checked
 from hil.running import RunningBoard
 from hil.scenarios.expectation import Check, Watching
@@ -208,6 +209,7 @@ def run(
     With --board, your own program runs on your own board, from power-up on.
     """
     with show.user_errors(), ExitStack() as stack:
+        policy = show.policy()
         live = None
         if scenario is not None:
             live = _scenario(scenario, {
@@ -313,7 +315,7 @@ def run(
         if line is not None:
             stack.callback(line.close)
         watching = None if live is None else live.watched(machine)
-        display = _Display(watching, quiet=json_output)
+        display = _Display(policy, watching, quiet=json_output)
         script = None if live is None or not live.script else LiveScript(live.script, live.seconds)
 
         def tick(session: Session) -> None:
@@ -375,7 +377,6 @@ def run(
 
 def _scenario(file: Path, of_the_file: dict[str, Any], *, view: bool) -> Scenario:
     """A scenario that can be shown live.  Raises ValueError for what cannot be, or for an option of its own."""
-    from hil.reports.policy import Policy
     from hil.scenarios.scenario import load_scenario
 
     for option, value in of_the_file.items():
@@ -417,11 +418,13 @@ def view_until_stopped(
     """Serve the page until Ctrl-C; `say` gets its address."""
     from hil.view.server import run_view
 
+    policy = show.policy()
     with ExitStack() as stack:
         # Before it serves there is nothing to show, and a signal interrupts.
         engine = run_view(
             setup, pace, orders, open_line, host=host, port=number, say=say,
             on_stop=lambda stop: stack.enter_context(show.ended_by_signals(stop)), read=read,
+            policy=policy,
         )  # fmt: skip
     show.print_findings(engine.findings)
     robot = engine.kind.bench is not None
@@ -471,7 +474,8 @@ class _Display:
     """The status line, and above it what was expected, once it is decided: live in a terminal, now and then elsewhere,
     not at all when quiet."""
 
-    def __init__(self, watching: Watching | None = None, *, quiet: bool) -> None:
+    def __init__(self, policy: Policy, watching: Watching | None = None, *, quiet: bool) -> None:
+        self._policy = policy
         self._watching = watching
         terminal = show.console()
         self._live = terminal.is_terminal and not quiet
@@ -490,9 +494,9 @@ class _Display:
         self._next_s = now + self._every_s
         self.tell_decided()
         if self._live:
-            self.live.update(Text(status_line(session), no_wrap=True, overflow="ellipsis"), refresh=True)
+            self.live.update(Text(status_line(session, self._policy), no_wrap=True, overflow="ellipsis"), refresh=True)
         else:
-            show.say(status_line(session))
+            show.say(status_line(session, self._policy))
 
     def tell_decided(self, *, ended: bool = False) -> None:
         """A line for each expectation that is decided, once."""

@@ -13,7 +13,8 @@ from rich.table import Table
 
 from hil.cli import show
 from hil.files import check_target
-from hil.reports.model import merged
+from hil.reports.json_report import findings_of
+from hil.reports.model import Report, merged_by, report_of
 
 if TYPE_CHECKING:
     from hil.scenarios.running import ScenarioOutcome
@@ -63,12 +64,15 @@ def scenario(
             raise ValueError("which scenario? give FILE..., or --shipped")
         if junit is not None:
             check_target(junit)
+        show.policy()
         _readable(paths)
         outcomes = _run(paths, jobs, quiet=json_output)
         if junit is not None:
             write_junit(junit, outcomes)
         if json_output:
-            show.print_json({"scenarios": [outcome.as_dict() for outcome in outcomes]})
+            show.print_json({
+                "scenarios": [outcome.as_dict() for outcome in outcomes], "findings": findings_of(_report(outcomes))
+            })  # fmt: skip
         else:
             _print(outcomes)
     if not all(outcome.passed for outcome in outcomes):
@@ -116,9 +120,15 @@ def _run(paths: list[Path], jobs: int, *, quiet: bool) -> list[ScenarioOutcome]:
         ))  # fmt: skip
 
 
+def _report(outcomes: list[ScenarioOutcome]) -> Report:
+    """What was found, and in which scenarios."""
+    # Of the first legs: what the second ones find is what they are there for.
+    found = merged_by((outcome.name, finding) for outcome in outcomes for finding in outcome.legs[0].findings)
+    return report_of([finding for finding, _ in found], "scenarios", [names for _, names in found])
+
+
 def _print(outcomes: list[ScenarioOutcome]) -> None:
-    # Of the first legs: what the second ones find beside is what they are there for.
-    show.print_findings(merged(finding for outcome in outcomes for finding in outcome.legs[0].findings))
+    show.print_report(_report(outcomes))
     terminal = show.console()
     table = Table(title=f"Scenarios: {len(outcomes)}", title_justify="left")
     for heading in ("scenario", "thesis", "run", "expectation", "", "seen"):

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from hil.board import Board
     from hil.machine import Machine, Setup
     from hil.reports.model import Report
+    from hil.reports.policy import Policy
 
 EXIT_FAILED: Final = 1
 EXIT_BAD_INPUT: Final = 2
@@ -206,6 +207,16 @@ def open_machine(setup: Setup, *, coverage: Coverage | None = None, kind: type[B
     from hil.running import running
 
     return running(setup, kind=kind, coverage=coverage)
+
+
+def policy() -> Policy:
+    """How the project of the current folder weighs findings.  Raises ValueError if it is wrong.
+
+    Commands that take long read it first, so that nobody waits for a run to hear of a typing error.
+    """
+    from hil.reports.policy import Policy
+
+    return Policy.load(Path.cwd())
 
 
 def print_findings(findings: Iterable[Finding]) -> None:

@@ -46,6 +46,7 @@ def soak(
     with show.user_errors():
         from hil.scenarios.soak import soak as run
 
+        show.policy()
         terminal = show.console()
         bar = Progress(
             TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed:.0f} of {task.total:.0f} s"),

@@ -24,6 +24,7 @@ from hil.files import replacing
 from hil.instruments.recorder import Recorder, about_of
 from hil.instruments.trace_file import DEFAULT, RecordedTrace
 from hil.page.replay import Replay
+from hil.reports.policy import Policy
 from hil.robot.view.arena_drawing import LEGEND
 from hil.running import RunningBoard
 from hil.view.style import ARENA, DARK, LIGHT, WORDS
@@ -38,9 +39,10 @@ def paged(
 ) -> Iterator[None]:
     """Write a page of what a board does while this lasts; `about` says what ran.
 
-    Raises OSError at the end if it cannot be written.
+    The project of the current folder weighs the findings.  Raises ValueError if its policy is wrong, OSError at the end
+    if the page cannot be written.
     """
-    replay = Replay(about_of(machine, about or {}))
+    replay = Replay(about_of(machine, about or {}), Policy.load(Path.cwd()))
     recorder = Recorder(machine, replay, channels)
     try:
         yield
@@ -52,8 +54,8 @@ def paged(
 
 
 def write_page(path: str | Path, trace: RecordedTrace) -> None:
-    """Write a page of a trace to `path`: the same that `paged` writes."""
-    replay = Replay(trace.about)
+    """Write a page of a trace to `path`: the same that `paged` writes.  Raises ValueError for a wrong policy."""
+    replay = Replay(trace.about, Policy.load(Path.cwd()))
     for event in trace.events:
         replay.event(*event)
     _write(path, html(replay.data()))

@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from emulator.clock import SYSCLK_HZ
 from emulator.devices.lv_maxsonar_beam import OBJECT_HALF_ANGLE_RAD
-from emulator.rules import Rule
+from emulator.rules import Severity
 from hil.client.decode import FrameDecoder
 from hil.client.plot import place, sonar_points
 from hil.instruments.serial_lines import Lines, ReceivedLine
@@ -22,6 +22,7 @@ from hil.instruments.trace_file import FROM_PC, LOOK_CYCLES, TO_PC
 from hil.reports.excerpt import readable
 from hil.reports.html import markdown
 from hil.reports.model import rule_of
+from hil.reports.policy import Policy
 from hil.world.robot_params import RobotParams
 
 #: Units a metre, and a radian.
@@ -82,8 +83,10 @@ class _Signal:
 class Replay:
     """A run for a page.  A `hil.instruments.recorder.Taker`: events of one channel come in the order of time."""
 
-    def __init__(self, about: Mapping[str, str]) -> None:
+    def __init__(self, about: Mapping[str, str], policy: Policy | None = None) -> None:
+        """`about` says what ran; `policy` weighs the findings (None: by their rules)."""
         self.about = dict(about)
+        self._policy = policy or Policy()
         self._end = 0
         self._tasks = TaskTimeline({})
         self._lanes: dict[str, dict[str, tuple[array[int], array[int]]]] = {}
@@ -177,7 +180,8 @@ class Replay:
             self._keep(self._tasks.spans)
         for line in self._lines.rest():
             self._say(line)
-        rules = {rule.id: rule for rule in (rule_of(name) for _, name, _ in self._findings)}
+        findings = self._listed()
+        rules = {rule.id: rule for rule in (rule_of(found["rule"]) for found in findings)}
         return {
             "hz": SYSCLK_HZ,
             "units": UNITS,
@@ -185,7 +189,7 @@ class Replay:
             "end": self._end,
             "about": {name: text for name, text in self.about.items() if name not in (TO_PC, FROM_PC)},
             "full": [[what, cycles] for what, cycles in self._full.items()],
-            "findings": self._listed(rules),
+            "findings": findings,
             "rules": {
                 rule.id: {"title": rule.title, "page": str(markdown(rule.page)), "source": rule.source}
                 for rule in rules.values()
@@ -201,19 +205,20 @@ class Replay:
             ],
         }
 
-    def _listed(self, rules: Mapping[str, Rule]) -> list[dict[str, Any]]:
+    def _listed(self) -> list[dict[str, Any]]:
         """The findings, the worst first, those of one severity in the order in which they came."""
-        listed = sorted(self._findings, key=lambda found: -rules[found[1]].severity.rank)
         return [
             {
-                "t": cycles, "rule": name, "severity": rules[name].severity.value,
+                "t": cycles, "rule": name, "severity": severity.value,
                 "message": readable(value["message"]), "object": _text(value.get("object")), "task": value["task"],
                 "where": readable(value["place"]),
                 "details": [readable(text) for text in _texts(value.get("details"))],
                 "from": [readable(text) for text in _texts(value.get("called_from"))],
                 **_source(value.get("source")),
             }
-            for cycles, name, value in listed
+            for severity in reversed(Severity)
+            for cycles, name, value in self._findings
+            if self._policy.severity(name) is severity
         ]  # fmt: skip
 
     def _task_lanes(self) -> list[dict[str, Any]]:

@@ -13,7 +13,7 @@ In `pyproject.toml`::
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
@@ -120,6 +120,11 @@ class Policy:
         """
         severity = self.severity(finding.rule)
         return Severity.NOTE if severity is not None and finding.how == GENERATED else severity
+
+    def weighed(self, findings: Iterable[Finding]) -> list[tuple[Finding, Severity]]:
+        """The findings with their severities here, in their order, without those that are turned off."""
+        every = ((finding, self.weigh(finding)) for finding in findings)
+        return [(finding, severity) for finding, severity in every if severity is not None]
 
     def fails(self, severity: Severity) -> bool:
         """Whether a finding of this severity fails a run."""

@@ -15,6 +15,8 @@ from emulator.clock import SYSCLK_HZ, seconds
 from hil.files import replacing
 from hil.machine import FirmwareStopped
 from hil.reports.excerpt import relative_path
+from hil.reports.json_report import findings_of
+from hil.reports.model import report_of
 from hil.reports.policy import Policy
 from hil.scenarios.expectation import Check, Watching
 from hil.scenarios.scenario import Scenario, load_scenario
@@ -40,11 +42,11 @@ class ScenarioRun:
     findings: tuple[Finding, ...]
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data."""
+        """Plain data.  Raises ValueError for a wrong policy of the project."""
         return {
             "fixes": list(self.fixes), "stopped": self.stopped, "checks": [check.as_dict() for check in self.checks],
             "virtual_s": self.virtual_s, "uart_sha256": self.uart_sha256,
-            "findings": sorted({finding.rule for finding in self.findings}),
+            "findings": findings_of(report_of(self.findings)),
         }  # fmt: skip
 
 
@@ -87,7 +89,7 @@ class ScenarioOutcome:
         return not self.failures
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data."""
+        """Plain data.  Raises ValueError for a wrong policy of the project."""
         return {
             "name": self.name, "file": relative_path(self.file), "passed": self.passed, "failures": self.failures,
             "description": self.description, "thesis": self.thesis, "defects": list(self.defects),

@@ -24,7 +24,8 @@ from hil.faults import Fault, mount
 from hil.faults.all import FAULTS
 from hil.faults.kinds import FaultParameter, Value
 from hil.machine import FirmwareStopped, Setup
-from hil.reports.model import merged
+from hil.reports.json_report import findings_of
+from hil.reports.model import merged, report_of
 
 #: The world in which neither the firmware as in the C nor the corrected one gets stuck by itself.
 WORLD: Final = "paddock"
@@ -74,14 +75,11 @@ class Soaked:
     trace_sha256: str = ""
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data for JSON."""
-        rules: Counter[str] = Counter()
-        for finding in self.findings:
-            rules[finding.rule] += finding.count
+        """Plain data for JSON.  Raises ValueError for a wrong policy of the project."""
         return {
             name: dict(sorted(value.items())) if isinstance(value, Counter)
             else sorted(value) if isinstance(value, set) else value
-            for name, value in (vars(self) | {"findings": rules}).items()
+            for name, value in (vars(self) | {"findings": findings_of(report_of(self.findings))}).items()
         }  # fmt: skip
 
 

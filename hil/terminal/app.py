@@ -25,6 +25,7 @@ from textual.widgets import Footer, Input, Static
 from hil.client import keys
 from hil.client.decode import OdometryFrame
 from hil.client.orders import parse_order
+from hil.reports.policy import Policy
 from hil.terminal.arena import ArenaHistory
 from hil.terminal.canvas import BRAILLE, HALF_BLOCKS, Layer
 from hil.terminal.findings import FindingScreen, FindingsTable
@@ -104,8 +105,13 @@ class TerminalApp(App[None]):
         Binding("ctrl+q,ctrl+c", "quit", show=False, priority=True),
     ]  # fmt: skip
 
-    def __init__(self, link: Link | None, robot: EmulatedRobot | None, first: Sequence[str] = ()) -> None:
-        """A line that is open, or a robot that will have one and is given the orders `first`."""
+    def __init__(
+        self, link: Link | None, robot: EmulatedRobot | None, first: Sequence[str] = (), policy: Policy | None = None
+    ) -> None:  # fmt: skip
+        """A line that is open, or a robot that will have one and is given the orders `first`.
+
+        `policy` weighs the findings (None: by their rules).
+        """
         super().__init__()
         self.link = link
         self.robot = robot
@@ -120,7 +126,7 @@ class TerminalApp(App[None]):
         self._view = ArenaView()
         self._pose_panel = Static(id="pose", markup=False)
         self._frames = FrameList()
-        self._table = FindingsTable() if robot is not None else None
+        self._table = FindingsTable(policy or Policy()) if robot is not None else None
         self._prompt = Input(
             id="reference", placeholder="V W in m/s and rad/s, for instance 0.1 0 (Enter sends, Esc leaves)",
             compact=True, select_on_focus=False,
@@ -301,8 +307,8 @@ class TerminalApp(App[None]):
 
     def on_data_table_row_selected(self) -> None:
         """One finding in full."""
-        if self._table is not None and (finding := self._table.chosen) is not None:
-            self.push_screen(FindingScreen(finding))
+        if self._table is not None and (chosen := self._table.chosen) is not None:
+            self.push_screen(FindingScreen(*chosen))
 
     def action_clear(self) -> None:
         """Forget the drawn points."""

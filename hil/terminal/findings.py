@@ -16,7 +16,7 @@ from emulator.c28x.findings import Finding
 from emulator.rules import RULES, Severity
 from hil.client.keys import LEAVE, STOP
 from hil.reports.excerpt import readable, shown
-from hil.reports.model import rule_of
+from hil.reports.policy import Policy
 
 #: The longest last: on a narrow screen it is the one that is cut (arrow keys scroll).
 COLUMNS = ("severity", "rule", "times", "first ms", "task", "place")
@@ -29,9 +29,11 @@ class FindingsTable(DataTable[Text]):
 
     BORDER_TITLE = "findings"
 
-    def __init__(self) -> None:
+    def __init__(self, policy: Policy) -> None:
+        """`policy` weighs them."""
         super().__init__(cursor_type="row", id="findings")
-        self._shown: Sequence[Finding] = ()
+        self._policy = policy
+        self._shown: Sequence[tuple[Finding, Severity]] = ()
 
     def on_mount(self) -> None:
         """Columns."""
@@ -42,26 +44,26 @@ class FindingsTable(DataTable[Text]):
         """Add what is new, update counts."""
         if not self.columns:
             return  # not on the screen yet
-        for number, finding in enumerate(findings[: len(self._shown)]):
+        weighed = self._policy.weighed(findings)
+        for number, (finding, _) in enumerate(weighed[: len(self._shown)]):
             times = Text(str(finding.count), justify="right")
             if self.get_cell(str(number), "times") != times:
                 self.update_cell(str(number), "times", times)
-        for number in range(len(self._shown), len(findings)):
-            self.add_row(*_row(findings[number]), key=str(number))
-        if len(findings) != len(self._shown):
-            self.border_title = f"findings: {len(findings)}"
-        self._shown = findings
+        for number in range(len(self._shown), len(weighed)):
+            self.add_row(*_row(*weighed[number]), key=str(number))
+        if len(weighed) != len(self._shown):
+            self.border_title = f"findings: {len(weighed)}"
+        self._shown = weighed
 
     @property
-    def chosen(self) -> Finding | None:
-        """The one under the cursor."""
+    def chosen(self) -> tuple[Finding, Severity] | None:
+        """The one under the cursor, and its severity."""
         return self._shown[self.cursor_row] if 0 <= self.cursor_row < len(self._shown) else None
 
 
-def _row(finding: Finding) -> list[Text]:
+def _row(finding: Finding, severity: Severity) -> list[Text]:
     place = finding.place
     where = shown(place) if place else finding.object
-    severity = rule_of(finding.rule).severity
     first = f"{finding.time_us / 1e3:.3f}"
     return [
         Text(severity.value, STYLE[severity]), Text(finding.rule), Text(str(finding.count), justify="right"),
@@ -78,15 +80,15 @@ class FindingScreen(ModalScreen[None]):
         (STOP.terminal, "app.stop", "Stop"),
     ]
 
-    def __init__(self, finding: Finding) -> None:
+    def __init__(self, finding: Finding, severity: Severity) -> None:
         super().__init__()
-        self._finding = finding
+        self._finding, self._severity = finding, severity
 
     def compose(self) -> ComposeResult:
         """A page that scrolls."""
         rule = RULES.get(self._finding.rule)
         with VerticalScroll(id="page"):
-            yield Static(_in_full(self._finding), markup=False)
+            yield Static(_in_full(self._finding, self._severity), markup=False)
             if rule is not None:
                 yield Markdown(rule.page, open_links=False)
         yield Footer(show_command_palette=False)
@@ -100,9 +102,10 @@ class FindingScreen(ModalScreen[None]):
         self.dismiss()
 
 
-def _in_full(finding: Finding) -> Text:
+def _in_full(finding: Finding, severity: Severity) -> Text:
     rule = RULES.get(finding.rule)
-    text = Text.assemble((finding.rule, "bold"), f" ({rule.severity.value}): {rule.title}" if rule else "", "\n\n")
+    title = f": {rule.title}" if rule else ""
+    text = Text.assemble((finding.rule, "bold"), f" ({severity.value}){title}\n\n")
     text.append(f"{readable(finding.message)}\n")
     for detail in finding.details:
         text.append(f"{readable(detail)}\n")

@@ -6,9 +6,11 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 from hil.machine import Machine, Setup
+from hil.reports.policy import Policy
 from hil.terminal.app import TerminalApp
 from hil.terminal.link import Link, Traffic
 from hil.terminal.robot import EmulatedRobot, real_machine
@@ -52,15 +54,16 @@ def run_terminal(
     """Run the console until the user leaves: for the robot behind `port` (a device or any URL of pyserial), or without
     one for an emulated robot of `setup`, made by `machine`, at `pace` times real time, with the orders `first`.
 
-    Raises ValueError, one line, for what the user can mend (no terminal, no such port or world), and FirmwareStopped
-    when the emulated firmware did not run on.
+    Raises ValueError, one line, for what the user can mend (no terminal, no such port or world, a wrong policy), and
+    FirmwareStopped when the emulated firmware did not run on.
     """
     if not all(stream.isatty() for stream in (sys.stdin, sys.stdout, sys.stderr)):
         raise ValueError("this console needs a terminal; without one: hil drive PORT ORDER...")
+    policy = Policy.load(Path.cwd())
     began_s = time.monotonic()
     link = Link(port) if port is not None else None
     robot = None if port is not None else EmulatedRobot(setup or Setup(), machine=machine, pace=pace)
-    app = TerminalApp(link, robot, first)
+    app = TerminalApp(link, robot, first, policy)
     try:
         app.run()
     finally:

@@ -17,6 +17,7 @@ from hil.board import Board, load
 from hil.client.orders import TimedOrder
 from hil.machine import Machine, Setup
 from hil.pacing import Pacer
+from hil.reports.policy import Policy
 from hil.serial_port import SerialPort
 from hil.view.checkpoints import RewindableRun
 from hil.view.commands import Commands
@@ -41,12 +42,15 @@ class Engine:
         open_port: Callable[[Machine], SerialPort | None] = lambda _machine: None,
         record_writers: bool = True,
         read: Mapping[str, Any] | None = None,
+        policy: Policy | None = None,
     ) -> None:
         """`open_port` is called in the machine's thread once it is ready; None: only the page speaks to it.
 
         `read` is what was read of files for the setup before (`RunningBoard.read`): its board, its map.
+        `policy` weighs the findings; None: by their rules.
         """
         self.setup = setup
+        self.policy = policy or Policy()
         read = {"kind": load(setup.board)} | dict(read or {})
         self.kind: type[Board] = read["kind"]
         self._commands = Commands()

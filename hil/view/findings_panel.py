@@ -23,18 +23,11 @@ WORST_FIRST: Final = sorted(Severity, key=lambda severity: -severity.rank)
 COLUMNS: Final = ("severity", "finding", "where", "first")
 
 
-def severity_of(finding: Finding) -> str:
-    """The severity of its rule; "" for an unknown rule."""
-    rule = RULES.get(finding.rule)
-    return rule.severity.value if rule is not None else ""
-
-
-def by_severity(findings: Iterable[Finding]) -> dict[str, int]:
+def by_severity(weighed: Iterable[tuple[Finding, Severity]]) -> dict[str, int]:
     """How many there are of each severity, the worst first."""
     counts = {severity.value: 0 for severity in WORST_FIRST}
-    for finding in findings:
-        severity = severity_of(finding)
-        counts[severity] = counts.get(severity, 0) + 1
+    for _, severity in weighed:
+        counts[severity.value] += 1
     return counts
 
 
@@ -53,20 +46,14 @@ def key_of(finding: Finding) -> str:
     return "\n".join((finding.rule, str(finding.place), finding.object, str(finding.time_cycles)))
 
 
-def rank_of(finding: Finding) -> int:
-    """The rank of its severity; 0 is the worst."""
-    severity = severity_of(finding)
-    return next((rank for rank, each in enumerate(WORST_FIRST) if each.value == severity), len(WORST_FIRST))
-
-
-def row_of(finding: Finding) -> TableRow:
+def row_of(finding: Finding, severity: Severity) -> TableRow:
     """A line of the table."""
-    place, severity = finding.place, severity_of(finding)
+    place = finding.place
     line = "" if place is None else location(place).rpartition("/")[2]
     return TableRow(
         key_of(finding),
         (
-            TableCell(severity, css=f"severity {severity}", order=rank_of(finding)),
+            TableCell(severity.value, css=f"severity {severity.value}", order=WORST_FIRST.index(severity)),
             TableCell(finding.rule, finding.object),
             TableCell(
                 "" if place is None else function_of(place),
@@ -78,9 +65,9 @@ def row_of(finding: Finding) -> TableRow:
     )
 
 
-def worst_first(findings: Iterable[Finding]) -> list[Finding]:
+def worst_first(weighed: Iterable[tuple[Finding, Severity]]) -> list[tuple[Finding, Severity]]:
     """By severity; those of one severity as they came."""
-    return sorted(findings, key=rank_of)
+    return sorted(weighed, key=lambda each: -each[1].rank)
 
 
 def has_words(row: TableRow, words: str) -> bool:
@@ -127,14 +114,13 @@ class FindingsPanel:
         self._filter()
         if self._counted != len(self._shown):
             self._counted = len(self._shown)
-            for severity, count in by_severity(self._shown).items():
-                box = self._filters.get(severity)
-                if box is not None:
-                    box.text = f"{count} {severity}{'' if count == 1 else 's'}"
+            for severity, count in by_severity(self._engine.policy.weighed(self._shown)).items():
+                self._filters[severity].text = f"{count} {severity}{'' if count == 1 else 's'}"
 
     def _filter(self) -> None:
         wanted = {severity for severity, box in self._filters.items() if box.value}
-        rows = [row_of(finding) for finding in worst_first(self._shown) if severity_of(finding) in wanted]
+        weighed = worst_first(self._engine.policy.weighed(self._shown))
+        rows = [row_of(finding, severity) for finding, severity in weighed if severity.value in wanted]
         words = str(self._search.value or "")
         rows = [row for row in rows if has_words(row, words)]
         self._table.show(rows)

@@ -10,7 +10,7 @@ from nicegui import events, ui
 
 from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ, seconds
-from emulator.rules import RULES
+from emulator.rules import Severity
 from hil.view.engine import Engine
 from hil.view.showing import Mark
 from hil.view.snapshot import Mode, Snapshot
@@ -35,17 +35,16 @@ CLICKED: Final = """(e) => { const box = e.currentTarget.getBoundingClientRect()
   emit((e.clientX - box.left) / box.width); }"""
 
 
-def ticks(findings: Iterable[Finding], marks: Iterable[Mark], end: float, known_cycles: int = 0) -> str:
+def ticks(weighed: Iterable[tuple[Finding, Severity]], marks: Iterable[Mark], end: float, known_cycles: int = 0) -> str:
     """Findings above, what was done and what happened below, what each tick is; and how far the run is known."""
 
     def x(cycles: int) -> float:
         return round(STEPS * min(1.0, seconds(cycles) / end), 1)
 
     drawn = [
-        (x(each.time_cycles), 0, f"finding {RULES[each.rule].severity.value}" if each.rule in RULES else "finding",
-         f"{each.rule}, {each.time_us / 1e3:.3f} ms")
-        for each in findings
-    ]  # fmt: skip
+        (x(each.time_cycles), 0, f"finding {severity.value}", f"{each.rule}, {each.time_us / 1e3:.3f} ms")
+        for each, severity in weighed
+    ]
     drawn += [(x(each.cycles), 9, each.kind.value, f"{each.text}, {seconds(each.cycles):.3f} s") for each in marks]
     known = f'<rect class="known" x="0" y="16" width="{x(known_cycles)}" height="1"/>'
     return known + "".join(
@@ -109,10 +108,15 @@ class ScrubBar:
         with button.props(f'no-caps dense outline aria-label="{meaning}"').classes("jump"):
             ui.tooltip(meaning)
 
+    @property
+    def _findings(self) -> list[Finding]:
+        engine = self._engine
+        return [finding for finding, _ in engine.policy.weighed(engine.known_findings)]
+
     def jump(self, way: int) -> None:
         """To the next finding, or the one before, at its statement."""
         at = self._at.time_cycles if self._at is not None else self._engine.snapshot.cycles
-        found = neighbour(self._engine.known_findings, at, way)
+        found = neighbour(self._findings, at, way)
         if found is None:
             ui.notify("no finding after this time" if way > 0 else "no finding before this time")
             return
@@ -143,13 +147,14 @@ class ScrubBar:
             self._end_s = end
             self._slider.props(f"max={end} step={end / STEPS}")
             self._end.text = f"{end} s"
-        drawn = ticks(self._engine.known_findings, self._engine.marks, end, self._engine.known_cycles)
+        weighed = self._engine.policy.weighed(self._engine.known_findings)
+        drawn = ticks(weighed, self._engine.marks, end, self._engine.known_cycles)
         if drawn != self._ticks.content:
             self._ticks.content = drawn
 
     def _clicked(self, e: events.GenericEventArguments) -> None:
-        at_s, engine = float(e.args) * self._end_s, self._engine
-        found = nearest(engine.known_findings, engine.marks, at_s, REACH * self._end_s)
+        at_s = float(e.args) * self._end_s
+        found = nearest(self._findings, self._engine.marks, at_s, REACH * self._end_s)
         if isinstance(found, Finding):
             self.go_to(found)
         elif found is not None:

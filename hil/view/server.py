@@ -17,6 +17,7 @@ from typing import Any, Final
 from hil.client.orders import TimedOrder
 from hil.extras import want
 from hil.machine import Machine, Setup
+from hil.reports.policy import Policy
 from hil.serial_port import SerialPort
 from hil.view.engine import Engine
 from hil.view.guard import RequestGuard, is_loopback
@@ -68,14 +69,16 @@ def run_view(
     say: Say = print,
     on_stop: OnStop | None = None,
     read: Mapping[str, Any] | None = None,
+    policy: Policy | None = None,
 ) -> Engine:
     """`hil run --view`: a board and its page, until somebody ends it; what it came to can still be read afterwards.
 
-    `read` is what was read of files for the setup before (`RunningBoard.read`).  Raises ValueError before it starts,
-    and what ends the machine's thread: nobody looks at a machine that is not there.
+    `read` is what was read of files for the setup before (`RunningBoard.read`); `policy` weighs the findings
+    (None: by their rules).  Raises ValueError before it starts, and what ends the machine's thread: nobody looks at a
+    machine that is not there.
     """
     want("nicegui")
-    engine = Engine(setup, pace=pace, orders=orders, open_port=open_port, read=read)
+    engine = Engine(setup, pace=pace, orders=orders, open_port=open_port, read=read, policy=policy)
 
     def ends(stop: Callable[[], None]) -> None:
         engine.on_error(stop)

@@ -154,6 +154,19 @@ def test_bad_input_is_one_line_before_anything_runs(
     assert err.count("\n") == 1
 
 
+@pytest.mark.parametrize(
+    "command", ["run --no-port --pace max", "soak", "campaign", "scenario --shipped", "run --view --no-open"]
+)
+def test_no_run_begins_with_a_wrong_policy(
+    command: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:  # fmt: skip
+    (folder / "pyproject.toml").write_text('[tool.c2000-hil]\nfail_on = "heavy"\n')
+    assert invoke(command.split()) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n")) == ("", 1)
+    assert "fail_on 'heavy'" in err
+
+
 def test_a_wrong_policy_is_one_line(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "pyproject.toml").write_text('[tool.c2000-hil.severity]\nuninitialized = "note"\n')
     assert invoke(SHORT) == 2

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from emulator.rules import RULES
+from emulator.rules import RULES, Severity
 from hil.bench import Bench
 from hil.client.decode import OdometryFrame
 from hil.client.plot import place, sonar_points
@@ -23,6 +23,7 @@ from hil.instruments.trace_file import RecordedTrace, TraceWriter, read
 from hil.page import replay as module
 from hil.page.page import html
 from hil.page.replay import Replay, differences
+from hil.reports.policy import Policy
 
 
 def data_of(page: str) -> dict[str, Any]:
@@ -119,6 +120,15 @@ def test_findings_come_worst_first_and_bring_their_source(data: dict[str, Any], 
     file, number = re.search(r"\(([^():]+):(\d+)", index["where"]).groups()  # type: ignore[union-attr]
     assert line == Path(__file__).parents[3].joinpath(file).read_text(encoding="utf-8").splitlines()[int(number) - 1]
     assert set(data["rules"]) == {each["rule"] for each in found}
+
+
+def test_the_project_weighs_the_findings(trace: RecordedTrace) -> None:
+    replay = Replay(trace.about, Policy(severities={"index": Severity.NOTE, "uninitialised": None}))
+    for event in trace.of("findings"):
+        replay.event(*event)
+    told = replay.data()
+    assert {each["severity"] for each in told["findings"] if each["rule"] == "index"} == {"note"}
+    assert "uninitialised" not in {each["rule"] for each in told["findings"]} | told["rules"].keys()
 
 
 def test_orders_and_frames_are_told_apart(data: dict[str, Any], drive: tuple[Path, Path, Bench]) -> None:

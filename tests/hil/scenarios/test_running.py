@@ -192,8 +192,13 @@ def test_two_at_a_time_are_the_same_as_one_after_the_other(
     told = []
     for jobs in ("1", "2"):
         assert invoke(["scenario", *files, "-j", jobs, "--json", "--junit", str(tmp_path / f"{jobs}.xml")]) == 1
-        told.append(json.loads(capsys.readouterr().out)["scenarios"])
+        told.append(json.loads(capsys.readouterr().out))
     assert told[0] == told[1]
+    found = told[0]["findings"]
+    assert {"rule", "severity", "file", "line", "fingerprint", "shown_by"} <= found[0].keys()
+    told = [each["scenarios"] for each in told]
+    here = {each["fingerprint"] for one in told[0] for each in one["runs"][0]["findings"]}
+    assert here == {each["fingerprint"] for each in found}
     assert invoke(["scenario", *files, "-j", "2"]) == 1
     told_last = capsys.readouterr().out
     # What was found is the table that every command has, before the verdicts.

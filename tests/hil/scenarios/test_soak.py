@@ -75,8 +75,9 @@ def test_what_it_found_is_the_table_that_every_command_has(capsys: pytest.Captur
     assert re.search(r"^\d+ errors?, \d+ warnings?", out, re.MULTILINE)
     assert out.index(" error ") < out.index(" warning ")  # the worst first
     assert invoke(["soak", "--for", "1", "--faithful", "--json"]) == 0
-    counts = json.loads(capsys.readouterr().out)["findings"]
-    assert all(rule in out for rule in counts)
+    found = json.loads(capsys.readouterr().out)["findings"]
+    assert {"rule", "severity", "file", "line", "fingerprint"} <= found[0].keys()
+    assert all(finding["rule"] in out for finding in found)
 
 
 @pytest.mark.slow
