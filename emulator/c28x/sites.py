@@ -30,7 +30,7 @@ class Place(NamedTuple):
     c_file: str
     column: int = 0
     #: The kind of a special statement: "poll" for a loop that only polls, "idle" for an empty loop without an end,
-    #: "takes" for a statement that clears what the statement before has read (pass `taken`).
+    #: "takes" for a statement that clears what a statement just before has read (pass `taken`).
     kind: str = ""
 
     def __str__(self) -> str:

@@ -480,7 +480,7 @@ class Assign(Stmt):
 
     target: LValue | RegisterRef | RegisterAt
     value: Expr
-    #: Pass `taken`: it clears the object that the statement before has copied.
+    #: Pass `taken`: it clears an object that a statement just before has read.
     takes: bool = field(default=False, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 

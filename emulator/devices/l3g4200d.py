@@ -15,7 +15,7 @@ Sources: L3G sections on SPI, I2C, registers, FIFO.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import ClassVar, Final
 
 from emulator.clock import CYCLES_PER_MS, NEVER, SYSCLK_HZ, Clock, Event
@@ -56,7 +56,7 @@ class L3G4200D:
     """
 
     #: Address -> name, for code that decodes the bus.
-    register_names: ClassVar[Mapping[int, str]] = {register.address: register.name for register in r.REGISTERS}
+    register_names: ClassVar[dict[int, str]] = {register.address: register.name for register in r.REGISTERS}
 
     def __init__(
         self,
@@ -91,7 +91,7 @@ class L3G4200D:
         self.fifo = SampleFifo()
         self.spi = SpiFrame(self, self.report)
         #: The device on an I2C: `bus.attach(gyro.i2c.address, gyro.i2c)`.
-        self.i2c = I2cFrame(self, self.spi, sdo)
+        self.i2c = I2cFrame(self, self.spi, sdo, self.report)
         #: For the bus: chip select and words of the bus go directly to the framing.
         self.select = self.spi.select
         self.exchange = self.spi.exchange

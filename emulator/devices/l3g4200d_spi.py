@@ -9,8 +9,10 @@ Sources: L3G section on the SPI bus interface; LIS3DH's section on it describes 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Final, Protocol
+
+from emulator.devices.fixed_address import FixedAddress
+from emulator.devices.report import DeviceReport, Mark, mark_of
 
 
 class RegisterFile(Protocol):
@@ -30,6 +32,10 @@ class RegisterFile(Protocol):
     #: Axis of an idle output that this transaction has read, -1 for none.
     idle_axis: int
 
+    @property
+    def register_names(self) -> dict[int, str]:
+        """Address -> name."""
+
     def deselected(self) -> None:
         """A transaction that has read an idle output has ended."""
 
@@ -39,7 +45,7 @@ GREATEST_CLOCK_HZ: Final = 10e6
 
 
 class SpiFrame:
-    """The transaction in progress.  `report(rule, message)` is called for errors in the framing of this `part`."""
+    """The transaction in progress.  `report` is called for errors in the framing of this `part`."""
 
     __slots__ = (
         "_address",
@@ -47,17 +53,22 @@ class SpiFrame:
         "_bits",
         "_command",
         "_file",
+        "_fixed",
         "_late_bit",
+        "_mark",
         "_part",
         "_report",
         "_shift",
+        "began",
         "selected",
     )
 
-    def __init__(self, file: RegisterFile, report: Callable[[str, str], object], part: str = "L3G4200D") -> None:
+    def __init__(self, file: RegisterFile, report: DeviceReport, part: str = "L3G4200D") -> None:
         self._file = file
         self._part = part
         self._report = report
+        self._fixed = FixedAddress(file.register_names, report, part, "MS")
+        self._mark = mark_of(report)
         #: Whether chip select is low.
         self.selected = False
         self.reset()
@@ -71,6 +82,8 @@ class SpiFrame:
         self._address = 0
         self._command = 0
         self._late_bit = 0
+        #: Where the driver has sent the command byte.
+        self.began: Mark = ()
 
     def select(self, level: int) -> None:
         """Chip select: 0 opens a transaction, 1 ends it."""
@@ -98,10 +111,13 @@ class SpiFrame:
         if self._bits == 8:
             self._command = out_bits & 0xFF
             self._address = out_bits & 0x3F
+            self.began = self._mark()
             return None
         file, address = self._file, self._address
         if self._command & 0x40:
             self._address = file.after(address)
+        else:
+            self._fixed.byte((self._bits >> 3) - 1, address, self._command > 0x7F, self.began)
         if self._command & 0x80:
             answer = file.read_register(address)
             return answer if file.four_wire else None
@@ -144,9 +160,12 @@ class SpiFrame:
         if self._bits == 8:
             self._command = byte
             self._address = byte & 0x3F
+            self.began = self._mark()
             return
         address = self._address
         if self._command & 0x40:
             self._address = self._file.after(address)
+        else:
+            self._fixed.byte((self._bits >> 3) - 1, address, self._command > 0x7F, self.began)
         if not self._command & 0x80:
             self._file.write_register(address, byte)

@@ -17,7 +17,7 @@ what table 4 says of noise and zero-g level.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from math import sqrt
 from typing import ClassVar, Final
 
@@ -86,7 +86,7 @@ class Lis3dh:
     """
 
     #: Address -> name, for code that decodes the bus.
-    register_names: ClassVar[Mapping[int, str]] = {
+    register_names: ClassVar[dict[int, str]] = {
         WHO_AM_I: "WHO_AM_I", CTRL_REG0: "CTRL_REG0", 0x1F: "TEMP_CFG_REG", STATUS_REG: "STATUS_REG",
         **{CTRL_REG1 + n: f"CTRL_REG{1 + n}" for n in range(6)},
         **{OUT_X_L + n: f"OUT_{'XYZ'[n // 2]}_{'LH'[n % 2]}" for n in range(6)},
@@ -180,7 +180,7 @@ class Lis3dh:
         self._report(
             "not-configured",
             f"LIS3DH.OUT_{'XYZ'[axis]} was read while CTRL_REG1.{field} = 0: {why}, and the value is old",
-            object=f"LIS3DH.CTRL_REG1.{field}",
+            object=f"LIS3DH.CTRL_REG1.{field}", since=self._spi.began,
         )  # fmt: skip
 
     def read_register(self, address: int) -> int:

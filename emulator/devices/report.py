@@ -8,6 +8,7 @@ the statement of that shared call as its place.  The board keeps findings and ca
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Protocol
 
 #: The firmware's calls at one moment: the innermost one, which is a tuple of its own; its second member is the call
@@ -40,6 +41,12 @@ class DeviceReport(Protocol):
         self, rule: str, message: str, /, *, object: str = "", value: Any = None, since: Mark | None = None
     ) -> ReportedFinding | None:
         """`rule` was broken now; `since`: together with the access that was marked."""
+
+
+def mark_of(report: DeviceReport) -> Callable[[], Mark]:
+    """The function that returns the present mark; for reports without places, one that returns an empty mark."""
+    mark: Callable[[], Mark] = getattr(report, "mark", tuple)
+    return mark
 
 
 class Silent:

@@ -18,8 +18,8 @@ task and a Swi or Hwi, or `main` and an interrupt routine of a program without a
 
 * Several scalars belong together (a structure, a frame). The higher thread interrupts the lower one between them, and
   the lower one continues with old and new values.
-* The lower thread reads and writes in one statement (`count = count + 1`), or takes a value and clears it
-  (`taken = flags; flags = 0;`). A write of the higher thread in between is lost.
+* The lower thread reads and writes in one statement (`count = count + 1`), or uses a value and then
+  clears it (`speed = pulses * 6; pulses = 0;`). A write of the higher thread in between is lost.
 
 The detector uses the order of accesses, so the threads need not have met in this run. These are not reported:
 

@@ -803,6 +803,26 @@ Reserved registers of the gyro hold its factory trim values. A write there can d
         "L3G, register mapping",
     ),
     _rule(
+        "burst-repeats",
+        Severity.ERROR,
+        "A transaction with several bytes read or wrote the same register of a device again.",
+        """
+The low and the high byte of a value are equal, or all axes show the same. Or only the last of several settings has an
+effect, and in the wrong register.
+
+Some devices increment the register address within a transaction only if a bit of the command asks for that: MS on the
+SPI, bit 7 of the sub-address on the I2C (L3G4200D, LIS3DH). Without the bit, every byte of the transaction comes from
+the first register, or goes to it.
+
+A read is reported only where a value of two bytes begins, at the second such transaction, if the driver has not read
+the other byte by itself in between. So a status register that is polled within one transaction is not reported.
+
+**Fix:** set the bit in the command (`0x80 | 0x40 | address` on the SPI, `0x80 | address` on the I2C), or read each
+register in a transaction of its own.
+""",
+        "L3G, SPI bus interface: MS; I2C operation: SUB",
+    ),
+    _rule(
         "eeprom-page",
         Severity.ERROR,
         "A write to an EEPROM crossed the end of a page.",

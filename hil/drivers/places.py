@@ -13,7 +13,8 @@ from hil.reports.model import rule_of
 
 #: Rules about what is wired to the chip, and names of the parts on the board of the robot.
 _WIRED: Final = (
-    "contention", "device-clock", "device-register", "serial-rate", "spi-mode", "spi-no-device", "spi-transaction-cut",
+    "burst-repeats", "contention", "device-clock", "device-register", "serial-rate", "spi-mode", "spi-no-device",
+    "spi-transaction-cut",
 )  # fmt: skip
 _PARTS: Final = re.compile(r"sonar |AN of sonar |L3G4200D|XBee")
 

@@ -1,31 +1,57 @@
-"""Pass `taken`: statements that clear an object whose value the statement before has copied.
+"""Pass `taken`: statements that clear an object whose value a statement just before has read.
 
-    taken = Flags;
-    Flags = 0;
+    speed = Pulses * 6;
+    mean = Sum / 8;
+    Pulses = 0;
 
-Together they read and change the object, as `Flags &= ...` does: a flag that an interrupt sets between them is lost.
-After a test of the object (`if (Flags)`) they acknowledge a flag, which is right for a flag that is only set.
+Together they read and change the object, as `Pulses = 0 * Pulses` does: what an interrupt adds between them is lost.
+Only assignments, declarations and calls stand between the two.  After a test of the object (`if (Flags)`) they
+acknowledge a flag, which is right for a flag that is only set.
 """
 
 from __future__ import annotations
 
-from itertools import pairwise
+from collections.abc import Iterator
 
-from emulator.c28x.tree import Assign, Const, Declare, Expr, Function, If, Load, LValue, Stmt, Switch, Variable, While
-from emulator.c28x.tree_queries import bare, blocks, parts
+from emulator.c28x.tree import (
+    Assign,
+    Const,
+    Declare,
+    Evaluate,
+    Expr,
+    Function,
+    If,
+    Load,
+    LValue,
+    Stmt,
+    Switch,
+    Variable,
+    While,
+)
+from emulator.c28x.tree_queries import bare, blocks, calls, parts
+
+#: An object at file scope, and the offset of a word in it.
+_Word = tuple[Variable, int]
 
 
 def leave_taken(function: Function) -> None:
-    """Mark the statements that clear the object which the statement before has copied."""
+    """Mark the statements that clear an object which a statement just before has read."""
     _look(function.body, frozenset())
 
 
 def _look(body: list[Stmt], tested: frozenset[Variable]) -> None:
-    for before, s in pairwise(body):
-        kept = _kept(before)
-        if kept is not None and kept not in tested and _clears(s, kept):
+    read: set[_Word] = set()
+    for s in body:
+        cleared = _cleared(s)
+        if cleared in read:
             assert isinstance(s, Assign)
             s.takes = True
+        values = _values(s)
+        if values is None or any(map(calls, values)):
+            read.clear()
+        read |= {word for value in values or () for word in _words(value) if word[0] not in tested}
+        if cleared is not None:
+            read.discard(cleared)
     for s in body:
         test = s.test if isinstance(s, If | While) else s.subject if isinstance(s, Switch) else None
         inner = tested | {p.root for p in parts(test) if isinstance(p, LValue) and isinstance(p.root, Variable)}
@@ -33,18 +59,33 @@ def _look(body: list[Stmt], tested: frozenset[Variable]) -> None:
             _look(block, inner)
 
 
-def _kept(s: Stmt) -> Variable | None:
-    """The scalar file-scope object that a statement copies; None: there is none."""
-    value = s.value if isinstance(s, Assign | Declare) else None
-    read = bare(value) if isinstance(value, Expr) else None
-    if isinstance(read, Load) and isinstance(read.lvalue, LValue) and not read.lvalue.indices:
-        root = read.lvalue.root
-        return root if isinstance(root, Variable) and root.kind == "global" and root.ctype.leaves == 1 else None
+def _values(s: Stmt) -> list[Expr] | None:
+    """The values that an assignment, declaration or call uses; None for any other statement."""
+    match s:
+        case Assign(value=value) | Declare(value=Expr() as value) | Evaluate(value=value):
+            return [value]
+        case Declare(value=None):
+            return []
     return None
 
 
-def _clears(s: Stmt, kept: Variable) -> bool:
+def _words(value: Expr) -> Iterator[_Word]:
+    """The words of objects at file scope that an expression reads."""
+    for p in parts(value):
+        if isinstance(p, Load) and (word := _word(p.lvalue)) is not None:
+            yield word
+
+
+def _cleared(s: Stmt) -> _Word | None:
+    """The word of an object at file scope that a statement sets to a constant."""
     match s:
-        case Assign(target=LValue(root=Variable() as root), value=value):
-            return root is kept and isinstance(bare(value), Const)
-    return False
+        case Assign(target=LValue() as target, value=value) if isinstance(bare(value), Const):
+            return _word(target)
+    return None
+
+
+def _word(lvalue: LValue) -> _Word | None:
+    match lvalue:
+        case LValue(root=Variable(kind="global") as root, indices=[], words=words):
+            return root, words
+    return None

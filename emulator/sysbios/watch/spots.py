@@ -30,7 +30,7 @@ class StatementSpots:
         return self._places[spot] if spot else None
 
     def takes(self, spot: Spot) -> bool:
-        """Whether the statement clears an object that the statement before it has read."""
+        """Whether the statement clears an object that a statement just before it has read."""
         return self._places[spot].kind == "takes"
 
     def text(self, spot: Spot) -> str:

@@ -56,6 +56,25 @@ def signed(word: int) -> int:
     return word - 0x10000 if word & 0x8000 else word
 
 
+def test_a_burst_without_ms_is_told() -> None:
+    bench = Bench()
+    bench.write(0x20, 0x57)
+    bench.transfer(0x20, 0x57, 0x00)
+    assert [rule for rule, _ in bench.reports] == ["burst-repeats"]
+    bench.write(0x20, 0x57)
+    for _ in range(2):
+        bench.transfer(0x80 | 0x28, *[0] * 6)
+    assert [rule for rule, _ in bench.reports] == ["burst-repeats"] * 2
+    words = Bench()
+    words.write(0x20, 0x57)
+    for _ in range(2):
+        words.part.select(0)
+        for _ in range(2):  # the same in words of 16 bits
+            words.part.exchange((0x80 | 0x28) << 8, 16, 1, 1)
+        words.part.select(1)
+    assert [rule for rule, _ in words.reports] == ["burst-repeats"]
+
+
 def test_registers_after_power_up() -> None:
     bench = Bench()
     assert bench.read(0x0F) == [0x33]

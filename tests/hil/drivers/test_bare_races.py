@@ -64,6 +64,10 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
         ("Flags |= 1;", "Sum = Flags; Flags = 0;", [("race", "Flags")]),  # read and cleared, by two statements
         ("Count++;", "Uint16 n = Count; Count = 0; Sum += n;", [("race", "Count")]),
         ("Millis++;", "Millis = Millis + 1000;", [("race", "Millis")]),
+        # Used and cleared, with others in between.
+        ("Count++;", "Sum = Count * 6; Count = 0;", [("race", "Count")]),
+        ("Count++; Millis++;", "Copy = Millis; Sum = Count; Millis = 0; Words[0] = Sum;", [("race", "Millis")]),
+        ("Now.minutes++;", "Uint16 n; n = 60 * Now.minutes; Now.minutes = 0; Sum = n;", [("race", "Now")]),
         ("Now.minutes++; Now.hours++;", "Sum = Now.hours * 60 + Now.minutes;", [("race", "Now")]),
         ("Now.minutes++; Now.hours++;", "Seen.hours = Now.hours; Seen.minutes = Now.minutes;", [("race", "Now")]),
         ("Uint16 i; for (i = 0; i < 8; i++) Sum += Words[i];", "memset(Words, 1, 8);", [("race", "Words")]),
@@ -102,6 +106,9 @@ def test_what_an_interrupt_can_come_into_is_told(
         ("Flags = 1;", "if (Flags) { Flags = 0; Sum++; }"),
         ("Flags = 1;", "if (Flags) { Sum = Flags; Flags = 0; }"),
         ("Flags |= 1;", "DINT; Sum = Flags; Flags = 0; EINT;"),
+        ("Count++; Millis++;", "DINT; Copy = Millis; Sum = Count; Millis = 0; Count = 0; EINT;"),
+        ("Count++;", "Sum = Count * 6; while (Count) { Sum++; Count = 0; }"),
+        ("Count++;", "Sum = Count; Count = Sum - Sum + Words[0];"),  # set, not cleared
         ("Count++;", "Sum = Count; Words[0] = 0;"),
         ("Now.minutes++; Now.hours++;", "DINT; Sum = Now.hours * 60 + Now.minutes; EINT;"),
         ("Now.minutes++;", "Sum = Now.minutes; Now.hours = Sum;"),  # each word has one writer
