@@ -1,10 +1,12 @@
 """Words that must be read or written together, found in the source of a program without the kernel.
 
-The source shows them even where a run does not: a carry from minutes to hours is rare.  There are three forms:
+The source shows them even where a run does not: a carry from minutes to hours is rare.  There are four forms:
 
 - An interrupt routine sets several words of one object.  Another function computes with two of them at once.
 - A routine increments an index and uses it with other objects.  Another function sets the index and one of these.
 - A routine and another function move the same index of a ring buffer.
+- A routine fills objects only while a flag is 0, and sets the flag.  Another function clears the flag before it reads
+  them.  Or the other way round: the routine takes them while the flag is set, and it is set before they are filled.
 """
 
 from __future__ import annotations
@@ -14,8 +16,13 @@ from typing import Any, Final, NamedTuple
 
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
+    AddressOf,
     Assign,
     Binary,
+    Call,
+    Compare,
+    Const,
+    CopyStruct,
     Declare,
     Expr,
     For,
@@ -23,12 +30,14 @@ from emulator.c28x.tree import (
     If,
     Index,
     Load,
+    Logic,
     LValue,
+    Not,
     Stmt,
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import bare, blocks, parts, roots, statements
+from emulator.c28x.tree_queries import bare, blocks, leaves, parts, roots, statements, within
 
 #: Operators that combine the values of both operands.
 _COMBINE: Final = ("+", "-", "*", "/", "%")
@@ -42,6 +51,13 @@ class Pair(NamedTuple):
     words: frozenset[int]
     routines: frozenset[str]
     reader: tuple[str, str]
+
+
+class HandOver(NamedTuple):
+    """A flag that a function hands over to a routine too early: before it is done with what the flag stands for."""
+
+    flag: str
+    routine: str
 
 
 def pairs(modules: Iterable[Module]) -> dict[str, list[Pair]]:
@@ -109,6 +125,99 @@ def turned_by_both(modules: Iterable[Module]) -> dict[str, set[str]]:
     return {path: routines for path, routines in by_routine.items() if path in others}
 
 
+def handed_over(modules: Iterable[Module]) -> dict[str, set[HandOver]]:
+    """The objects that a function uses after it has handed over the flag that stands for them, by their paths."""
+    own = {f.path: f for module in modules for f in module.functions}
+    awaited: dict[tuple[str, bool], dict[str, set[str]]] = {}
+    inside: set[str] = set()
+    for routine, reached in _routines(own):
+        for f in reached:
+            inside.add(f.path)
+            for flag, raised, body in _branches(f.body):
+                if (flag, not raised) in {key for s in statements(body) if (key := _flag(s)) is not None}:
+                    used = (_read if raised else _written)(body)
+                    awaited.setdefault((flag, raised), {}).setdefault(routine.name, set()).update(used - {flag})
+    found: dict[str, set[HandOver]] = {}
+    for f in own.values() if awaited else ():
+        for block in _blocks(f.body) if f.path not in inside else ():
+            for number, s in enumerate(block):
+                key = _flag(s)
+                if key is None or key not in awaited:
+                    continue
+                behind = block[number + 1 :]
+                for called in {p.function.path for p in within(behind) if isinstance(p, Call)}:
+                    behind = [*behind, *(s for other in _reached(called, own) for s in other.body)]
+                late = (_written if key[1] else _read)(behind)
+                for routine_name, used in awaited[key].items():
+                    for path in used & late:
+                        found.setdefault(path, set()).add(HandOver(key[0], routine_name))
+    return found
+
+
+def _branches(body: list[Stmt]) -> Iterator[tuple[str, bool, list[Stmt]]]:
+    """(path of a flag, whether it must be set, the statements that run only then)."""
+    for number, s in enumerate(body):
+        if isinstance(s, If):
+            behind = body[number + 1 :] if leaves(s.then) else []
+            tested = s.test
+            several = isinstance(tested, Logic) and tested.op == "and"
+            for test in tested.operands if isinstance(tested, Logic) and several else [tested]:
+                if (found := _tested(test)) is not None:
+                    yield *found, s.then
+                    if not several:
+                        yield found[0], not found[1], [*s.otherwise, *behind]
+        for block in blocks(s):
+            yield from _branches(block)
+
+
+def _tested(test: Expr) -> tuple[str, bool] | None:
+    """The flag that a test looks at, and whether it must be set."""
+    match bare(test):
+        case Not(operand=operand):
+            found = _tested(operand)
+            return None if found is None else (found[0], not found[1])
+        case Compare(op="==" | "!=" as op, left=left, right=right) if isinstance(constant := bare(right), Const):
+            found = _tested(left)
+            return None if found is None else (found[0], (op == "!=") == (constant.value == 0))
+        case Load(lvalue=LValue(root=Variable(kind="global") as root, indices=[])) if root.ctype.leaves == 1:
+            return root.declaration.path, True
+    return None
+
+
+def _flag(s: Stmt) -> tuple[str, bool] | None:
+    """The plain object that a statement sets to a constant, and whether that is another one than 0."""
+    match s:
+        case Assign(target=LValue(root=Variable(kind="global") as root), value=value) if root.ctype.leaves == 1:
+            constant = bare(value)
+            return (root.declaration.path, constant.value != 0) if isinstance(constant, Const) else None
+    return None
+
+
+def _blocks(body: list[Stmt]) -> Iterator[list[Stmt]]:
+    yield body
+    for s in body:
+        for block in blocks(s):
+            yield from _blocks(block)
+
+
+def _written(body: Iterable[Stmt]) -> set[str]:
+    """The objects at file scope that statements assign."""
+    targets = [s.target for s in statements(body) if isinstance(s, Assign | CopyStruct)]
+    return {path for target in targets if (path := _path(target)) is not None}
+
+
+def _read(body: Iterable[Stmt]) -> set[str]:
+    """The objects at file scope whose values or addresses statements use."""
+    found = {_path(s.source) for s in statements(body) if isinstance(s, CopyStruct)}
+    found |= {_path(p.lvalue) for p in within(body) if isinstance(p, Load | AddressOf)}
+    return {path for path in found if path is not None}
+
+
+def _path(lvalue: Any) -> str | None:
+    root = lvalue.root if isinstance(lvalue, LValue) else None
+    return root.declaration.path if isinstance(root, Variable) and root.kind == "global" else None
+
+
 def _turns(f: Function) -> Iterator[str]:
     """The plain objects that a function moves round a ring buffer: `i = (i + 1) % N`."""
     for s in statements(f.body):
@@ -147,12 +256,12 @@ def _routines(own: dict[str, Function]) -> Iterator[tuple[Function, list[Functio
     """The interrupt routines, each with itself and the functions that it calls, directly or not."""
     for routine in own.values():
         if routine.interrupt:
-            yield routine, _reached(routine, own)
+            yield routine, _reached(routine.path, own)
 
 
-def _reached(f: Function, own: dict[str, Function]) -> list[Function]:
+def _reached(path: str, own: dict[str, Function]) -> list[Function]:
     seen: dict[str, Function] = {}
-    waiting = [f.path]
+    waiting = [path]
     while waiting:
         path = waiting.pop()
         if path in own and path not in seen:

@@ -25,7 +25,7 @@ from emulator.c28x.symbols import Module
 from emulator.clock import us
 from emulator.sysbios.watch.accesses import LatestAccess, SharedObject
 from emulator.sysbios.watch.names import HandleNames
-from emulator.sysbios.watch.pairs import Pair, continued, pairs, turned_by_both
+from emulator.sysbios.watch.pairs import HandOver, Pair, continued, handed_over, pairs, turned_by_both
 from emulator.sysbios.watch.spots import Function, Spot, StatementSpots
 from emulator.sysbios.watch.threads import HWI_LEVEL, Gate, Routine, Thread, ThreadWatch, at_clock, excluded, joined
 
@@ -97,6 +97,9 @@ class Races:
         self._pairs: dict[str, list[Pair]] | None = None
         self._continued: dict[str, set[tuple[str, str]]] = {}
         self._turned: dict[str, set[str]] = {}
+        self._handed: dict[str, set[HandOver]] = {}
+        #: Early hand-over -> the words that `main` still uses while the routine may use them too.
+        self._late: dict[HandOver, set[tuple[Object, int]]] = {}
         self._threads = threads
         self._spots = spots
         self._names = names
@@ -225,7 +228,7 @@ class Races:
         if self._threads.routines:
             if self._pairs is None:  # Read late, because most images do not need it.
                 self._pairs, self._continued = pairs(self._modules), continued(self._modules)
-                self._turned = turned_by_both(self._modules)
+                self._turned, self._handed = turned_by_both(self._modules), handed_over(self._modules)
             shared.pairs = self._pairs.get(obj.declaration.path)
         if not obj.declaration.function:
             self._objects[obj] = shared
@@ -254,13 +257,15 @@ class Races:
         if low.level == HWI_LEVEL and cut is None:  # Two handlers can nest either way round.
             cut = cell.cut(high, lower)
         lost = cut is not None
-        bare, goes_on = bool(self._threads.routines), False
+        bare, goes_on, early = bool(self._threads.routines), False, ""
         if bare:
             # These words belong together: the words of a buffer; words of a structure that one run of a routine writes;
             # the halves of a 32-bit scalar that some code accesses half by half.
             words = (set() if shared.beside else shared.joint) if shared.hands_over else conflicting
             several = len(conflicting & words) > 1
             several |= offset + 1 in shared.cells and shared.object.leaf(offset + 1) is None
+            early = self._early(shared, offset, lower, higher)
+            several |= bool(early)
         else:
             several = len(conflicting) > 1 or self._several(shared, offset)
         if lost or several:
@@ -288,6 +293,8 @@ class Races:
         said = self._sentence(shared, rule, lost, low, high, access)
         if goes_on:
             said += ": it goes on with this object and with others, which are set one by one"
+        elif early and not lost:
+            said += f", because {early} is handed over before that"
         self._report(shared, rule, said, other, at)
 
     def _goes_on(self, shared: Shared, lower: LatestAccess, higher: LatestAccess) -> bool:
@@ -297,6 +304,18 @@ class Races:
             return False
         _, function = self._spots.function(lower.spot)
         return (what.name, function) in self._continued.get(shared.object.declaration.path, ())
+
+    def _early(self, shared: Shared, offset: int, lower: LatestAccess, higher: LatestAccess) -> str:
+        """The flag that `main` has handed over too early, if it uses several words after that; else an empty text."""
+        what = higher.thread.what
+        if lower.thread is self._threads.main and isinstance(what, Routine):
+            for one in self._handed.get(shared.object.declaration.path, ()):
+                if one.routine == what.name:
+                    words = self._late.setdefault(one, set())
+                    words.add((shared.object, offset))
+                    if len(words) > 1:
+                        return one.flag
+        return ""
 
     def _joint(self, shared: Shared, offset: int) -> None:
         """A run of a routine writes a word.  All words of one object that a run writes belong together."""

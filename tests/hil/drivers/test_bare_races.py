@@ -82,6 +82,16 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
         # What the routine goes on with is set anew, one object after the other.
         ("if (Ready) { Sum += Words[Head]; Head++; if (Head == 8) { Head = 0; Ready = 0; } }", "Head = 0; Ready = 1;",
          [("race", "Head")]),
+        # Handed back before it is copied; handed over before it is complete.
+        ("if (!Ready) { Now.hours = Count++; Now.minutes = Count; Ready = 1; }",
+         "if (Ready) { Ready = 0; Seen = Now; }", [("race", "Now")]),
+        ("if (Ready) return; Now.hours = Count++; Now.minutes = Count; Ready = 1;",
+         "struct TIME *p = &Now; if (Ready == 1) { Ready = 0; Sum = p->hours; Sum += p->minutes + Now.hours; }",
+         [("race", "Now")]),
+        ("if (Ready == 0) { Count = Millis++; Waiting = 2; Ready = 1; }",
+         "if (Ready) { Ready = 0; Sum = Count + Waiting; }", [("race", "Count")]),
+        ("if (Ready) { Seen = Now; Ready = 0; }", "if (!Ready) { Ready = 1; Now.hours++; Now.minutes++; }",
+         [("race", "Now")]),
         ("Millis++;", "Copy = Millis;", [("unmasked-long", "Millis")]),
         # By halves, in two accesses.
         ("Millis++;", "volatile Uint16 *half = (volatile Uint16 *)&Millis; Copy = half[0] | (Uint32)half[1] << 16;",
@@ -151,6 +161,14 @@ def test_what_an_interrupt_can_come_into_is_told(
             "while (Ring.tail != Ring.head) { Sum += Ring.words[Ring.tail]; Ring.tail = (Ring.tail + 1) & 7; }",
         ),
         ("if (!Ready) { Now.minutes++; Now.hours++; Ready = 1; }", "if (Ready) { Seen = Now; Ready = 0; }"),
+        ("if (!Ready) { Now.minutes++; Now.hours++; Ready = 1; }",
+         "if (Ready) { DINT; Ready = 0; Seen = Now; EINT; }"),
+        # Several words that a flag hands over and back; one that is read at any time.
+        ("if (!Ready) { Count = Millis++; Waiting = 2; Ready = 1; }",
+         "if (Ready) { Sum = Count + Waiting; Ready = 0; }"),
+        ("if (!Ready) { Count = Millis++; Waiting = 2; Ready = 1; }",
+         "if (Ready) { Sum = Count + Waiting; Ready = 0; } Words[0] = Count;"),
+        ("if (Ready) { Seen = Now; Ready = 0; }", "if (!Ready) { Now.hours++; Now.minutes++; Ready = 1; }"),
         ("Millis++;", "DINT; Copy = Millis; EINT;"),
     ],
 )
