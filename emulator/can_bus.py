@@ -7,7 +7,7 @@
 
 Modelled: standard and extended frames, data and remote; the length of each frame with its own stuff bits; arbitration
 by the wired AND of the identifiers; acknowledgement; nodes of another bit rate; error frames; intermission, and the
-suspended transmission of an error passive node.  `spoil` destroys frames, for tests of what a driver does then.
+suspended transmission of an error passive node.  `disturb` destroys frames, for tests of what a driver does then.
 Not modelled: propagation and sampling within a bit, overload frames, CAN FD.  A bit that a node sees another way than
 the others is not modelled either: an error is seen by all.
 Time: nodes are told at the bit at which they know: a receiver at the last but one bit of the end of frame, the sender
@@ -160,17 +160,17 @@ class CanNode(Protocol):
         """Whether it sends the dominant bit of an acknowledgement."""
 
     @property
-    def hears_itself(self) -> bool:
+    def in_loopback(self) -> bool:
         """Whether it is in loopback: it takes its own frames as received and acknowledged."""
 
     @property
-    def unheard(self) -> bool:
+    def unconnected(self) -> bool:
         """Whether its pins are not connected.  Then it does not even see its own bits."""
 
-    def joined(self, now: int) -> bool:
+    def follows_bus(self, now: int) -> bool:
         """Whether it follows a frame that begins now."""
 
-    def sends_from(self) -> int:
+    def earliest_start(self) -> int:
         """The first cycle at which it may begin its next frame; NEVER: it has none."""
 
     def offer(self) -> CanFrame:
@@ -230,7 +230,7 @@ class CanBus:
         self._attempt: Event | None = None
         #: The first cycle at which a frame may begin.
         self.free_at = 0
-        self._spoilt: list[int] = []
+        self._disturbed: list[int] = []
         #: The error in which the present frame will end, if it does not arrive.
         self._failure = CanError.STUFF
 
@@ -269,15 +269,15 @@ class CanBus:
         """The nodes that are on the bus now."""
         return tuple(self._nodes)
 
-    def witness(self, frame: CanFrame) -> None:
+    def report_loopback(self, frame: CanFrame) -> None:
         """Report a frame to listeners that a controller in loopback has put on its pin.  No node takes it."""
         self.arrived.emit(frame)
 
-    def spoil(self, frames: int = 1, bit: int = 20) -> None:
+    def disturb(self, frames: int = 1, bit: int = 20) -> None:
         """Invert bit number `bit` of each of the next `frames` frames, as a disturbance on the line does."""
         if bit < 1 or frames < 0:
             raise ValueError(f"spoil bit {bit} of {frames} frames: want a bit behind the start of frame")
-        self._spoilt += [bit] * frames
+        self._disturbed += [bit] * frames
 
     @property
     def busy(self) -> bool:
@@ -300,7 +300,7 @@ class CanBus:
         """A node may have a frame to send, or its next frame may be due earlier than before."""
         if self._frame is not None:
             return
-        first = min((node.sends_from() for node in self._nodes), default=NEVER)
+        first = min((node.earliest_start() for node in self._nodes), default=NEVER)
         self._clock.cancel(self._attempt)
         self._attempt = None
         if first < NEVER:
@@ -310,7 +310,7 @@ class CanBus:
     def _arbitrate(self) -> None:
         self._attempt = None
         now = self._clock.now
-        offers = [(node, node.offer()) for node in self._nodes if node.sends_from() <= now]
+        offers = [(node, node.offer()) for node in self._nodes if node.earliest_start() <= now]
         if not offers:
             self.request()
             return
@@ -320,26 +320,26 @@ class CanBus:
         self._senders = [node for node, _ in winners]
         first, self._frame = winners[0]
         self._begun, self._bit = now, first.bit_cycles
-        self._receivers = [node for node in self._nodes if node not in self._senders and node.joined(now)]
+        self._receivers = [node for node in self._nodes if node not in self._senders and node.follows_bus(now)]
         for node in losers:
             node.lost()
-        at, error = self._fate([frame for _, frame in winners])
+        at, error = self._outcome([frame for _, frame in winners])
         if error is None:
             self._after_bits(at - 1, self._arrive)
         else:
             self._failure = error
             self._after_bits(at, self._fail)
 
-    def _fate(self, frames: Sequence[CanFrame]) -> tuple[int, CanError | None]:
+    def _outcome(self, frames: Sequence[CanFrame]) -> tuple[int, CanError | None]:
         """How many bits pass until the frame has arrived or its error shows, and the error (None: it arrives)."""
         assert self._frame is not None
         bits = frame_bits(self._frame)
         ends: list[tuple[int, CanError]] = []
-        spoilt = self._spoilt.pop(0) if self._spoilt else 0
+        spoilt = self._disturbed.pop(0) if self._disturbed else 0
         if spoilt:
             at = min(spoilt, len(bits) - 1)
             ends.append((at + 1, CanError.BIT1 if bits[at] else CanError.BIT0))
-        if any(node.unheard for node in self._senders):
+        if any(node.unconnected for node in self._senders):
             ends.append((1, CanError.BIT0))
         if any(not self._understands(node) and not node.error_passive for node in self._receivers):
             ends.append((FOREIGN_BIT, CanError.BIT1))
@@ -356,7 +356,7 @@ class CanBus:
         return abs(node.bit_cycles - self._bit) * TOLERANCE <= self._bit
 
     def _acknowledged(self) -> bool:
-        return len(self._senders) > 1 or any(node.hears_itself for node in self._senders) or any(
+        return len(self._senders) > 1 or any(node.in_loopback for node in self._senders) or any(
             node.acknowledges and self._understands(node) for node in self._receivers
         )
 
@@ -370,7 +370,7 @@ class CanBus:
         frame = self._frame
         assert frame is not None
         self._event = self._clock.after(self._bit, self._complete)
-        for node in [*self._receivers, *(sender for sender in self._senders if sender.hears_itself)]:
+        for node in [*self._receivers, *(sender for sender in self._senders if sender.in_loopback)]:
             if self._understands(node):
                 node.received(frame)
 
@@ -380,7 +380,7 @@ class CanBus:
         self._release(INTERMISSION_BITS)
         for node in senders:
             node.sent()
-        self.witness(frame)
+        self.report_loopback(frame)
         self.request()
 
     def _fail(self) -> None:
@@ -410,8 +410,8 @@ class CanPart:
     """
 
     error_passive: bool = False
-    hears_itself: bool = False
-    unheard: bool = False
+    in_loopback: bool = False
+    unconnected: bool = False
 
     def __init__(self, bit_rate: int = 500_000, *, acknowledges: bool = True) -> None:
         if not 0 < bit_rate <= 1_000_000:
@@ -437,11 +437,11 @@ class CanPart:
         self.waiting.append(frame)
         self._bus.request()
 
-    def joined(self, now: int) -> bool:
+    def follows_bus(self, now: int) -> bool:
         """It always follows."""
         return True
 
-    def sends_from(self) -> int:
+    def earliest_start(self) -> int:
         """At once, if there is a frame to send."""
         return 0 if self.waiting else NEVER
 

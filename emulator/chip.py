@@ -25,7 +25,7 @@ from emulator.peripherals.cmpss import Cmpss
 from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.peripherals.dac import Dac
 from emulator.peripherals.dma import Dma
-from emulator.peripherals.dma_doubts import Region
+from emulator.peripherals.dma_checks import Region
 from emulator.peripherals.ecap import ECap
 from emulator.peripherals.epwm import EPwm
 from emulator.peripherals.epwm_xbar import TRIPS, EPwmXbar
@@ -290,13 +290,13 @@ class Chip:
             noise_lsb=0.0 if noise is None else 1.0, random=noise,
             left_by=lambda n: self.pie.left_by(*ADC_PIE[letter][n]),
             awaited=partial(self._awaits, letter),
-            obeys=partial(self._adc_obeys, letter),
+            trigger_changed=partial(self._adc_trigger_changed, letter),
         )  # fmt: skip
 
     def _awaits(self, letter: str, n: int) -> bool:
         """Whether anything uses ADCINT(n+1).  If a missing acknowledge holds the interrupt back, that is reported."""
         interrupt = ADC_PIE[letter][n]
-        to_cpu = self.pie.enabled(*interrupt) and not self.pie.held_back(*interrupt)
+        to_cpu = self.pie.enabled(*interrupt) and not self.pie.is_blocked(*interrupt)
         return to_cpu or DMA_ADC[letter] + n in self._dma_sources
 
     def _dac(self, letter: str, vrefhi_v: float) -> Dac:
@@ -325,7 +325,7 @@ class Chip:
         """Connect EPWMSYNCPER of an ePWM to CMPSS `n` (`on`), or disconnect it."""
         self._listen(("EPWMSYNCPER", n), self.epwm[epwm].synced, self.cmpss[n].sync, on)
 
-    def _adc_obeys(self, letter: str, trigsel: int, on: bool) -> None:
+    def _adc_trigger_changed(self, letter: str, trigsel: int, on: bool) -> None:
         """A hardware trigger starts conversions of an ADC from now on (`on`), or no longer."""
         self._listen((letter, trigsel), self.triggered[trigsel], partial(self.adc[letter].trigger, trigsel), on)
 
@@ -345,7 +345,7 @@ class Chip:
             self.clock, self.cpu, self._block(name, SpiRegs), bus, *self._interrupts(name),
             select=self.crossbar.level_out(PIN_FUNCTIONS[f"SPISTE{letter}"], bus.name, 1),
             lspclk_divider=self._lspclk,
-            held=partial(self.pie.flag_left, *SPI_PIE[letter][0], f"{name}.SPIFFRX.RXFFINT"),
+            on_blocked=partial(self.pie.flag_left, *SPI_PIE[letter][0], f"{name}.SPIFFRX.RXFFINT"),
         )  # fmt: skip
         self.sysctrl.dividers_changed.connect(spi.clock_changed)
         return spi
@@ -363,12 +363,12 @@ class Chip:
         can = Can(
             self.clock, self.cpu, self._block(name, CanRegs), port, self.can_bus[letter],
             tuple(self._interrupts(name)),
-            clock_cycles=partial(self.sysctrl.can_cycles, letter), held=partial(self._can_held, letter),
+            clock_cycles=partial(self.sysctrl.can_cycles, letter), on_blocked=partial(self._can_blocked, letter),
         )  # fmt: skip
         self.sysctrl.dividers_changed.connect(can.clock_changed)
         return can
 
-    def _can_held(self, letter: str, line: int) -> None:
+    def _can_blocked(self, letter: str, line: int) -> None:
         """An interrupt line of a CAN is active while its global flag is still set."""
         flag = f"Can{letter.lower()}Regs.CAN_GLB_INT_FLG.INT{line}_FLG"
         self.pie.flag_left(*CAN_PIE[letter][line], flag)
@@ -391,7 +391,7 @@ class Chip:
         return Sci(
             self.clock, self.cpu, self._block(name, SciRegs), tx, rx, *self._interrupts(name),
             lspclk_divider=self._lspclk,
-            held=partial(self.pie.flag_left, *SCI_PIE[letter][0], f"{name}.SCIFFRX.RXFFINT"),
+            on_blocked=partial(self.pie.flag_left, *SCI_PIE[letter][0], f"{name}.SCIFFRX.RXFFINT"),
         )  # fmt: skip
 
     def _xint(self, n: int) -> Xint:
@@ -418,7 +418,7 @@ class Chip:
             self._interrupts("DmaRegs"),
             read=self._bus_read, write=self._bus_write, region=self._region,
             bridges=lambda: self.blocks["CpuSysRegs"].registers["SECMSEL"].value,
-            listen=self._dma_listens, stands=self._level_stands, known=DMA_SOURCES,
+            listen=self._dma_listens, level_is_active=self._level_is_active, known=DMA_SOURCES,
         )  # fmt: skip
 
     def _region(self, address: int) -> Region | None:
@@ -475,7 +475,7 @@ class Chip:
         if source in self._dma_sources:
             self.dma.trigger(source)
 
-    def _level_stands(self, source: int) -> bool:
+    def _level_is_active(self, source: int) -> bool:
         """Whether a trigger is a level of an SPI FIFO that is active now."""
         for letter, transmit in DMA_SPI.items():
             if source in (transmit, transmit + 1):
@@ -492,7 +492,7 @@ class Chip:
         eqep = EQep(
             self.clock, self.cpu, self._block(name, EQepRegs), inside, *self._interrupts(name),
             error=partial(self._eqep_error, n),
-            held=partial(self.pie.flag_left, *BLOCKS[name].pie[0], f"{name}.QFLG.INT", at_once=True),
+            on_blocked=partial(self.pie.flag_left, *BLOCKS[name].pie[0], f"{name}.QFLG.INT", at_once=True),
         )  # fmt: skip
         self.crossbar.level_in(PIN_FUNCTIONS[f"EQEP{n}I"], eqep.index_level)
         self.crossbar.level_in(PIN_FUNCTIONS[f"EQEP{n}S"], eqep.strobe_level)
@@ -509,7 +509,7 @@ class Chip:
         return ECap(
             self.clock, self.cpu, self._block(name, ECapRegs), *self._interrupts(name),
             listen=partial(self._listen_to_capture, n), sync_out=partial(self._sync_after, n),
-            held=partial(self.pie.flag_left, *BLOCKS[name].pie[0], f"{name}.ECFLG.INT"),
+            on_blocked=partial(self.pie.flag_left, *BLOCKS[name].pie[0], f"{name}.ECFLG.INT"),
         )  # fmt: skip
 
     def _listen_to_capture(self, n: int, on: bool) -> None:
@@ -535,7 +535,7 @@ class Chip:
             interrupt=interrupt, soc_a=self.triggered[3 + 2 * n].emit,
             soc_b=self.triggered[4 + 2 * n].emit, trip_interrupt=trip_interrupt,
             trip_listen=partial(self._listen_to_trip, n), tripin_listen=partial(self._listen_to_tripin, n),
-            held=partial(self.pie.flag_left, *BLOCKS[name].pie[0], f"{name}.ETFLG.INT"),
+            on_blocked=partial(self.pie.flag_left, *BLOCKS[name].pie[0], f"{name}.ETFLG.INT"),
             trip_held=partial(self.pie.flag_left, *BLOCKS[name].pie[1], f"{name}.TZFLG.INT"),
             epwmclk_divider=self._epwmclk,
         )  # fmt: skip
@@ -622,10 +622,10 @@ class Chip:
             raise ValueError(f"this chip has no register {block}.{name}")
         return registers[name]
 
-    def in_vain(self, name: str) -> bool:
+    def blames_unmodelled(self, name: str) -> bool:
         """Whether a wait for the register `name` that never ends does so because its peripheral is not modelled."""
         block, _, register = name.partition(".")
-        return block in self._unmodelled and self._unmodelled[block].in_vain(register)
+        return block in self._unmodelled and self._unmodelled[block].blames_unmodelled(register)
 
     def signal_of(self, pin: int) -> str:
         """The module signal that GPIO`pin` is set to; empty if no modelled module has it."""

@@ -51,7 +51,7 @@ def _never() -> None:
     """The callback of the event at NEVER, which never runs."""
 
 
-def nobody() -> None:
+def no_attention() -> None:
     """The attention callback when nothing has the CPU: no interrupt is taken."""
 
 
@@ -73,7 +73,7 @@ class Clock:
         self.waited = 0
         #: Whether the CPU must look for interrupts or task switches (`request_attention`).
         self.need_attention = False
-        self._attention: Callable[[], None] = nobody
+        self._attention: Callable[[], None] = no_attention
         #: The first event is kept apart while that is cheap: what is scheduled as the next thing to happen (a
         #: conversion, a transfer) never enters the heap.  It sorts before all of the heap; None: nothing is kept apart.
         self._soonest: Event | None = None
@@ -134,7 +134,7 @@ class Clock:
     def serve_with(self, attention: Callable[[], None]) -> None:
         """Give the CPU to a new owner: `attention` is called, at the CPU's time, after events that requested it.
 
-        There is one owner at a time: the core, then a kernel that takes the CPU over, `nobody` after the program's end.
+        There is one owner at a time: the core, then a kernel that takes the CPU over, `no_attention` after the program.
         """
         self._attention = attention
 

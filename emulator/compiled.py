@@ -42,7 +42,7 @@ def digest(source: Path) -> str:
     return sha256(source.read_bytes()).hexdigest()
 
 
-def look(store: Path = STORE, root: Path = ROOT) -> tuple[str, dict[str, str]]:
+def find_build(store: Path = STORE, root: Path = ROOT) -> tuple[str, dict[str, str]]:
     """The state of the build in `store` ("none", "stale", "fresh"), and the paths of its modules if it is fresh."""
     try:
         manifest = json.loads((store / "manifest.json").read_text("utf-8"))
@@ -62,7 +62,7 @@ def install() -> str:
     """
     if os.environ.get("HIL_PURE", "0") not in ("", "0"):
         return "pure"
-    state, files = look()
+    state, files = find_build()
     if state != "fresh":
         return "stale" if state == "stale" else "pure"
     sys.meta_path.insert(0, Finder(files))

@@ -42,7 +42,7 @@ from emulator.clock import CYCLES_PER_US
 from emulator.peripherals.can import REQUEST, WRITE
 from emulator.peripherals.can_objects import OBJECTS
 from emulator.peripherals.dma import CHANNELS as DMA_CHANNELS
-from emulator.peripherals.epwm_doubts import Beyond
+from emulator.peripherals.epwm_checks import CompareBeyondPeriod
 from emulator.peripherals.epwm_xbar import TRIPS as XBAR_TRIP_OUTPUTS
 from emulator.peripherals.pie import vector_id
 from emulator.peripherals.xbar_mux import choices
@@ -74,7 +74,7 @@ FREEZE: Final = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Missing:
+class MissingLink:
     """A missing link of a chain: what is wrong, and the register and field at fault."""
 
     why: str
@@ -147,7 +147,7 @@ class Connections:
         now = self._chip.blocks[block].registers[name].value
         return self._source.giving(block, name, self._mask(register, field), now)
 
-    def _place(self, missing: Missing, *, whole: bool) -> Place | None:
+    def _place(self, missing: MissingLink, *, whole: bool) -> Place | None:
         """Where a link is missing: the statement that gives the field its value, or the last write to the register.
 
         With `whole`, the last write to any register of the block if there is no such statement.
@@ -180,7 +180,9 @@ class Connections:
         block, name = _split(register)
         return self._source.could(block, name, self._mask(register, field), right, again=self.started_up)
 
-    def _tell(self, waits: Place | None, message: str, missing: Missing, object: str, *, whole: bool = False) -> None:
+    def _report(
+        self, waits: Place | None, message: str, missing: MissingLink, object: str, *, whole: bool = False
+    ) -> None:
         """Report that the statement at `waits` waits for an event that never occurs."""
         if waits is None:
             return
@@ -209,15 +211,15 @@ class Connections:
                     continue
                 trigsel = self._value(register, "TRIGSEL")
                 trigger, missing = self._no_trigger(trigsel)
-                if missing and missing.field in ("SOCAEN", "SOCBEN") and self._unheard(trigsel):
+                if missing and missing.field in ("SOCAEN", "SOCBEN") and self._other_soc_is_unused(trigsel):
                     other = "SOCB" if trigger.startswith("SOCA") else "SOCA"
                     why = f"{missing.why}, while its {other} occurs and starts nothing"
-                    missing = Missing(why, register, "TRIGSEL")
+                    missing = MissingLink(why, register, "TRIGSEL")
                 if missing:
                     waits = f"{register}.TRIGSEL waits for {trigger}, which never occurs"
-                    self._tell(place, waits, missing, f"{register}.TRIGSEL")
+                    self._report(place, waits, missing, f"{register}.TRIGSEL")
 
-    def _unheard(self, trigsel: int) -> bool:
+    def _other_soc_is_unused(self, trigsel: int) -> bool:
         """Whether the ePWM's other SOC occurs and starts nothing: then the TRIGSEL probably means that one."""
         other = trigsel + 1 if (trigsel - FIRST_SOCA) % 2 == 0 else trigsel - 1
         if self._no_trigger(other)[1] is not None or self._could_trigger_dma(other):
@@ -256,7 +258,7 @@ class Connections:
                 object=register, how="dynamic",
             )  # fmt: skip
 
-    def _no_trigger(self, trigsel: int) -> tuple[str, Missing | None]:
+    def _no_trigger(self, trigsel: int) -> tuple[str, MissingLink | None]:
         """The trigger that a TRIGSEL names, and why it never occurs; None if it can."""
         if trigsel in TIMERS:
             return f"CPU timer {trigsel - 1}", self._no_timer(trigsel - 1)
@@ -266,39 +268,39 @@ class Connections:
         event = "SOCB" if b else "SOCA"
         return f"{event} of ePWM{epwm + 1}", self._no_event(epwm + 1, event)
 
-    def _no_timer(self, n: int) -> Missing | None:
+    def _no_timer(self, n: int) -> MissingLink | None:
         """Why a CPU timer never ends; None if it can."""
         register = f"CpuTimer{n}Regs.TCR"
         if self._stuck(register, "TSS", lambda stopped: not stopped):
-            return Missing(f"{register}.TSS = 1: it does not run", register, "TSS")
-        return Missing(f"{register}.TIE = 0", register, "TIE") if self._stuck(register, "TIE", bool) else None
+            return MissingLink(f"{register}.TSS = 1: it does not run", register, "TSS")
+        return MissingLink(f"{register}.TIE = 0", register, "TIE") if self._stuck(register, "TIE", bool) else None
 
-    def _no_event(self, n: int, event: str) -> Missing | None:
+    def _no_event(self, n: int, event: str) -> MissingLink | None:
         """Why an ePWM never gives SOCA, SOCB or INT; None if it can."""
         name = f"EPwm{n}Regs"
         if self._writes(f"{name}.ETFRC"):
             return None
         if self._stuck(f"{name}.ETSEL", f"{event}EN", bool):
-            return Missing(f"{name}.ETSEL.{event}EN = 0", f"{name}.ETSEL", f"{event}EN")
+            return MissingLink(f"{name}.ETSEL.{event}EN = 0", f"{name}.ETSEL", f"{event}EN")
         scaled = self._value(f"{name}.ETPS", "INTPSSEL" if event == "INT" else "SOCPSSEL")
         if not scaled and self._stuck(f"{name}.ETPS", f"{event}PRD", bool):
-            return Missing(f"{name}.ETPS.{event}PRD = 0: no event triggers it", f"{name}.ETPS", f"{event}PRD")
+            return MissingLink(f"{name}.ETPS.{event}PRD = 0: no event triggers it", f"{name}.ETPS", f"{event}PRD")
         # SOCxSEL = 0 is an event of the digital compare.  It needs no counter.
         by_counter = self._value(f"{name}.ETSEL", f"{event}SEL") or event == "INT"
         return self._no_count(n) or self._no_compare(n, event) if by_counter else None
 
-    def _no_count(self, n: int) -> Missing | None:
+    def _no_count(self, n: int) -> MissingLink | None:
         """Why the counter of an ePWM never counts; None if it can."""
         name, gate = f"EPwm{n}Regs", "CpuSysRegs.PCLKCR0"
         if self._stuck(gate, "TBCLKSYNC", bool):
-            return Missing(f"{gate}.TBCLKSYNC = 0: no ePWM counter counts", gate, "TBCLKSYNC")
+            return MissingLink(f"{gate}.TBCLKSYNC = 0: no ePWM counter counts", gate, "TBCLKSYNC")
         if self._stuck(f"{name}.TBCTL", "CTRMODE", lambda mode: mode != STOPPED):
-            return Missing(f"{name}.TBCTL.CTRMODE = 3: the counter stands still", f"{name}.TBCTL", "CTRMODE")
+            return MissingLink(f"{name}.TBCTL.CTRMODE = 3: the counter stands still", f"{name}.TBCTL", "CTRMODE")
         if self._stuck(f"{name}.TBPRD", "", bool):
-            return Missing(f"{name}.TBPRD = 0: the counter has no period", f"{name}.TBPRD")
+            return MissingLink(f"{name}.TBPRD = 0: the counter has no period", f"{name}.TBPRD")
         return None
 
-    def _no_compare(self, n: int, event: str) -> Missing | None:
+    def _no_compare(self, n: int, event: str) -> MissingLink | None:
         """Why the counter never reaches the compare value of an event; None if it can."""
         name = f"EPwm{n}Regs"
         choice = self._value(f"{name}.ETSEL", f"{event}SEL")
@@ -310,10 +312,10 @@ class Connections:
         if self._stuck(f"{name}.TBCTL", "CTRMODE", lambda mode: mode not in (wrong_way, STOPPED)):
             way = "up" if wrong_way == UP else "down"
             why = f"{name}.ETSEL.{event}SEL = {choice} needs the other direction: the counter only counts {way}"
-            return Missing(why, f"{name}.ETSEL", f"{event}SEL")
+            return MissingLink(why, f"{name}.ETSEL", f"{event}SEL")
         return self._above(n, compare, 0)
 
-    def _above(self, n: int, compare: str, beyond: int) -> Missing | None:
+    def _above(self, n: int, compare: str, beyond: int) -> MissingLink | None:
         """A compare value that is more than `beyond` above the period and that no statement could lower; else None."""
         name = f"EPwm{n}Regs"
         period = self._value(f"{name}.TBPRD", "")
@@ -322,7 +324,7 @@ class Connections:
         if not self._stuck(f"{name}.{compare}", compare, lambda value: value <= period + beyond):
             return None
         why = f"{name}.{compare} = {self._value(f'{name}.{compare}', compare)} is above TBPRD = {period}"
-        return Missing(why, f"{name}.{compare}", compare)
+        return MissingLink(why, f"{name}.{compare}", compare)
 
     def _interrupts(self) -> None:
         """Check each enabled PIE line: can its source give an interrupt, and is there a routine for it?"""
@@ -335,7 +337,7 @@ class Connections:
                 field = f"INTx{n}"
                 if not pie.enabled(group, n) or pie.left_by(group, n) is not None:
                     continue
-                place = self._wanting(register, field) or self._plugged(group, n)
+                place = self._wanting(register, field) or self._enabled_by_create(group, n)
                 if place is None:
                     continue
                 if chip.vectors.routine(group, n) is None:
@@ -345,9 +347,9 @@ class Connections:
                 if missing:
                     self.silent.add(str(chip.vectors.routine(group, n)))
                     waits = f"interrupt {group}.{n} is enabled but never occurs"
-                    self._tell(place, waits, missing, f"{register}.{field}", whole=True)
+                    self._report(place, waits, missing, f"{register}.{field}", whole=True)
 
-    def _plugged(self, group: int, n: int) -> Place | None:
+    def _enabled_by_create(self, group: int, n: int) -> Place | None:
         """The `Hwi_create` that enabled a line."""
         number = vector_id(group, n)
         for place, arguments in self._source.calls.get("Hwi_create", ()):
@@ -370,17 +372,17 @@ class Connections:
                 )
                 return
 
-    def _closed(self, group: int, n: int) -> Missing | None:
+    def _closed(self, group: int, n: int) -> MissingLink | None:
         """Why an interrupt that is pending is never taken; None if it is not pending, or can be taken."""
         if not self._chip.pie.waits(group, n):
             return None
         if self._stuck("PieCtrlRegs.PIECTRL", "ENPIE", bool):
-            return Missing("PieCtrlRegs.PIECTRL.ENPIE = 0", f"PieCtrlRegs.PIEIER{group}", f"INTx{n}")
+            return MissingLink("PieCtrlRegs.PIECTRL.ENPIE = 0", f"PieCtrlRegs.PIEIER{group}", f"INTx{n}")
         if self._chip.cpu.ier & 1 << group - 1 or self._source.could("CPU", "IER", 1 << group - 1, bool):
             return None
-        return Missing(f"bit {group - 1} of IER (M_INT{group}) is 0", f"PieCtrlRegs.PIEIER{group}", f"INTx{n}")
+        return MissingLink(f"bit {group - 1} of IER (M_INT{group}) is 0", f"PieCtrlRegs.PIEIER{group}", f"INTx{n}")
 
-    def _no_source(self, group: int, n: int) -> Missing | None:
+    def _no_source(self, group: int, n: int) -> MissingLink | None:
         """Why the source of a PIE interrupt never gives one; None if it can, or if this is not known."""
         for letter, lines in ADC_PIE.items():
             if (group, n) in lines:
@@ -407,90 +409,92 @@ class Connections:
             return self._no_transfer(n)
         return self._no_event(n, "INT") if group == 3 and n <= EPWM_COUNT else None
 
-    def _no_conversion(self, letter: str, k: int) -> Missing | None:
+    def _no_conversion(self, letter: str, k: int) -> MissingLink | None:
         """Why an ADC never gives ADCINTk; None if it can."""
         register = f"Adc{letter.lower()}Regs." + ("ADCINTSEL1N2" if k < 3 else "ADCINTSEL3N4")
         if self._stuck(register, f"INT{k}E", bool):
-            return Missing(f"{register}.INT{k}E = 0", register, f"INT{k}E")
+            return MissingLink(f"{register}.INT{k}E = 0", register, f"INT{k}E")
         return None
 
-    def _no_can_line(self, letter: str, line: int) -> Missing | None:
+    def _no_can_line(self, letter: str, line: int) -> MissingLink | None:
         """Why a CAN never gives an interrupt on its line 0 or 1; None if it can."""
         block = f"Can{letter.lower()}Regs"
         for register, field in ((f"{block}.CAN_CTL", f"IE{line}"), (f"{block}.CAN_GLB_INT_EN", f"GLBINT{line}_EN")):
             if self._stuck(register, field, bool):
-                return Missing(f"{register}.{field} = 0", register, field)
+                return MissingLink(f"{register}.{field} = 0", register, field)
         return None
 
-    def _no_level(self, letter: str) -> Missing | None:
+    def _no_level(self, letter: str) -> MissingLink | None:
         """Why the receive FIFO of a SCI never gives an interrupt; None if it can."""
         register = f"Sci{letter.lower()}Regs.SCIFFRX"
         if not self._value(f"Sci{letter.lower()}Regs.SCIFFTX", "SCIFFENA"):
             return None
         if self._stuck(register, "RXFFIL", lambda level: level <= FIFO_DEPTH):
             level = self._value(register, "RXFFIL")
-            return Missing(f"{register}.RXFFIL = {level}: the FIFO holds {FIFO_DEPTH}", register, "RXFFIL")
+            return MissingLink(f"{register}.RXFFIL = {level}: the FIFO holds {FIFO_DEPTH}", register, "RXFFIL")
         return None
 
-    def _no_word(self, letter: str, *, receive: bool) -> Missing | None:
+    def _no_word(self, letter: str, *, receive: bool) -> MissingLink | None:
         """Why a SPI never gives the interrupt of one direction; None if it can."""
         block, way = f"Spi{letter.lower()}Regs", "RX" if receive else "TX"
         register, enable = f"{block}.SPIFF{way}", f"{way}FFIENA"
         if self._stuck(f"{block}.SPIFFTX", "SPIFFENA", bool):
             if not receive:
-                return Missing(f"{block}.SPIFFTX.SPIFFENA = 0: without FIFO all interrupts are those of the RX line",
-                               f"{block}.SPIFFTX", "SPIFFENA")  # fmt: skip
+                return MissingLink(
+                    f"{block}.SPIFFTX.SPIFFENA = 0: without FIFO all interrupts are those of the RX line",
+                    f"{block}.SPIFFTX", "SPIFFENA",
+                )  # fmt: skip
             stuck = self._stuck(f"{block}.SPICTL", "SPIINTENA", bool)
-            return Missing(f"{block}.SPICTL.SPIINTENA = 0", f"{block}.SPICTL", "SPIINTENA") if stuck else None
+            return MissingLink(f"{block}.SPICTL.SPIINTENA = 0", f"{block}.SPICTL", "SPIINTENA") if stuck else None
         if self._value(f"{block}.SPIFFTX", "SPIFFENA") and self._stuck(register, enable, bool):
             overrun = receive and not self._stuck(f"{block}.SPICTL", "OVERRUNINTENA", bool)
-            return None if overrun else Missing(f"{register}.{enable} = 0", register, enable)
+            return None if overrun else MissingLink(f"{register}.{enable} = 0", register, enable)
         return None
 
-    def _no_transfer(self, n: int) -> Missing | None:
+    def _no_transfer(self, n: int) -> MissingLink | None:
         """Why a channel of the DMA never transfers; None if it can."""
         mode, control, select = f"DmaRegs.CH{n}.MODE", f"DmaRegs.CH{n}.CONTROL", f"DMACHSRCSEL{1 + (n - 1) // 4}"
         running = self._value(control, "RUNSTS")
         if not running and not self._could(control, bool, "RUN"):
-            return Missing(f"{control}.RUN is never set: the channel was never started", mode)
+            return MissingLink(f"{control}.RUN is never set: the channel was never started", mode)
         if self._could(control, bool, "PERINTFRC"):
             return None
         if self._stuck(mode, "PERINTE", bool):
-            return Missing(f"{mode}.PERINTE = 0: it listens to no trigger", mode, "PERINTE")
+            return MissingLink(f"{mode}.PERINTE = 0: it listens to no trigger", mode, "PERINTE")
         source = self._value(f"DmaClaSrcSelRegs.{select}", f"CH{n}")
         for letter, first in DMA_ADC.items():
             if first <= source < first + 4:
                 missing = self._no_conversion(letter, source - first + 1)
                 why = f"it listens to ADC{letter}INT{source - first + 1}"
-                return Missing(f"{why}: {missing.why}", mode) if missing else None
+                return MissingLink(f"{why}: {missing.why}", mode) if missing else None
         for trigsel, number in DMA_TRIGSEL.items():
             if number == source:
                 trigger, missing = self._no_trigger(trigsel)
-                return Missing(f"it listens to {trigger}: {missing.why}", mode) if missing else None
+                return MissingLink(f"it listens to {trigger}: {missing.why}", mode) if missing else None
         return None
 
     def _waits_for_ever(self) -> bool:
         """Whether the run reached an endless wait (`endless-poll`)."""
         return bool(self._chip.findings.of("endless-poll"))
 
-    def _no_capture(self, n: int) -> Missing | None:
+    def _no_capture(self, n: int) -> MissingLink | None:
         """Why an eCAP gives no interrupt; None if it can."""
         name = f"ECap{n}Regs"
         first, second, events = f"{name}.ECCTL1", f"{name}.ECCTL2", f"{name}.ECEINT"
         if self._writes(f"{name}.ECFRC") or self._value(second, "CAP_APWM") or self._could(second, bool, "CAP_APWM"):
             return None
         if self._stuck(events, "", bool):
-            return Missing(f"{events} = 0", events)
+            return MissingLink(f"{events} = 0", events)
         only = [k for k in range(1, 5) if self._value(events, f"CEVT{k}")]
         if self._value(events, "") != sum(1 << k for k in only) or self._source.could(name, "ECEINT", 0xE0, bool):
             return None
         last = self._value(second, "STOP_WRAP") + 1
         if only and min(only) > last and not self._could(second, lambda wrap: wrap + 1 >= min(only), "STOP_WRAP"):
             why = f"{second}.STOP_WRAP = {last - 1}: event {last} is the last, CEVT{min(only)} is enabled"
-            return Missing(why, second, "STOP_WRAP")
+            return MissingLink(why, second, "STOP_WRAP")
         return self._no_input(ECAP_INPUT[n], first)
 
-    def _no_input(self, number: int, user: str) -> Missing | None:
+    def _no_input(self, number: int, user: str) -> MissingLink | None:
         """Why an input of the X-BAR has no edges for its user, an eCAP or external interrupt; None if it can have some.
 
         `user` is a register that sets up this eCAP or external interrupt.
@@ -500,11 +504,11 @@ class Connections:
             return None
         why = f"{select} was never set, so its input is GPIO0"
         if not self._chip.pins[0].drivers():
-            return Missing(f"{why}, which nothing drives", user)
+            return MissingLink(f"{why}, which nothing drives", user)
         for other, name in self._single_users():
             instead = f"InputXbarRegs.INPUT{other}SELECT"
             if self._writes(instead) and self._source.last(*_split(name)) is None:
-                return Missing(f"{why}; {instead} was set, and nothing uses that input", instead)
+                return MissingLink(f"{why}; {instead} was set, and nothing uses that input", instead)
         return None
 
     def _single_users(self) -> Iterator[tuple[int, str]]:
@@ -522,21 +526,21 @@ class Connections:
                 continue
             missing = None
             if self._stuck(second, "TSCTRSTOP", bool):
-                missing = Missing(f"{second}.TSCTRSTOP = 0: its counter stands still", second, "TSCTRSTOP")
+                missing = MissingLink(f"{second}.TSCTRSTOP = 0: its counter stands still", second, "TSCTRSTOP")
             elif self._stuck(first, "CAPLDEN", bool):
-                missing = Missing(f"{first}.CAPLDEN = 0: no edge loads it", first, "CAPLDEN")
+                missing = MissingLink(f"{first}.CAPLDEN = 0: no edge loads it", first, "CAPLDEN")
             elif self._chip.pins[0].drivers():
                 missing = self._no_input(ECAP_INPUT[n], first)
                 if missing:
-                    self._tell(reads[0], f"eCAP{n} measures another signal", missing, first)
+                    self._report(reads[0], f"eCAP{n} measures another signal", missing, first)
                     continue
             if missing:
-                self._tell(reads[0], f"a capture of eCAP{n} is read, and is always 0", missing, f"{name}.CAP1")
+                self._report(reads[0], f"a capture of eCAP{n} is read, and is always 0", missing, f"{name}.CAP1")
             elif self._value(second, "CONT_ONESHT") and self._chip.ecap[n].stopped and self._waits_for_ever():
                 last = self._value(second, "STOP_WRAP") + 1
-                missing = Missing(f"{second}.REARM is not set again", second, "CONT_ONESHT")
+                missing = MissingLink(f"{second}.REARM is not set again", second, "CONT_ONESHT")
                 message = f"the one shot of eCAP{n} stopped after event {last}, and the program waits for ever"
-                self._tell(reads[0], message, missing, second)
+                self._report(reads[0], message, missing, second)
 
     def _channels(self) -> None:
         """DMA channels that stopped after a transfer and are not started again.
@@ -555,11 +559,11 @@ class Connections:
             given = next((a for a in addresses if self._writes_again(a, lambda _address: True, "")), None)
             if given and self.started_up and not self._writes_again(control, bool, "RUN"):
                 message = f"channel {n} of the DMA stopped, is given the next addresses, and is not started"
-                self._tell(self._source.last(*_split(given)), message, Missing(why, given), mode)
+                self._report(self._source.last(*_split(given)), message, MissingLink(why, given), mode)
             elif self._waits_for_ever():
-                missing = Missing(why, mode, "CONTINUOUS")
+                missing = MissingLink(why, mode, "CONTINUOUS")
                 message = f"channel {n} of the DMA stopped after a transfer, and the program waits for ever"
-                self._tell(place, message, missing, mode)
+                self._report(place, message, missing, mode)
 
     def _sections(self) -> None:
         """DMA buffers without a `#pragma DATA_SECTION`, in a program that places another DMA buffer with one."""
@@ -580,7 +584,7 @@ class Connections:
         for group in range(1, 13):
             if not self._source.could("PieCtrlRegs", "PIEACK", 1 << group - 1, bool):
                 for n in range(1, 17):
-                    if self._chip.pie.held_back(group, n):  # it reports the finding
+                    if self._chip.pie.is_blocked(group, n):  # it reports the finding
                         return
 
     def _qualifiers(self) -> None:
@@ -617,21 +621,21 @@ class Connections:
         port = PORTS[pin // 32]
         return self._source.last("GpioCtrlRegs", f"GP{port}QSEL{pin % 32 // 16 + 1}")
 
-    def _no_unit(self, n: int) -> Missing | None:
+    def _no_unit(self, n: int) -> MissingLink | None:
         """Why an eQEP gives no interrupt; None if it can."""
         name = f"EQep{n}Regs"
         if self._writes(f"{name}.QFRC"):
             return None
         enabled = f"{name}.QEINT"
         if self._stuck(enabled, "", bool):
-            return Missing(f"{enabled} = 0", enabled)
+            return MissingLink(f"{enabled} = 0", enabled)
         only_units = not self._could(enabled, lambda word: bool(word & ~QEINT.UTO.mask), "")
         if not only_units or self._value(enabled, "") != QEINT.UTO.mask:
             return None
         if self._stuck(f"{name}.QEPCTL", "UTE", bool):
-            return Missing(f"{name}.QEPCTL.UTE = 0: the unit timer does not run", f"{name}.QEPCTL", "UTE")
+            return MissingLink(f"{name}.QEPCTL.UTE = 0: the unit timer does not run", f"{name}.QEPCTL", "UTE")
         if self._stuck(f"{name}.QUPRD", "", bool):
-            return Missing(f"{name}.QUPRD = 0: the unit timer never ends", f"{name}.QEPCTL", "UTE")
+            return MissingLink(f"{name}.QUPRD = 0: the unit timer never ends", f"{name}.QEPCTL", "UTE")
         return None
 
     def _latches(self) -> None:
@@ -642,14 +646,14 @@ class Connections:
             if read and self._value(f"{name}.QEPCTL", "UTE") and self._stuck(f"{name}.QEPCTL", "QCLM", bool):
                 why = f"{name}.QEPCTL.QCLM = 0: the unit timer latches nothing, reading QPOSCNT does"
                 if (name, "QPOSCNT") not in self._source.reads:
-                    missing = Missing(why, f"{name}.QEPCTL", "QCLM")
-                    self._tell(read[-1], f"{name}.QPOSLAT is read and never loaded", missing, f"{name}.QPOSLAT")
+                    missing = MissingLink(why, f"{name}.QEPCTL", "QCLM")
+                    self._report(read[-1], f"{name}.QPOSLAT is read and never loaded", missing, f"{name}.QPOSLAT")
 
-    def _no_edge(self, number: int) -> Missing | None:
+    def _no_edge(self, number: int) -> MissingLink | None:
         """Why an external interrupt has no edges; None if it can have some."""
         register = f"XintRegs.XINT{number}CR"
         if self._stuck(register, "ENABLE", bool):
-            return Missing(f"{register}.ENABLE = 0", register, "ENABLE")
+            return MissingLink(f"{register}.ENABLE = 0", register, "ENABLE")
         return self._no_input(XINT_INPUT[number], register)
 
     def _cpu_timers(self) -> None:
@@ -665,8 +669,8 @@ class Connections:
             if self._value(f"{name}.TCR", "TSS"):
                 if enabled and self._stuck(f"{name}.TCR", "TSS", lambda stopped: not stopped):
                     self.silent.add(routine)
-                    missing = Missing(f"{name}.TCR.TSS = 1: it does not run", f"{name}.TCR", "TSS")
-                    self._tell(place, f"{routine} waits for CPU timer {n}, which is stopped", missing, name)
+                    missing = MissingLink(f"{name}.TCR.TSS = 1: it does not run", f"{name}.TCR", "TSS")
+                    self._report(place, f"{routine} waits for CPU timer {n}, which is stopped", missing, name)
             elif not enabled and not self._source.could("CPU", "IER", bit, bool):
                 self.silent.add(routine)
                 # Report it where IER is set, because the statement that sets up the timer is right.
@@ -687,20 +691,20 @@ class Connections:
                     number = self._value(f"{name}.DCTRIPSEL", f"{signal}COMPSEL") + 1
                     missing = self._no_trip_input(number) if number in XBAR_TRIP_OUTPUTS else None
                     if missing:
-                        self._tell(
+                        self._report(
                             place, f"{name}.DCTRIPSEL.{signal}COMPSEL waits for TRIPIN{number}, which never occurs",
                             missing, f"{name}.DCTRIPSEL.{signal}COMPSEL",
                         )  # fmt: skip
             for event in ("DCAEVT1", "DCAEVT2", "DCBEVT1", "DCBEVT2"):
                 self._trip_event(name, event)
 
-    def _no_trip_input(self, number: int) -> Missing | None:
+    def _no_trip_input(self, number: int) -> MissingLink | None:
         """Why a TRIP of the ePWM X-BAR is never high; None if it can be."""
         enable = f"EPwmXbarRegs.TRIP{number}MUXENABLE"
         if self._could("EPwmXbarRegs.TRIPOUTINV", bool, ""):
             return None
         if self._stuck(enable, "", bool):
-            return Missing(f"{enable} = 0: no mux of it is enabled", enable)
+            return MissingLink(f"{enable} = 0: no mux of it is enabled", enable)
         reasons = []
         for mux in range(32):
             if not self._value(enable, f"MUX{mux}"):
@@ -716,12 +720,12 @@ class Connections:
                 reasons.append(missing)
         return reasons[0] if reasons else None
 
-    def _no_comparator(self, k: int, which: str, enable: str) -> Missing | None:
+    def _no_comparator(self, k: int, which: str, enable: str) -> MissingLink | None:
         """Why CTRIPH or CTRIPL of a comparator is never high; None if it can be."""
         name = f"Cmpss{k}Regs"
         if self._stuck(f"{name}.COMPCTL", "COMPDACE", bool):
             used = self._source.last(name) is not None
-            return Missing(
+            return MissingLink(
                 f"comparator {k} is off, {name}.COMPCTL.COMPDACE = 0", f"{name}.COMPCTL" if used else enable,
             )  # fmt: skip
         control = f"{name}.CTRIP{which}FILCTL"
@@ -729,7 +733,7 @@ class Connections:
         filtered = self._value(f"{name}.COMPCTL", f"CTRIP{which}SEL") == FILTERED
         if filtered and threshold > window and not self._could(control, lambda other: other <= window, "THRESH"):
             why = f"{control}.THRESH = {threshold} needs {threshold + 1} samples, but the window has {window + 1}"
-            return Missing(why, control, "THRESH")
+            return MissingLink(why, control, "THRESH")
         return None
 
     def _trip_event(self, name: str, event: str) -> None:
@@ -744,17 +748,17 @@ class Connections:
         asked = next(iter(asking), None)
         if asked is not None:
             if self._stuck(condition, event, bool):
-                missing = Missing(f"{condition}.{event} = 0 names no condition for it", condition, event)
+                missing = MissingLink(f"{condition}.{event} = 0 names no condition for it", condition, event)
                 message = f"the program waits for {event} of {name}, which never occurs"
-                self._tell(asked, message, missing, f"{condition}.{event}")
+                self._report(asked, message, missing, f"{condition}.{event}")
             return
         made = self._wanting(condition, event) if self._value(condition, event) else None
         polled = not {(name, "TZFLG", event), (name, "TZFLG", "")}.isdisjoint(self._source.read_fields)
         acted = self._could(f"{name}.TZCTL", lambda action: True, event) or self._acts_elsewhere(name)
         if made is None or polled or acted or any(self._could(register, bool, field) for register, field in users):
             return
-        missing = Missing(f"{name}.TZSEL.{event} = 0, and no statement uses it", f"{name}.TZSEL", event)
-        self._tell(made, f"{event} of {name} is generated but trips nothing", missing, f"{name}.TZSEL.{event}")
+        missing = MissingLink(f"{name}.TZSEL.{event} = 0, and no statement uses it", f"{name}.TZSEL", event)
+        self._report(made, f"{event} of {name} is generated but trips nothing", missing, f"{name}.TZSEL.{event}")
 
     def _trip_actions(self) -> None:
         """Trips that put an output into high impedance, because no statement sets what the output does at a trip."""
@@ -787,8 +791,8 @@ class Connections:
             if self._sets_trip(name, "TZEINT") or self._acts_elsewhere(name):
                 continue
             if all(self._stuck(control, f"TZ{x}", lambda action: action != NO_CHANGE) for x in outputs):
-                missing = Missing(f"{control}.TZ{outputs[0]} = 3: no change", control, f"TZ{outputs[0]}")
-                self._tell(force, f"{name}.TZFRC trips the outputs, which go on switching", missing, control)
+                missing = MissingLink(f"{control}.TZ{outputs[0]} = 3: no change", control, f"TZ{outputs[0]}")
+                self._report(force, f"{name}.TZFRC trips the outputs, which go on switching", missing, control)
 
     def _sets_trip(self, name: str, register: str) -> bool:
         """Whether the program can set the bit OST or CBC of a trip register of a module."""
@@ -811,8 +815,8 @@ class Connections:
                 routine = self._chip.pie.left_by(*ADCEVT_PIE[letter])
                 flag = f"{block}.ADCEVTSTAT.{event}"
                 if self._never_starts(block, soc):
-                    missing = Missing(f"{config}.CONFIG = {soc}: nothing starts SOC{soc}", config, "CONFIG")
-                    self._tell(place, f"event {event} of {block} interrupts, and never comes", missing, config)
+                    missing = MissingLink(f"{config}.CONFIG = {soc}: nothing starts SOC{soc}", config, "CONFIG")
+                    self._report(place, f"event {event} of {block} interrupts, and never comes", missing, config)
                 elif routine and self._value(f"{block}.ADCEVTSTAT", event) and not self._writes_again(
                     f"{block}.ADCEVTCLR", bool, event
                 ):  # fmt: skip
@@ -837,17 +841,17 @@ class Connections:
             control = f"EPwm{n}Regs.DBCTL"
             wire = epwm.unpaired
             if wire is not None:
-                missing = Missing(f"{wire.name} has no pin: {wire.missing}", control, "OUT_MODE")
+                missing = MissingLink(f"{wire.name} has no pin: {wire.missing}", control, "OUT_MODE")
                 message = f"{control}.OUT_MODE = 3 makes a pair of outputs, but one of them has no pin"
-                self._tell(self._wanting(control, "OUT_MODE"), message, missing, wire.name)
+                self._report(self._wanting(control, "OUT_MODE"), message, missing, wire.name)
 
     def _i2c(self) -> None:
         for letter in I2C_PIE:
             register = f"I2c{letter.lower()}Regs.I2CMDR"
             place = self._source.last(*_split(register))
             if place is not None and self._could(register, bool, "STT") and self._stuck(register, "IRS", bool):
-                missing = Missing(f"{register}.IRS = 0: the module stays in reset", register, "IRS")
-                self._tell(place, f"{register}.STT starts a message, but nothing is sent", missing, register)
+                missing = MissingLink(f"{register}.IRS = 0: the module stays in reset", register, "IRS")
+                self._report(place, f"{register}.STT starts a message, but nothing is sent", missing, register)
 
     def _can(self) -> None:
         """Check each CAN controller that is used: it is on the bus, its objects are valid, its messages are sent and
@@ -862,9 +866,9 @@ class Connections:
             control = f"{block}.CAN_CTL"
             # The controller sets Init itself when it goes off the bus.
             if self._value(control, "Init") and not self._could(control, lambda init: not init, "Init"):
-                self._tell(
-                    used, f"{block} sends and receives nothing", Missing(f"{control}.Init = 1", control, "Init"), block,
-                    whole=True,
+                self._report(
+                    used, f"{block} sends and receives nothing", MissingLink(f"{control}.Init = 1", control, "Init"),
+                    block, whole=True,
                 )  # fmt: skip
                 continue
             for n in (1, 2):
@@ -874,8 +878,8 @@ class Connections:
                 if place and named and self._writes(f"{block}.CAN_IF{n}MCTL") and not self._could(
                     arbitration, bool, "MsgVal"
                 ):  # fmt: skip
-                    missing = Missing(f"no statement sets {arbitration}.MsgVal", arbitration)
-                    self._tell(place, "the message object that is set up here is not valid", missing, arbitration)
+                    missing = MissingLink(f"no statement sets {arbitration}.MsgVal", arbitration)
+                    self._report(place, "the message object that is set up here is not valid", missing, arbitration)
             self._messages(block, letter, commands)
             self._own_frames(block, letter)
 
@@ -887,9 +891,9 @@ class Connections:
         filled = [f"{block}.CAN_IF{n}CMD" for n in (1, 2) if self._writes(f"{block}.CAN_IF{n}DATA")]
         transmits = any(self._could(f"{block}.CAN_IF{n}ARB", bool, "Dir") for n in (1, 2))
         if filled and transmits and not asks:
-            missing = Missing("no statement sets TxRqst", filled[-1])
+            missing = MissingLink("no statement sets TxRqst", filled[-1])
             place = self._source.last(*_split(filled[-1]))
-            self._tell(place, "data are written to a message object but never sent", missing, filled[-1])
+            self._report(place, "data are written to a message object but never sent", missing, filled[-1])
         elif (block, "CAN_NDAT_21") in self._source.reads:
             ram = self._chip.can[letter].ram
             again = max(range(1, OBJECTS + 1), key=lambda number: ram[number].read_again)
@@ -935,8 +939,8 @@ class Connections:
             block = f"Dac{letter}Regs"
             used = self._source.last(block, "DACVALS")
             if used is not None and self._stuck(f"{block}.DACOUTEN", "DACOUTEN", bool):
-                missing = Missing(f"{block}.DACOUTEN = 0: the pin is not driven", f"{block}.DACVALS")
-                self._tell(used, f"{block} gets codes but drives no pin", missing, f"{block}.DACOUTEN")
+                missing = MissingLink(f"{block}.DACOUTEN = 0: the pin is not driven", f"{block}.DACVALS")
+                self._report(used, f"{block} gets codes but drives no pin", missing, f"{block}.DACOUTEN")
 
     def _serial(self) -> None:
         """A SCI that is used while SWRESET keeps it in reset."""
@@ -946,8 +950,8 @@ class Connections:
             reads = self._source.reads.get((block, "SCIRXBUF"))
             used = self._source.last(block, "SCITXBUF") or (reads[0] if reads else None)
             if used is not None and self._stuck(register, "SWRESET", bool):
-                missing = Missing(f"{register}.SWRESET = 0: the module stays in reset", register, "SWRESET")
-                self._tell(used, f"{block} never sends or receives a character", missing, register)
+                missing = MissingLink(f"{register}.SWRESET = 0: the module stays in reset", register, "SWRESET")
+                self._report(used, f"{block} never sends or receives a character", missing, register)
 
     def _epwms(self) -> Iterator[tuple[int, str, str, Block]]:
         """Each compare register that the program writes, of ePWMs that can count: number, name, compare, registers."""
@@ -966,8 +970,8 @@ class Connections:
             if not shadowed or at_sync or self._could(f"{name}.CMPCTL", bool, f"SHDW{x}MODE"):
                 continue
             if self._stuck(f"{name}.CMPCTL", mode, lambda value: value != FREEZE):
-                missing = Missing(f"{name}.CMPCTL.{mode} = 3", f"{name}.CMPCTL", mode)
-                self._tell(
+                missing = MissingLink(f"{name}.CMPCTL.{mode} = 3", f"{name}.CMPCTL", mode)
+                self._report(
                     self._wanting(f"{name}.CMPCTL", mode),
                     f"the value written to {compare} is never loaded from its shadow", missing, f"{name}.CMPCTL.{mode}",
                 )  # fmt: skip
@@ -982,13 +986,13 @@ class Connections:
             # With a counter that counts up, one above the period means 100 %.
             missing = self._above(n, compare, 1) if used else None
             if missing:
-                self._tell(
+                self._report(
                     self._wanting(f"{name}.{compare}", compare),
                     "the counter never reaches a compare value, so the output never changes there", missing,
                     f"{name}.{compare}",
                 )  # fmt: skip
             elif used and (beyond := self._chip.epwm[n].above.get(compare)):
-                self._beyond(f"{name}.{compare}", compare, beyond)
+                self._check_beyond_period(f"{name}.{compare}", compare, beyond)
 
     def _compares_for_nobody(self) -> None:
         """Computed values of a compare that switches nothing, where the other compare switches the output."""
@@ -1010,12 +1014,12 @@ class Connections:
                 self._could(f"{name}.ETSEL", choices.__contains__, f"{event}SEL") for event in ("INT", "SOCA", "SOCB")
             )
             if not any(switches) and not any(triggers):
-                missing = Missing(f"{action} switches output {x} at CMP{other}", action)
-                self._tell(
+                missing = MissingLink(f"{action} switches output {x} at CMP{other}", action)
+                self._report(
                     self._source.last(name, compare), f"the values of {name}.{compare} change nothing", missing, action
                 )  # fmt: skip
 
-    def _beyond(self, register: str, compare: str, beyond: Beyond) -> None:
+    def _check_beyond_period(self, register: str, compare: str, beyond: CompareBeyondPeriod) -> None:
         """Report a compare value above the period if it was computed.  A constant is taken to be meant."""
         findings = self._chip.findings
         at, calls, task = beyond.cause

@@ -237,7 +237,7 @@ class DeviceFunctions:
         # It is measured while SYSCLK is slower, by the next greater divider.
         self._clock.delay(int(_MEASURED * (imult + fmult / 4) / (2 * divsel + 2)))
         self._chip.sysctrl.run_pll(divsel)
-        self._chip.sysctrl.doubt_sysclk()
+        self._chip.sysctrl.check_sysclk()
         self._cpu.eallow = False
 
     def SysIntOsc1Sel(self) -> None:

@@ -24,13 +24,13 @@ from emulator.c28x.objects import (
     Array,
     Enumeration,
     Structure,
+    c_value,
     characters,
-    given,
     make,
-    meant_for,
+    named_error,
     read,
-    seen,
     text,
+    to_python,
     write,
 )
 from emulator.c28x.program import type_named
@@ -60,12 +60,12 @@ class LinkedFunction:
         runtime = self._linked.runtime
         passed = []
         for argument, parameter, ctype in zip(arguments, wanted, function.ctype.parameters, strict=True):
-            with meant_for(f"{function.name}({parameter.name})"):
-                passed.append(given(argument, ctype, runtime.memory))
+            with named_error(f"{function.name}({parameter.name})"):
+                passed.append(c_value(argument, ctype, runtime.memory))
         sp, position = runtime.cpu.sp, runtime.findings.position
         at, calls = position.at, position.calls
         try:
-            return seen(self._call(*passed), self._function.ctype.result, runtime.memory)
+            return to_python(self._call(*passed), self._function.ctype.result, runtime.memory)
         except RecursionError:
             runtime.unwind(sp)
             position.at, position.calls = at, calls
@@ -120,7 +120,7 @@ class ModuleFace:
         symbol = self._module.symbols.get(name)
         if not isinstance(symbol, Variable):
             raise AttributeError(f"{self._module.c_file} declares no object {name}")
-        with meant_for(f"{self._module.short}.{name}"):
+        with named_error(f"{self._module.short}.{name}"):
             write(self._pointer(symbol), value)
 
     def _pointer(self, variable: Variable) -> Pointer:
@@ -170,7 +170,7 @@ class Firmware:
         array = Array(make(self.memory, whole, "array"))
         for i, value in enumerate(codes):
             if value is not None:
-                with meant_for(f"array({ctype!r})[{i}]"):
+                with named_error(f"array({ctype!r})[{i}]"):
                     array[i] = value
         return array
 
@@ -178,7 +178,7 @@ class Firmware:
         """A new C object: `new("REFERENCE", V=0.1, W=0)` is a `Structure`, `new("float32", 1.5)` a pointer to it."""
         place = make(self.memory, self._type(ctype), ctype)
         if value is not None:
-            with meant_for(f"new({ctype!r})"):
+            with named_error(f"new({ctype!r})"):
                 write(place, value)
         if not isinstance(place.target, StructType):
             return place
@@ -234,7 +234,8 @@ def runtime_of(
     """
     return Runtime(
         system.clock, system.cpu, system.findings, system.memory, fill=fill, divide=divide, float_to_int=float_to_int,
-        register_at=system.register_at, in_vain=system.in_vain, driven=driven or (lambda: system.kernel.active),
+        register_at=system.register_at, blames_unmodelled=system.blames_unmodelled,
+        driven=driven or (lambda: system.kernel.active),
     )  # fmt: skip
 
 

@@ -16,14 +16,13 @@ from emulator.signal import Signal
 from emulator.signals import DutyWire, I2cBus, PwmWire, QuadratureWire, SerialFrame, SerialLine, SpiBus, Wire
 
 #: Priority of an event that runs after all changes of pins in the same cycle.
-_LOOK_PRIORITY: Final = 3
+_SAMPLE_PRIORITY: Final = 3
 #: The pins that can carry a signal, each with its mux number there.
 Routes: TypeAlias = Mapping[int, int]
 
 
 class Pads(Protocol):
-    """The GPIO module as the multiplexer sees it: each pin's function, and its input after inversion and qualification.
-    """
+    """GPIO as the multiplexer sees it: the function of each pin, its input after inversion and qualification."""
 
     def mux(self, pin: int) -> int:
         """The function of a pin."""
@@ -230,7 +229,7 @@ class QuadratureLevels:
         self._lines: tuple[int | None, int | None] = (None, None)
         self._stops: list[Callable[[], None]] = []
         self._quarter = 0
-        self._look_event: Event | None = None
+        self._sample_event: Event | None = None
 
     def connect(self, a: int | None, b: int | None) -> None:
         """Take A and B from these pins.  None: no pin carries the line, so it is low (CHOICE)."""
@@ -249,11 +248,11 @@ class QuadratureLevels:
         return self._QUARTER[a, b]
 
     def _changed(self, _level: int) -> None:
-        if self._look_event is None:
-            self._look_event = self._clock.after(0, self._look, priority=_LOOK_PRIORITY)
+        if self._sample_event is None:
+            self._sample_event = self._clock.after(0, self._sample, priority=_SAMPLE_PRIORITY)
 
-    def _look(self) -> None:
-        self._look_event = None
+    def _sample(self) -> None:
+        self._sample_event = None
         before, self._quarter = self._quarter, self._now()
         steps = (self._quarter - before) & 3
         target, now = self._target, self._clock.now

@@ -38,8 +38,7 @@ class Level(Protocol):
 
 
 class LevelDriver(Protocol):
-    """A computed level that can drive a wire.  It is read on demand, and makes edges only while a listener wants them.
-    """
+    """A computed level that can drive a wire.  It is read on demand, and makes edges only while somebody listens."""
 
     @property
     def level(self) -> int | None:
@@ -87,7 +86,7 @@ class Wire:
     def level(self) -> int:
         """0 or 1, now."""
         if self._sources and not self._attention:
-            self._look()
+            self._drive_all()
         return self._level
 
     def stays_until(self) -> int:
@@ -120,7 +119,7 @@ class Wire:
             if old[0] is not None:
                 self.drive(driver, None)
         else:
-            self._sources[driver] = source, self._hear(driver, source) if self._attention else None
+            self._sources[driver] = source, self._listen(driver, source) if self._attention else None
             self.drive(driver, source.level)
         computed = bool(self._sources)
         if computed != was_computed:
@@ -142,8 +141,8 @@ class Wire:
         self._attention += 1
         if self._attention == 1 and self._sources:
             for driver, (source, _) in list(self._sources.items()):
-                self._sources[driver] = source, self._hear(driver, source)
-            self._look()
+                self._sources[driver] = source, self._listen(driver, source)
+            self._drive_all()
 
     def leave(self) -> None:
         """End an `attend`."""
@@ -168,10 +167,10 @@ class Wire:
         else:
             self.leave()
 
-    def _hear(self, driver: str, source: LevelDriver) -> Callable[[], None]:
+    def _listen(self, driver: str, source: LevelDriver) -> Callable[[], None]:
         return source.changed.connect(partial(self.drive, driver))
 
-    def _look(self) -> None:
+    def _drive_all(self) -> None:
         for driver, (source, _) in self._sources.items():
             self.drive(driver, source.level)
 
@@ -202,7 +201,7 @@ class AnalogWire:
     """
 
     __slots__ = (
-        "_chip", "_chip_steady", "_heard", "_outside", "_outside_steady", "_who", "name", "sampled", "source",
+        "_chip", "_chip_steady", "_has_listeners", "_outside", "_outside_steady", "_who", "name", "sampled", "source",
         "stepped",
     )  # fmt: skip
 
@@ -213,7 +212,7 @@ class AnalogWire:
         self._outside_steady = True
         self._chip: Callable[[int], float] | None = None
         self._chip_steady = False
-        self._heard = False
+        self._has_listeners = False
         self.source: Callable[[int], float] = self._outside
         #: (cycles, volts): every sample.  It costs nothing without a listener.
         self.sampled: Signal[int, float] = Signal(self._wanted)
@@ -266,15 +265,15 @@ class AnalogWire:
         return (self._chip or self._outside)(cycles)
 
     def _wanted(self, wanted: bool) -> None:
-        self._heard = wanted
+        self._has_listeners = wanted
         self._choose()
 
     def _choose(self) -> None:
         self.source = self._chip or self._outside
-        if self._heard:
-            self.source = partial(self._tell, self.source)
+        if self._has_listeners:
+            self.source = partial(self._reporting, self.source)
 
-    def _tell(self, source: Callable[[int], float], cycles: int) -> float:
+    def _reporting(self, source: Callable[[int], float], cycles: int) -> float:
         volts = source(cycles)
         for listener in self.sampled.listeners:
             listener(cycles, volts)
@@ -324,24 +323,25 @@ class PwmSource(Protocol):
         """The cycle of the next edge."""
 
     def watch(self) -> None:
-        """`watched` of the wire has changed.  While it is true, the source must report edges by `tell`."""
+        """`watched` of the wire has changed.  While it is true, the source must report edges by `report_level`."""
 
 
 class PwmWire(DutyWire):
     """An output of an ePWM: its duty for parts that are slower than its period, its level and edges for others.
 
     The level is read from its `PwmSource`.  The source is called whenever `watched` changes: while a listener wants
-    edges, the source reports them by `tell`.  `released`: the output is in high impedance, and its duty has no meaning.
+    edges, the source reports them by `report_level`.  `released`: the output is in high impedance, its duty
+    has no meaning.
     """
 
-    __slots__ = ("_source", "_told", "changed", "released", "watched")
+    __slots__ = ("_reported", "_source", "changed", "released", "watched")
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
         self.released = False
         self.watched = False
         self._source: PwmSource | None = None
-        self._told: int | None = 0
+        self._reported: int | None = 0
         #: (level): every edge; None is high impedance.
         self.changed: Signal[int | None] = Signal(self._wanted)
 
@@ -362,15 +362,15 @@ class PwmWire(DutyWire):
 
     def _wanted(self, wanted: bool) -> None:
         if wanted:
-            self._told = self.level
+            self._reported = self.level
         self.watched = wanted
         if self._source is not None:
             self._source.watch()
 
-    def tell(self, level: int | None) -> None:
+    def report_level(self, level: int | None) -> None:
         """The output has this level now.  Report it to listeners if it is a change."""
-        if level != self._told:
-            self._told = level
+        if level != self._reported:
+            self._reported = level
             for listener in self.changed.listeners:
                 listener(level)
 

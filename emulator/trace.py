@@ -25,8 +25,18 @@ class Trace:
     """`trace.emit(kind, name)` calls every listener with `(cycles, kind, name)`."""
 
     __slots__ = (
-        "_clock", "_every", "_hash", "_latest", "_lines", "_listening", "_of_kind", "_read", "_told", "active",
-        "each_tick", "ticks_joined",
+        "_clock",
+        "_every",
+        "_has_listeners",
+        "_hash",
+        "_latest",
+        "_lines",
+        "_listening",
+        "_of_kind",
+        "_read",
+        "active",
+        "each_tick",
+        "ticks_joined",
     )  # fmt: skip
 
     def __init__(self, clock: Clock) -> None:
@@ -45,7 +55,7 @@ class Trace:
         self._hash = hashlib.sha256()
         #: Whether events are needed at all; whether there is a listener.
         self.active = False
-        self._told = False
+        self._has_listeners = False
         #: Whether a listener wants the events of every tick, even of one that finds the CPU idle and calls nothing.
         self.each_tick = False
 
@@ -79,8 +89,8 @@ class Trace:
             self._decide()
 
     def _decide(self) -> None:
-        self._told = bool(self._listening)
-        self.active = self._told or self._lines is not None
+        self._has_listeners = bool(self._listening)
+        self.active = self._has_listeners or self._lines is not None
         self.each_tick = any(each_tick for _, each_tick in self._listening.values())
 
     def keep_digest(self) -> None:
@@ -117,7 +127,7 @@ class Trace:
             lines.append(f"{now} {kind} {name}\n")
             if len(lines) >= _TOGETHER:
                 self._digest(lines)
-        if self._told:
+        if self._has_listeners:
             for listener in self._every.listeners:
                 listener(now, kind, name)
             of_kind = self._of_kind.get(kind)

@@ -40,7 +40,7 @@ class Arguments(TypedDict):
 
 
 @dataclass(frozen=True)
-class Own:
+class UserFiles:
     """C files of a user: those that stand for a module, and what is linked besides."""
 
     #: Module of the port -> the file in its place.
@@ -74,7 +74,7 @@ def module_of(file: str | Path) -> str | None:
     return _BY_KEY.get(os.path.basename(file).lower())
 
 
-def own(paths: Iterable[str | Path]) -> Own:
+def own(paths: Iterable[str | Path]) -> UserFiles:
     """The C files that `paths` mean: files, and those of the robot directly in a folder.
 
     Raises ValueError, in one line, for what is not there or no C file, for a folder without a file of the robot, for
@@ -96,7 +96,7 @@ def own(paths: Iterable[str | Path]) -> Own:
                 instead[module] = file
     if listed and not instead:
         raise ValueError(f"{listed[0]}: no C file of the robot: looked for {', '.join(FILES)}")
-    return Own(instead, tuple(dict.fromkeys(besides)), tuple(left_out))
+    return UserFiles(instead, tuple(dict.fromkeys(besides)), tuple(left_out))
 
 
 def _of_folder(folder: str) -> list[str]:

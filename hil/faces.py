@@ -21,7 +21,7 @@ FaceValue = tuple[str, str, float | None]
 
 
 @dataclass(frozen=True, slots=True)
-class Put:
+class FaceSetting:
     """A face that is set; `time_s` after start-up, None: from power-up on."""
 
     part: str
@@ -30,7 +30,7 @@ class Put:
     time_s: float | None = None
 
 
-def parse(text: str, board: Board) -> Put:
+def parse(text: str, board: Board) -> FaceSetting:
     """What a text sets of a board.
 
     Raises ValueError, in one line that names part, face, unit and range, for what the board does not have or the face
@@ -49,10 +49,10 @@ def parse(text: str, board: Board) -> Put:
     except ValueError:
         raise ValueError(f"{name}.{face_name} = {number!r}: must be a number; {face}") from None
     part.check(face_name, value)
-    return Put(name, face_name, value, time_s)
+    return FaceSetting(name, face_name, value, time_s)
 
 
-def parse_all(texts: Iterable[str], board: Board) -> list[Put]:
+def parse_all(texts: Iterable[str], board: Board) -> list[FaceSetting]:
     """Several of them, in their order."""
     return [parse(text, board) for text in texts]
 

@@ -105,7 +105,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
             os.close(pipe)
 
 
-class Growing:
+class GrowingFile:
     """A text file that takes what it can.  A full disk ends the file, not what is told in it: writing never raises."""
 
     def __init__(self, path: str | Path, file: TextIO) -> None:
@@ -136,7 +136,7 @@ class Growing:
 
 
 @contextmanager
-def growing(path: str | Path, encoding: str) -> Iterator[Growing]:
+def growing(path: str | Path, encoding: str) -> Iterator[GrowingFile]:
     """A text file that grows while something runs, empty at first.
 
     Raises OSError if it cannot be opened, for a pipe that nobody reads, and at the end if it did not take everything.
@@ -145,7 +145,7 @@ def growing(path: str | Path, encoding: str) -> Iterator[Growing]:
     failed = None
     try:
         with open(path, "w", encoding=encoding, newline="\n") as file:
-            log = Growing(path, file)
+            log = GrowingFile(path, file)
             try:
                 yield log
             finally:

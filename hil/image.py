@@ -26,8 +26,8 @@ from emulator.c28x.tree import Declaration, Function
 from emulator.image import Firmware, bind, runtime_of
 from hil.board import Board, made
 from hil.collector import uncollected
-from hil.faults import Fired, mount, parse
-from hil.testing.faults import OnBoard
+from hil.faults import FaultOutcome, mount, parse
+from hil.testing.faults import BoardTarget
 
 #: Endings of files that are driver files.
 SUFFIXES: Final = (".c", ".py")
@@ -86,7 +86,7 @@ class Build:
         self.seed = seed
         self.coverage = coverage
         self.board = board
-        self.fired = tuple(Fired(parse(text), (), 0, None) for text in faults)
+        self.fired = tuple(FaultOutcome(parse(text), (), 0, None) for text in faults)
         chip = made(board, seed=seed)
         self.program.translate()
         functions = [(f, module.unit(f.name).file) for module in self.modules for f in module.functions]
@@ -127,7 +127,7 @@ class Image:
             runtime = runtime_of(board, fill=build.fill, driven=driven)
             self.linked = bind(board, build.compiled, runtime, coverage=build.coverage)
         self._build = build
-        machine = OnBoard(board, lambda: Firmware(self.linked)) if build.fired else None
+        machine = BoardTarget(board, lambda: Firmware(self.linked)) if build.fired else None
         self._faults = [mount(fired.fault, machine) for fired in build.fired] if machine is not None else []
 
     def allow_loops(self, cycles: int) -> None:

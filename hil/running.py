@@ -30,11 +30,11 @@ from emulator.sysbios.core import KernelError
 from emulator.sysbios.statistics import TaskStatistics
 from hil.board import Board, load, made, optional, source_of
 from hil.collector import uncollected
-from hil.faces import Put, parse_all
+from hil.faces import FaceSetting, parse_all
 from hil.machine import CpuUse, FirmwareStopped, Setup, TaskTimes, fault_of_ours
 
 if TYPE_CHECKING:
-    from hil.faults import Mounted
+    from hil.faults import MountedFault
     from hil.feeds import DeclaredFeed
 
 
@@ -50,8 +50,8 @@ class RunningBoard:
     FIRST_SLICE_CYCLES: ClassVar[int] = 0
 
     def __init__(
-        self, board: Board, firmware: Firmware, main: str, *, start_up_cycles: int = 0, puts: Sequence[Put] = (),
-        traced: bool = True,
+        self, board: Board, firmware: Firmware, main: str, *, start_up_cycles: int = 0,
+        puts: Sequence[FaceSetting] = (), traced: bool = True,
     ) -> None:  # fmt: skip
         self.board = board
         self.firmware = firmware
@@ -61,7 +61,7 @@ class RunningBoard:
         self.uart_sent: Signal[int, int] = Signal()
         self.start_up_cycles = start_up_cycles
         #: Those of its setup, and those that were mounted since.
-        self.faults: tuple[Mounted, ...] = ()
+        self.faults: tuple[MountedFault, ...] = ()
         #: By input that sees something else than the physics, what ends that (`hil.feeds.feed`).
         self.feeds: dict[str, Callable[[], None]] = {}
         #: The feeds of its setup.

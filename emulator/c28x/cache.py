@@ -71,11 +71,11 @@ def compiled(
     if file is not None:
         stamped = {os.path.realpath(path) for path, _, _ in (*_translator_files(), *_package_files(asked))}
         digests = {name: known for name, known in program.digests().items() if os.path.realpath(name) not in stamped}
-        _keep(file, Kept(result, digests, asked_for))
+        _keep(file, CachedProgram(result, digests, asked_for))
     return result
 
 
-class Kept:
+class CachedProgram:
     """A compiled program, with the sources and register properties that it depends on."""
 
     def __init__(self, compiled: Compiled, digests: dict[str, str], looked_at: dict[tuple[str, str], bool]) -> None:
@@ -185,7 +185,7 @@ def _signature(file: Path) -> tuple[int, int]:
 
 
 @lru_cache(maxsize=KEPT)
-def _load(file: str, size: int, inode: int) -> Kept | None:
+def _load(file: str, size: int, inode: int) -> CachedProgram | None:
     """A kept program; None if it is missing or damaged.  Images of one process share it, so it must not be changed."""
     if not size:
         return None
@@ -194,7 +194,7 @@ def _load(file: str, size: int, inode: int) -> Kept | None:
             found = pickle.load(kept)
     except Exception:  # unpickling a damaged file can raise anything: treat it as missing
         return None
-    return found if isinstance(found, Kept) else None
+    return found if isinstance(found, CachedProgram) else None
 
 
 class _Pickler(pickle.Pickler):
@@ -206,7 +206,7 @@ class _Pickler(pickle.Pickler):
 
     def reducer_override(self, obj: Any) -> Any:
         """How to pickle an object."""
-        if isinstance(obj, Kept):
+        if isinstance(obj, CachedProgram):
             self.trees = obj.compiled.options.watch
             self.functions = {compiled.function for compiled in obj.compiled.functions}
             self.types: set[str] = set()
@@ -237,7 +237,7 @@ def _itself(ctype: CType) -> CType:
     return ctype
 
 
-def _keep(file: Path, kept: Kept) -> None:
+def _keep(file: Path, kept: CachedProgram) -> None:
     """Write a program to its file, completely or not at all; delete the oldest files beyond `KEPT`."""
     limit = sys.getrecursionlimit()
     sys.setrecursionlimit(max(limit, 20_000))

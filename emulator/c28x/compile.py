@@ -1,8 +1,8 @@
 """From source to code: read, build, check, write.  The result does not depend on a board.
 
-    program = Program(modules)            # readers and builder: typed trees
-    compiled = compile_program(program, options, looked_at)
-    link(compiled, ...)                   # link.py: bound to one board
+program = Program(modules)            # readers and builder: typed trees
+compiled = compile_program(program, options, looked_at)
+link(compiled, ...)                   # link.py: bound to one board
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from emulator.c28x.passes.checks import check
 from emulator.c28x.passes.costs import Costs
 from emulator.c28x.passes.flow import Flow
 from emulator.c28x.passes.guards import Guards
-from emulator.c28x.passes.intervals import leave_bounds
+from emulator.c28x.passes.intervals import annotate_bounds
 from emulator.c28x.passes.stamps import Stamps
-from emulator.c28x.passes.taken import leave_taken
+from emulator.c28x.passes.taken import mark_copy_and_clear
 from emulator.c28x.program import Program
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module
@@ -41,7 +41,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
         for function in module.functions:
             if not function.where.file:
                 function.where = Where(module.unit(function.name).file, function.line)
-            leave_bounds(function.body)
+            annotate_bounds(function.body)
             Flow(function).run()
     objects = [(variable, variable.initial) for module in modules for variable in module.variables]
     entries = _entries(modules, options)
@@ -67,7 +67,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
                 limited=names_limited, stamps=suspicions,
             ).run()  # fmt: skip
             costs.leave(function)
-            leave_taken(function)
+            mark_copy_and_clear(function)
             writer = PythonWriter(
                 function, FunctionNames(owner, looked_at), costs=costs, factor=factor, watch=options.watch,
                 residue=options.residue, keep_locals=options.keep_locals, coverage=options.coverage,

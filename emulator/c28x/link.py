@@ -218,7 +218,7 @@ class Linked:
             "_c_modulo_ints": runtime.modulo_ints, "_c_shift": runtime.shift,
             "_c_endless": runtime.endless, "_c_loop_limit": runtime.loop_limit,
             "_c_poll": runtime.poll, "_c_idle": runtime.idle, "_c_NEVER": NEVER, "_c_poll_limit": runtime.poll_limit,
-            "_c_stack_check": runtime.stack_check, "_c_outward": _outward,
+            "_c_stack_check": runtime.stack_check, "_c_outward": _to_extern,
             "_c_spill": self._spill, "__builtins__": builtins.__dict__,
         }  # fmt: skip
 
@@ -303,7 +303,7 @@ def _numbered(code: CodeType, first: int, name: str) -> CodeType:
     return code.replace(co_consts=constants, co_name=name)
 
 
-def _outward(value: Any) -> Any:
+def _to_extern(value: Any) -> Any:
     """A value that is passed to an extern: NULL becomes None."""
     return None if isinstance(value, Pointer) and not value else value
 

@@ -55,7 +55,7 @@ class Structure:
     def __setattr__(self, name: str, value: Any) -> None:
         member = self._member(name)
         place = self._pointer.member(name)
-        with meant_for(f"{_type(self)}.{name}"):
+        with named_error(f"{_type(self)}.{name}"):
             if member.width is None:
                 write(place, value)
                 return
@@ -183,7 +183,7 @@ class Enumeration:
 
 
 @contextmanager
-def meant_for(where: str) -> Iterator[None]:
+def named_error(where: str) -> Iterator[None]:
     """Add to an error about a value what the value was meant for."""
     try:
         yield
@@ -204,10 +204,10 @@ def read(place: Pointer) -> Any:
     """The object at `place` as a Python value.  For scalars that were never written, the fill decides."""
     if isinstance(place.target, StructType):
         return Structure(place)
-    return Array(place) if isinstance(place.target, ArrayType) else seen(place.load(), place.target, place.memory)
+    return Array(place) if isinstance(place.target, ArrayType) else to_python(place.load(), place.target, place.memory)
 
 
-def seen(value: Any, ctype: CType, memory: Memory | None) -> Any:
+def to_python(value: Any, ctype: CType, memory: Memory | None) -> Any:
     """A C value as a Python value.  A structure by value becomes an object of its own."""
     if isinstance(ctype, StructType):
         assert memory is not None
@@ -248,10 +248,10 @@ def write(place: Pointer, value: Any) -> None:
         else:
             raise TypeError(f"{value!r} is no {target}: give its {target.length} values")
     else:
-        place.store(given(value, target, memory))
+        place.store(c_value(value, target, memory))
 
 
-def given(value: Any, ctype: CType, memory: Memory) -> Any:
+def c_value(value: Any, ctype: CType, memory: Memory) -> Any:
     """A Python value as a C value of type `ctype`, such as an argument.
 
     For a pointer to characters, a `str` or `bytes` becomes a new constant with its NUL.  Raises what `write` raises.

@@ -54,12 +54,12 @@ class Program:
         for name in names:
             self.module(name)
 
-    def module(self, name: str, beside: str = "") -> Module:
+    def module(self, name: str, importer: str = "") -> Module:
         """The module called `name`, or the one in the file `name` (`*.py`, `*.c`).  It is read on first use.
 
-        The search begins in the folder of `beside`, the file that imports it, as with `#include "..."`.
+        The search begins in the folder of `importer`, the file that imports it, as with `#include "..."`.
         """
-        file = _neighbour(name, beside)
+        file = _neighbour(name, importer)
         if file is not None and name.endswith(SUFFIXES):
             name = file.stem
         name = self._bases.get(name, name)
@@ -104,11 +104,11 @@ class Program:
                 module.brought = module.brought or new
                 return module
 
-            def bring(file: Path) -> None:
+            def require(file: Path) -> None:
                 if str(file) not in {module.file for module in self.modules.values()}:
                     self.add(f"{file.parent.name}.{file.stem}", *_source(file)).brought = True
 
-            self._c = CFiles(CSettings(**self._c_settings), library, bring)
+            self._c = CFiles(CSettings(**self._c_settings), library, require)
         return self._c
 
     @reading(0)
@@ -141,7 +141,7 @@ class Program:
         units = [unit for module in self.modules.values() for unit in (module, *module.units.values())]
         names = {unit.file for unit in units}
         if self._c is not None:
-            names |= self._c.looked_into()
+            names |= self._c.searched_paths()
         return {name: digest(name) for name in sorted(names) if not name.startswith("<")}
 
     def __getstate__(self) -> dict[str, Any]:
@@ -215,15 +215,15 @@ def _source(file: Path) -> tuple[str, str]:
         raise SourceError.at(where, "not UTF-8 text: save the file as UTF-8") from None
 
 
-def _neighbour(name: str, beside: str) -> Path | None:
-    """The file called `name`, or the file of module `name` beside `beside`; None if there is none.  Raises NoModule."""
+def _neighbour(name: str, importer: str) -> Path | None:
+    """The file called `name`, or the file of module `name` beside `importer`; None: there is none.  Raises NoModule."""
     if name.endswith(SUFFIXES):
         file = Path(name).resolve()
         if not file.is_file():
             raise NoModule(f"no file {name}")
         return file
-    file = Path(beside).parent / f"{name.replace('.', '/')}.py"
-    return file.resolve() if beside and file.is_file() else None
+    file = Path(importer).parent / f"{name.replace('.', '/')}.py"
+    return file.resolve() if importer and file.is_file() else None
 
 
 def type_named(program: Program, name: str) -> CType | None:

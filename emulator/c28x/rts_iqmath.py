@@ -88,13 +88,13 @@ class IQmath(Printing):
 
     def _rounded_product(self, q: int, a: int, b: int) -> int:
         self._charge(_ROUNDED_PRODUCT - CALL)
-        return self._kept(f"_IQ{q}rmpy({a}, {b})", a * b + (1 << q - 1) >> q)
+        return self._low_word(f"_IQ{q}rmpy({a}, {b})", a * b + (1 << q - 1) >> q)
 
     def _to_float(self, q: int, a: int) -> float:
         self._charge(_TO_FLOAT - CALL)
         return bits_float(iq.to_float_bits(a, q))
 
-    def _kept(self, call: str, value: int) -> int:
+    def _low_word(self, call: str, value: int) -> int:
         """The lower 32 bits of a product; reported if it does not fit."""
         kept = iq.wrap32(value)
         if kept != value:
@@ -105,12 +105,12 @@ class IQmath(Printing):
     # Functions of the compiler
 
     def _product(self, a: int, b: int, q: int) -> int:
-        return self._kept(f"__IQmpy({a}, {b}, {q})", a * b >> (q & 63))
+        return self._low_word(f"__IQmpy({a}, {b}, {q})", a * b >> (q & 63))
 
     def _shifted_product(self, a: int, b: int, n: int) -> int:
         """The upper 32 bits of the product, after a shift left by `n` (right by -n)."""
         by = 32 - n
-        return self._kept(f"__IQxmpy({a}, {b}, {n})", a * b >> by if by >= 0 else a * b << -by)
+        return self._low_word(f"__IQxmpy({a}, {b}, {n})", a * b >> by if by >= 0 else a * b << -by)
 
     def _between(self, a: int, most: int, least: int) -> int:
         return max(min(a, most), least)

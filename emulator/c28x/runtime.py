@@ -67,7 +67,7 @@ class Idling(EndlessPoll):
     """A function idles in an endless loop while its caller waits for its return: this is not a defect of the loop."""
 
 
-class Spot(Site):
+class RuntimeSite(Site):
     """One check of a running image: its site, its number, and what it has found so far."""
 
     __slots__ = (
@@ -93,24 +93,24 @@ class Spot(Site):
         self.planted: dict[int, Any] = {}
 
 
-class Spots(dict[int, Spot]):
+class RuntimeSites(dict[int, RuntimeSite]):
     """The checks of one image by number, each created at its first use."""
 
     def __init__(self, runtime: Runtime) -> None:
         super().__init__()
         self._runtime = runtime
 
-    def __missing__(self, number: int) -> Spot:
+    def __missing__(self, number: int) -> RuntimeSite:
         runtime = self._runtime
-        self[number] = spot = Spot(runtime.findings.places.site(number), number)
-        if spot.declaration is not None:
-            path = spot.declaration.path
-            spot.initial = runtime.initials.setdefault(path, {})
-            spot.planted = runtime.planted.setdefault(path, {})
-        return spot
+        self[number] = site = RuntimeSite(runtime.findings.places.site(number), number)
+        if site.declaration is not None:
+            path = site.declaration.path
+            site.initial = runtime.initials.setdefault(path, {})
+            site.planted = runtime.planted.setdefault(path, {})
+        return site
 
 
-def _wrap(site: Spot, index: int) -> list[str]:
+def _wrap(site: RuntimeSite, index: int) -> list[str]:
     """The detail that an unsigned subscript has wrapped below 0, as a list; empty if it has not."""
     if not site.wraps or index <= 0x7FFF:
         return []
@@ -138,7 +138,7 @@ def parse_fill(fill: str) -> tuple[str, int]:
 class _BlockWord:
     """A word of memory that is accessed through a pointer to a register block, but is no register."""
 
-    def __init__(self, runtime: Runtime, p: Pointer, words: int, ctype: IntType, site: Spot) -> None:
+    def __init__(self, runtime: Runtime, p: Pointer, words: int, ctype: IntType, site: RuntimeSite) -> None:
         self._runtime, self._p, self._words, self._ctype, self._site = runtime, p, words, ctype, site
 
     def read(self) -> int:
@@ -168,12 +168,12 @@ class Runtime:
     def __init__(
         self, clock: Clock, cpu: StackPointer, findings: Findings, memory: Memory, *,
         fill: str = "zero", divide: str = "ieee", float_to_int: str = "saturate", poll_limit_s: float = 5.0,
-        register_at: Callable[[int], Any] = lambda address: None, in_vain: Callable[[str], bool] = lambda name: False,
-        driven: Callable[[], bool] = lambda: False,
+        register_at: Callable[[int], Any] = lambda address: None,
+        blames_unmodelled: Callable[[str], bool] = lambda name: False, driven: Callable[[], bool] = lambda: False,
     ) -> None:  # fmt: skip
         """`register_at(address)` returns the register at an address, for accesses by a pointer to its block.
 
-        `in_vain(name)` is called when a wait for an object was in vain; it returns whether the wait ends now.
+        `blames_unmodelled(name)` is called when a wait for an object was in vain; it returns whether the wait ends now.
         `driven()` returns whether the host runs the firmware in slices of time, so that nobody waits for the end of its
         `main`.
         """
@@ -191,19 +191,19 @@ class Runtime:
         self.loop_limit = int(LOOP_LIMIT_S * 1_000_000 * CYCLES_PER_US)
         self.poll_limit = int(poll_limit_s * 1_000_000 * CYCLES_PER_US)
         self._watcher: Callable[[Object, int, bool], None] | None = None
-        self.spots = Spots(self)
+        self.sites = RuntimeSites(self)
         #: Tests, by the path of an object: the value of a never-written object; values of cells outside of an array.
         self.initials: dict[str, dict[str, Any]] = {}
         self.planted: dict[str, dict[int, Any]] = {}
         #: The types of functions; (function, number of the call) -> what a call through a pointer runs.
         self.signatures: dict[Any, FunctionType] = {}
         self.called_as: dict[tuple[Any, int], Any] = {}
-        self._register_at, self._in_vain, self._driven = register_at, in_vain, driven
+        self._register_at, self._in_vain, self._driven = register_at, blames_unmodelled, driven
         #: Checks of library functions that read or write through a pointer.
-        self.readers: dict[Any, Spot] = {}
+        self.readers: dict[Any, RuntimeSite] = {}
         #: The users of null pointers so far, their call paths, and the findings about them.
         self.null_users: set[str] = set()
-        self.null_ways: set[tuple[Spot, Any]] = set()
+        self.null_ways: set[tuple[RuntimeSite, Any]] = set()
         self.null_findings: list[Finding] = []
         self.null_generation = -1
         #: Where a NaN or an infinity has arrived so far.
@@ -215,7 +215,7 @@ class Runtime:
 
     # Reports
 
-    def counted(self, site: Spot, rule: str = "") -> bool:
+    def counted(self, site: RuntimeSite, rule: str = "") -> bool:
         """Whether `rule` (or any rule) has been reported at `site`; if so, count this occurrence."""
         seen = site.seen
         if seen is None or site.generation != self.findings.generation or (rule and seen.rule != rule):
@@ -223,7 +223,7 @@ class Runtime:
         seen.count += 1
         return True
 
-    def hit(self, site: Spot, rule: str, message: str, value: Any = None, details: tuple[str, ...] = ()) -> None:
+    def hit(self, site: RuntimeSite, rule: str, message: str, value: Any = None, details: tuple[str, ...] = ()) -> None:
         """Report at `site`; later occurrences at the same site only count."""
         if self.counted(site, rule):
             return
@@ -234,7 +234,7 @@ class Runtime:
         )  # fmt: skip
         site.generation = self.findings.generation
 
-    def not_finite(self, value: float, site: Spot, where: str) -> None:
+    def not_finite(self, value: float, site: RuntimeSite, where: str) -> None:
         """A NaN or an infinity has arrived at `where`: report it the first time."""
         if self.not_finite_generation != self.findings.generation:
             self.not_finite_at, self.not_finite_generation = set(), self.findings.generation
@@ -277,7 +277,7 @@ class Runtime:
 
     def uninit(self, number: int, word: int = 0, addr: int | None = None) -> Any:
         """Read an object that was never written: report it and return its fill; `word` is the word within it."""
-        site = self.spots[number]
+        site = self.sites[number]
         seen = site.seen
         known = seen is not None and site.generation == self.findings.generation
         if known and self.fill == "zero" and not self.fill_of:
@@ -315,7 +315,7 @@ class Runtime:
 
     def oob_load(self, number: int, index: int, stride: int, base: int) -> Any:
         """Read element `index` of an array of `site.bound`; `base` is the address of element 0, `stride` in words."""
-        site = self.spots[number]
+        site = self.sites[number]
         addr = base + index * stride
         if not self.counted(site):
             self._report_index(site, f"[{index}]", "read", "reads", index, index * stride, addr)
@@ -329,7 +329,7 @@ class Runtime:
 
     def oob_store(self, number: int, index: int, stride: int, base: int, value: Any) -> None:
         """Write element `index` of an array of `site.bound`."""
-        site = self.spots[number]
+        site = self.sites[number]
         addr = base + index * stride
         if not self.counted(site):
             self._report_index(site, f"[{index}]", "written", "hits", index, index * stride, addr)
@@ -339,7 +339,7 @@ class Runtime:
             self.strayed_store(site.ctype, addr, value)
 
     def _report_index(
-        self, site: Spot, subscripts: str, done: str, does: str, index: int, words: int, addr: int
+        self, site: RuntimeSite, subscripts: str, done: str, does: str, index: int, words: int, addr: int
     ) -> None:  # fmt: skip
         where = self.neighbour(site, words, addr)
         name, obj = site.name, self.memory.find(addr - words)
@@ -349,7 +349,7 @@ class Runtime:
         details = [f"what is {done} instead: {where}", *_wrap(site, index)]
         self.hit(site, "index", f"{name}{subscripts} is {done}: {of}; this {does} {where}", index, tuple(details))
 
-    def neighbour(self, site: Spot, words: int, addr: int) -> str:
+    def neighbour(self, site: RuntimeSite, words: int, addr: int) -> str:
         """What is `words` from the start of the array at `site`, or at `addr`, as text."""
         if site.frame is None:
             return self.memory.neighbour(addr)
@@ -366,7 +366,7 @@ class Runtime:
 
     def oob_deep_load(self, number: int, data: list[Any], indices: tuple[int, ...], base: int) -> Any:
         """Read an element by several subscripts, one of which is outside its own dimension."""
-        site = self.spots[number]
+        site = self.sites[number]
         offset, leaf = self._deep(site, indices, base, "read", "reads")
         if leaf is None:
             return self.strayed_load(site.ctype, base + offset)
@@ -375,14 +375,16 @@ class Runtime:
 
     def oob_deep_store(self, number: int, data: list[Any], indices: tuple[int, ...], base: int, value: Any) -> None:
         """Write an element by several subscripts, one of which is outside its own dimension."""
-        site = self.spots[number]
+        site = self.sites[number]
         offset, leaf = self._deep(site, indices, base, "written", "hits")
         if leaf is None:
             self.strayed_store(site.ctype, base + offset, value)
         else:
             data[leaf] = value
 
-    def _deep(self, site: Spot, indices: tuple[int, ...], base: int, done: str, does: str) -> tuple[int, int | None]:
+    def _deep(
+        self, site: RuntimeSite, indices: tuple[int, ...], base: int, done: str, does: str
+    ) -> tuple[int, int | None]:
         """The word that the subscripts designate, and the number of the scalar there (None: outside of the object)."""
         assert site.declaration is not None
         ctype = site.declaration.ctype
@@ -408,7 +410,7 @@ class Runtime:
 
     def member_index(self, index: int, number: int) -> int:
         """Check and return the subscript of an array of `site.bound`, a member behind a pointer."""
-        site = self.spots[number]
+        site = self.sites[number]
         behind = index == site.bound and site.kind == "address"
         if not 0 <= index < site.bound and not behind and not self.counted(site):
             message = f"{site.text or site.name}: index {index} is outside: the array has {site.bound} elements"
@@ -418,7 +420,7 @@ class Runtime:
 
     def load(self, p: Pointer, words: int, number: int) -> Any:
         """`*(p + words)` as `site.ctype`."""
-        site = self.spots[number]
+        site = self.sites[number]
         obj = p.obj
         if obj is not None:
             found = obj.leaf(p.offset + words)
@@ -429,7 +431,7 @@ class Runtime:
                 return self._unwritten(site, obj, p.offset + words)
         return self._load_slow(p, words, site)
 
-    def _unwritten(self, site: Spot, obj: Object, offset: int) -> Any:
+    def _unwritten(self, site: RuntimeSite, obj: Object, offset: int) -> Any:
         name = obj.declaration.path
         if obj.initial is not None:
             value = obj.initial
@@ -444,7 +446,7 @@ class Runtime:
             raise UninitialisedRead(f"{message} ({obj.declaration})")
         return value
 
-    def _load_slow(self, p: Pointer, words: int, site: Spot, ctype: CType | None = None) -> Any:
+    def _load_slow(self, p: Pointer, words: int, site: RuntimeSite, ctype: CType | None = None) -> Any:
         ctype = ctype or site.ctype
         self.examine(p, words, site, "read", ctype)
         obj = p.obj
@@ -462,7 +464,7 @@ class Runtime:
 
     def store(self, p: Pointer, words: int, value: Any, number: int) -> None:
         """`*(p + words) = value` as the type of the site."""
-        site = self.spots[number]
+        site = self.sites[number]
         obj = p.obj
         if obj is not None and not obj.readonly:
             found = obj.leaf(p.offset + words)
@@ -471,7 +473,7 @@ class Runtime:
                 return
         self._store(p, words, value, site)
 
-    def _store(self, p: Pointer, words: int, value: Any, site: Spot) -> None:
+    def _store(self, p: Pointer, words: int, value: Any, site: RuntimeSite) -> None:
         """Write something else than a plain scalar of the object that `p` was made from."""
         self.examine(p, words, site, "written")
         if p.obj is not None and not 0 <= p.offset + words < p.obj.words:
@@ -496,7 +498,7 @@ class Runtime:
             self.findings.muted = muted
 
     def examine(
-        self, p: Pointer, words: int, site: Spot, verb: str, ctype: CType | None = None
+        self, p: Pointer, words: int, site: RuntimeSite, verb: str, ctype: CType | None = None
     ) -> None:  # fmt: skip
         """Report an access through a pointer that is null, dangling, outside, read-only or odd."""
         ctype = ctype or site.ctype
@@ -524,7 +526,7 @@ class Runtime:
         if ctype.words == 2 and addr & 1:
             self.hit(site, "odd-access", f"{site.name}: a 32-bit access at odd address {addr:#x} uses {addr & ~1:#x}")
 
-    def _report_freed(self, site: Spot, block: HeapBlock, addr: int, verb: str) -> None:
+    def _report_freed(self, site: RuntimeSite, block: HeapBlock, addr: int, verb: str) -> None:
         """Report the use of a heap block after it was freed."""
         lies = self.memory.neighbour(addr)
         path = block.declaration.path
@@ -538,10 +540,10 @@ class Runtime:
         key = (function, verb, p.obj)
         site = self.readers.get(key)
         if site is None:
-            site = self.readers[key] = Spot(Site(NOWHERE, CHAR, f"what {function} is given"), 0)
+            site = self.readers[key] = RuntimeSite(Site(NOWHERE, CHAR, f"what {function} is given"), 0)
         self.examine(p, 0, site, verb)
 
-    def _report_null(self, site: Spot, addr: int, verb: str) -> None:
+    def _report_null(self, site: RuntimeSite, addr: int, verb: str) -> None:
         """Report the use of a null pointer.  Every such finding lists all users of that cell so far."""
         calls = self.findings.position.calls
         way = (site, calls and calls[0])
@@ -567,7 +569,7 @@ class Runtime:
             for finding in self.null_findings:
                 finding.details = (finding.details[0], f"null pointers that share this cell so far: {users}")
 
-    def _report_outside(self, site: Spot, p: Pointer, words: int, verb: str) -> None:
+    def _report_outside(self, site: RuntimeSite, p: Pointer, words: int, verb: str) -> None:
         """Report the use of a pointer outside of the object that it was made from."""
         obj = p.obj
         assert obj is not None
@@ -595,11 +597,11 @@ class Runtime:
                 return self.memory.load_through(p, words, ctype)
         return self._load_slow(p, words, self._library_site(p, ctype, reader))
 
-    def _library_site(self, p: Pointer, ctype: CType, function: str) -> Spot:
+    def _library_site(self, p: Pointer, ctype: CType, function: str) -> RuntimeSite:
         site = self.readers.get((function, p.obj, p.target))
         if site is None:
             name = p.obj.declaration.path if p.obj is not None else f"the argument of {function}"
-            site = self.readers[function, p.obj, p.target] = Spot(Site(NOWHERE, ctype, name), 0)
+            site = self.readers[function, p.obj, p.target] = RuntimeSite(Site(NOWHERE, ctype, name), 0)
         return site
 
     def read_scalar(self, p: Pointer) -> Any:
@@ -619,7 +621,7 @@ class Runtime:
 
     def copy_struct(self, target: Pointer, source: Pointer, words: int, number: int) -> None:
         """`*target = *source` for whole structures.  Scalars that were never written stay so."""
-        site = self.spots[number]
+        site = self.sites[number]
         for p, verb in ((source, "read"), (target, "written")):
             if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + words > p.obj.words:
                 self.examine(p, 0, site, verb)
@@ -633,7 +635,7 @@ class Runtime:
     def load_struct(self, p: Pointer, ctype: StructType, number: int) -> list[Any]:
         """The scalars of `*p`, a structure.  Scalars that were never written stay so."""
         if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + ctype.words > p.obj.words:
-            self.examine(p, 0, self.spots[number], "read")
+            self.examine(p, 0, self.sites[number], "read")
         if self._watcher is not None:
             self.touch_block(p, ctype.words, False)
         copy = Object(Declaration("copy", ctype, "", "", 0), 0)
@@ -644,7 +646,7 @@ class Runtime:
         """Store these scalars as the structure `*p`."""
         ctype = p.target
         if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + ctype.words > p.obj.words:
-            self.examine(p, 0, self.spots[number], "written")
+            self.examine(p, 0, self.sites[number], "written")
         if self._watcher is not None:
             self.touch_block(p, ctype.words, True)
         source = Object(Declaration("copy", ctype, "", "", 0), 0, values)
@@ -653,7 +655,7 @@ class Runtime:
     def load_bits(self, p: Pointer, words: int, lo: int, width: int, signed: bool, number: int) -> int:
         """Read a bit-field of the word (or pair of words) at `p + words`."""
         wide = ULONG if lo + width > 16 else UINT
-        site = self.spots[number]
+        site = self.sites[number]
         value = self._load_slow(p, words, site, wide) >> lo & (1 << width) - 1
         return int(value - (1 << width) if signed and value >> width - 1 else value)
 
@@ -661,7 +663,7 @@ class Runtime:
         """Write a bit-field; the other bits of its word do not change."""
         wide = ULONG if lo + width > 16 else UINT
         mask = (1 << width) - 1 << lo
-        self.examine(p, words, self.spots[number], "written", wide)
+        self.examine(p, words, self.sites[number], "written", wide)
         known = self.memory.load_through(p, words, wide)
         self.memory.store_through(p, words, wide, known & ~mask | value << lo & mask)
 
@@ -684,7 +686,7 @@ class Runtime:
         """The register at word `words` of the block that `p` points to."""
         found = self._register_at(p.addr + words)
         if found is None:
-            found = _BlockWord(self, p, words, ULONG if bits == 32 else UINT, self.spots[number])
+            found = _BlockWord(self, p, words, ULONG if bits == 32 else UINT, self.sites[number])
         return found
 
     def callable(self, function: Any, number: int) -> Any:
@@ -692,7 +694,7 @@ class Runtime:
         known = self.called_as.get((function, number))
         if known is not None:
             return known
-        site = self.spots[number]
+        site = self.sites[number]
         if callable(function):
             return self._called(function, site)
         if isinstance(function, Pointer) and any(low <= function.addr < high for low, high in ROM):
@@ -703,7 +705,7 @@ class Runtime:
         self.hit(site, "null-dereference", message)
         raise IllegalCall(message)
 
-    def _called(self, function: Any, site: Spot) -> Any:
+    def _called(self, function: Any, site: RuntimeSite) -> Any:
         """A function, adapted to the type through which it is called."""
         known, wanted = self.signatures.get(function), site.ctype
         assert isinstance(wanted, FunctionType)
@@ -810,7 +812,7 @@ class Runtime:
 
     def watched_store(self, p: Pointer, words: int, value: Any, number: int) -> None:
         """`store`, with a call of the watcher."""
-        site = self.spots[number]
+        site = self.sites[number]
         obj = p.obj
         if obj is not None:
             self.touch(obj, p.offset + words, True)
@@ -828,7 +830,7 @@ class Runtime:
 
     def overflow(self, value: int, number: int) -> int:
         """A signed result that does not fit its type: report it, and wrap it as the hardware does (OVM = 0)."""
-        site = self.spots[number]
+        site = self.sites[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         wrapped = ctype.wrap(value)
@@ -852,7 +854,7 @@ class Runtime:
 
         A difference of two variables that wraps to a small number gives no finding: elapsed counts are computed so.
         """
-        site = self.spots[number]
+        site = self.sites[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         result = ctype.wrap(value)
@@ -875,35 +877,35 @@ class Runtime:
 
     def stamps(self, a: int, op: str, b: int, number: int) -> bool:
         """Compare two stamps of a free-running counter directly; report it once the counter has wrapped."""
-        spot = self.spots[number]
-        ctype = spot.ctype
+        site = self.sites[number]
+        ctype = site.ctype
         assert isinstance(ctype, IntType)
         half = ctype.high // 2 + 1
         outcome = COMPARE[op](a, b)
-        if spot.kind == "equal, left":
+        if site.kind == "equal, left":
             a, b = b, a
         apart = (a - b + half) % (2 * half) - half
-        if spot.kind != "order":
+        if site.kind != "order":
             # By awaited stamp: whether it was still in the future at the previous test.
-            before = spot.ahead.get(b)
+            before = site.ahead.get(b)
             if before is not None and before < 0 < apart < half // 2:
-                message = f"{spot.name}: they were equal {apart} counts ago, between two tests"
-                self.hit(spot, "stamp-compare", f"{message}; the next time is {2 * half} counts later", a)
-            if len(spot.ahead) > _STAMPS:
-                spot.ahead.clear()
-            spot.ahead[b] = apart
+                message = f"{site.name}: they were equal {apart} counts ago, between two tests"
+                self.hit(site, "stamp-compare", f"{message}; the next time is {2 * half} counts later", a)
+            if len(site.ahead) > _STAMPS:
+                site.ahead.clear()
+            site.ahead[b] = apart
             return bool(outcome)
-        last_a, last_b = spot.last
-        spot.turned = spot.turned or last_a - a > half or last_b - b > half
-        spot.last = (a, b)
-        if spot.turned and outcome != COMPARE[op](apart, 0):
-            message = f"{spot.name}: {a} {op} {b} is {'true' if outcome else 'false'}, but the counter has wrapped"
-            self.hit(spot, "stamp-compare", f"{message} between the two, which are {apart} counts apart", a)
+        last_a, last_b = site.last
+        site.turned = site.turned or last_a - a > half or last_b - b > half
+        site.last = (a, b)
+        if site.turned and outcome != COMPARE[op](apart, 0):
+            message = f"{site.name}: {a} {op} {b} is {'true' if outcome else 'false'}, but the counter has wrapped"
+            self.hit(site, "stamp-compare", f"{message} between the two, which are {apart} counts apart", a)
         return bool(outcome)
 
     def past(self, value: int, number: int) -> int:
         """The signed time since a stamp is below 0: more than half of the counter's range has passed."""
-        site = self.spots[number]
+        site = self.sites[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         if value < ctype.low // 8:  # a smaller difference may be a stamp that an interrupt has just renewed
@@ -913,7 +915,7 @@ class Runtime:
 
     def narrowed(self, value: int, number: int) -> int:
         """A `long` that is converted to an `int` without a cast and does not fit."""
-        site = self.spots[number]
+        site = self.sites[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         kept = ctype.wrap(value)
@@ -923,14 +925,14 @@ class Runtime:
 
     def quantity(self, value: int, number: int) -> int:
         """A number that does not fit the register field to which it is written."""
-        site = self.spots[number]
+        site = self.sites[number]
         message = f"{site.text} holds 0 to {site.bound}: {site.name} is {value}, and arrives as {value & site.bound}"
         self.hit(site, "register-value", message, value)
         return value
 
     def sign_lost(self, value: int, number: int) -> int:
         """A negative number that is converted to unsigned."""
-        site = self.spots[number]
+        site = self.sites[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         taken = value & (1 << ctype.bits) - 1
@@ -940,7 +942,7 @@ class Runtime:
 
     def no_case(self, value: int, number: int) -> None:
         """A switch over an enumeration, without default, has no case for a value."""
-        site = self.spots[number]
+        site = self.sites[number]
         name = dict(site.constants).get(value)
         if name is not None:
             self.hit(site, "no-case", f"{site.name} is {name}, which has no case: {site.text}", value)
@@ -952,7 +954,7 @@ class Runtime:
 
     def octet(self, value: int, number: int) -> int:
         """A value that does not fit an octet is converted to a character, which has 16 bits here."""
-        site = self.spots[number]
+        site = self.sites[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         kept = ctype.wrap(value)
@@ -967,7 +969,7 @@ class Runtime:
 
     def quotient(self, a: int, b: int, number: int) -> int:
         """An integer quotient that is converted to float, or scaled, only after its remainder was lost."""
-        site = self.spots[number]
+        site = self.sites[number]
         result = self.divide_ints(a, b, number)
         if b and a % b:
             then = "is scaled" if site.widened == "scaled" else "is converted to float"
@@ -980,20 +982,20 @@ class Runtime:
     def float_result(self, a: float, b: float, result: float, number: int) -> float:
         """A NaN or an infinity as the result of an operation on finite floats: report it where it arises."""
         if isfinite(a) and isfinite(b):
-            site = self.spots[number]
+            site = self.sites[number]
             self.hit(site, "nan", f"{site.name} gives {result!r} for {a!r} and {b!r}", result)
         return result
 
     def float_out(self, value: float, number: int) -> float:
         """A float that goes to a file-scope object or to an external function: report a NaN or an infinity."""
-        site = self.spots[number]
+        site = self.sites[number]
         if not isfinite(value):
             self.not_finite(value, site, site.name)
         return value
 
     def float_to_int(self, value: float, number: int) -> int:
         """Truncate toward zero.  Outside of the range of the type, report it; the policy decides the result."""
-        site = self.spots[number]
+        site = self.sites[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         low, high = ctype.low, ctype.high
@@ -1006,32 +1008,32 @@ class Runtime:
 
     def float_argument(self, value: float, number: int) -> int:
         """A float that is passed for an integer parameter.  The largest one is kept for `finish`."""
-        spot = self.spots[number]
-        if abs(value) > abs(spot.greatest):
-            spot.greatest = value
+        site = self.sites[number]
+        if abs(value) > abs(site.greatest):
+            site.greatest = value
         return self.float_to_int(value, number)
 
     def finish(self) -> None:
         """At the end of a run, report calls where the largest float passed for an integer lost more than a tenth."""
-        for number, spot in list(self.spots.items()):
-            value = spot.greatest
+        for number, site in list(self.sites.items()):
+            value = site.greatest
             if 1 <= abs(value) < _FEW and abs(value - int(value)) > abs(value) / _FEW:
-                message = f"{spot.name} is passed for an integer: at most {value:g} came, of which {int(value)} arrives"
+                message = f"{site.name} is passed for an integer: at most {value:g} came, of which {int(value)} arrives"
                 place = self.findings.places[number]
                 self.findings.report_at(
-                    place, "float-argument", message, how="dynamic", object=spot.name, value=value
+                    place, "float-argument", message, how="dynamic", object=site.name, value=value
                 )  # fmt: skip
 
     def divide_floats(self, a: float, b: float, number: int) -> float:
         """Float division by the selected divider."""
-        site = self.spots[number]
+        site = self.sites[number]
         if b == 0.0:
             self.hit(site, "division-by-zero", f"{site.name}: {a!r} is divided by zero", a)
         return self.divide(a, b)
 
     def divide_ints(self, a: int, b: int, number: int) -> int:
         """Integer division.  By zero it does not trap (CHOICE: all ones, the result of the SUBCU loop)."""
-        site = self.spots[number]
+        site = self.sites[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         if b == 0:
@@ -1042,7 +1044,7 @@ class Runtime:
 
     def modulo_ints(self, a: int, b: int, number: int) -> int:
         """Remainder.  By zero it is the dividend (CHOICE)."""
-        site = self.spots[number]
+        site = self.sites[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         if b == 0:
@@ -1056,7 +1058,7 @@ class Runtime:
         CHOICE: the golden vectors of Read_Channel require 0 (`1 << 16`).  If the compiler uses the shift instructions,
         they take the lowest bits of the count, T(3:0) or T(4:0) (SPRU430 table 2-11).
         """
-        site = self.spots[number]
+        site = self.sites[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         if not 0 <= count < ctype.bits:
@@ -1073,7 +1075,7 @@ class Runtime:
 
     def poll(self, number: int, until: int) -> int:
         """A poll has no more events, or lasts too long: raise, or report it and return the next time limit."""
-        site = self.spots[number]
+        site = self.sites[number]
         clock = self.clock
         if self._in_vain(site.name):
             return clock.now + self.poll_limit
@@ -1097,7 +1099,7 @@ class Runtime:
         in slices of time also continues: the program runs it between its interrupts.  Elsewhere outside of tasks, the
         call would never return: raises EndlessPoll.
         """
-        site = self.spots[number]
+        site = self.sites[number]
         context = self.findings.context()
         if site.kind == "idle" and context == "main" and self._driven():
             return

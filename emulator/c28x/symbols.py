@@ -114,7 +114,7 @@ class Unmodelled:
 Symbol = Define | EnumType | Enumerator | CType | Variable | Function | RegisterBlock | CoreRegister | Unmodelled
 
 
-def _lasts(symbol: Symbol) -> bool:
+def _is_lasting(symbol: Symbol) -> bool:
     """Whether a translated program keeps a symbol: not a constant, nor something that is only declared."""
     match symbol:
         case Function(extern=extern):
@@ -157,7 +157,7 @@ class Module:
 
     def __getstate__(self) -> dict[str, Any]:
         """The state of a translated module: objects, functions and types, without what only the reader needs."""
-        lasting = {name: symbol for name, symbol in self.symbols.items() if _lasts(symbol)}
+        lasting = {name: symbol for name, symbol in self.symbols.items() if _is_lasting(symbol)}
         read: dict[str, Any] = {"own": [], "bodies": {}, "initialisers": {}, "remarks": [], "text": ""}
         return {**self.__dict__, "symbols": lasting, **read}
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 from typing import Final
 
 from emulator.clock import CYCLES_PER_MS, Clock
-from emulator.devices.report import DeviceReport, Silent
+from emulator.devices.report import DeviceReport, DiscardedReports
 
 SIZE: Final = 32768
 PAGE: Final = 64
@@ -46,7 +46,7 @@ class At24c256:
         if not 0 <= pins <= 7:
             raise ValueError(f"address pins {pins}: want A2, A1, A0 as a number 0..7")
         self._clock = clock
-        self._report: DeviceReport = report or Silent()
+        self._report: DeviceReport = report or DiscardedReports()
         self._cycle_cycles = round(write_cycle_ms * CYCLES_PER_MS)
         self.address = ADDRESS | pins
         self.write_protect = 0
@@ -63,10 +63,10 @@ class At24c256:
     @property
     def memory(self) -> bytearray:
         """The content of the device now."""
-        self._settle()
+        self._finish_write()
         return self._memory
 
-    def _settle(self) -> None:
+    def _finish_write(self) -> None:
         if self._writing and not self.busy:
             for place, byte in self._writing.items():
                 self._memory[place] = byte
@@ -112,7 +112,7 @@ class At24c256:
     def stop(self) -> None:
         """A STOP: write the data of the message."""
         if self._latches and not self.write_protect:
-            self._settle()
+            self._finish_write()
             self._writing, self._cycle_end = self._latches, self._clock.now + self._cycle_cycles
             beyond = self._first % PAGE + self._sent - PAGE
             if beyond > 0:

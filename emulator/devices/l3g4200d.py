@@ -27,7 +27,7 @@ from emulator.devices.l3g4200d_output import OutputRegisters
 from emulator.devices.l3g4200d_readings import TURN_ON_CYCLES, GyroReadings
 from emulator.devices.l3g4200d_signal import Digits, GyroUnit, SignalPath
 from emulator.devices.l3g4200d_spi import GREATEST_CLOCK_HZ, SpiFrame
-from emulator.devices.report import DeviceReport, Mark, Silent
+from emulator.devices.report import DeviceReport, DiscardedReports, Mark
 from emulator.signals import Wire
 
 #: CHOICE: duration of BOOT, from ST's example for a register-identical part.
@@ -79,7 +79,7 @@ class L3G4200D:
         self.rate_source = rate_source or (lambda _cycles: _STILL)
         self.int1 = int1 or Wire("L3G4200D.INT1")
         self.drdy = drdy or Wire("L3G4200D.DRDY")
-        self.report: DeviceReport = report or Silent()
+        self.report: DeviceReport = report or DiscardedReports()
         self.readings = GyroReadings(clock, self.report, mark or tuple)
         #: Axis of an idle output that the present transaction has read, -1 for none.
         self.idle_axis = -1
@@ -199,7 +199,7 @@ class L3G4200D:
             if self.clock.now >= self._next_sample:
                 self._catch_up()
             if self._bypassed or self.idle_axis >= 0 or self._idle_axes >> (address - OUT_X_L >> 1) & 1:
-                self._doubt(address - OUT_X_L >> 1)
+                self._check_use(address - OUT_X_L >> 1)
             byte = self.outputs.read(address, self.registers[CTRL_REG4])
             if self._pins_in_use:
                 self._update_pins()
@@ -212,7 +212,7 @@ class L3G4200D:
             return 0
         return self.registers[address]
 
-    def _doubt(self, axis: int) -> None:
+    def _check_use(self, axis: int) -> None:
         """Report the read of an output that is never filled, or that an enabled FIFO in bypass mode does not feed."""
         if self._bypassed:
             self._bypassed = False

@@ -78,7 +78,7 @@ class GyroReadings:
             self._again(a, now)
         a.at = now
         if a.reads >= WINDOW:
-            self._weigh(a, now)
+            self._check_window(a, now)
 
     def _again(self, a: _Axis, now: int) -> None:
         a.run += 1
@@ -110,7 +110,7 @@ class GyroReadings:
         rate = f"a sample lasts {self.period / CYCLES_PER_MS:.2f} ms" if self.period else "it takes no samples now"
         return f"{a.run} reads of L3G4200D.{a.name} in {spent_ms:.2f} ms gave 1 sample, no. {a.number}: {rate}"
 
-    def _weigh(self, a: _Axis, now: int) -> None:
+    def _check_window(self, a: _Axis, now: int) -> None:
         """The window is full: judge it."""
         if a.pause:
             a.pause -= 1

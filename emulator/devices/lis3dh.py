@@ -23,7 +23,7 @@ from typing import ClassVar, Final
 
 from emulator.clock import SYSCLK_HZ, Clock, Event
 from emulator.devices.l3g4200d_spi import GREATEST_CLOCK_HZ, SpiFrame
-from emulator.devices.report import DeviceReport, Silent
+from emulator.devices.report import DeviceReport, DiscardedReports
 
 WHO_AM_I: Final = 0x0F
 CTRL_REG0: Final = 0x1E
@@ -104,7 +104,7 @@ class Lis3dh:
         self._clock = clock
         self._rng = rng
         self._ideal = ideal
-        self._report: DeviceReport = report or Silent()
+        self._report: DeviceReport = report or DiscardedReports()
         self.motion_source = motion_source or _at_rest
         self.offset_g = [0.0 if ideal else rng.uniform(-OFFSET_G, OFFSET_G) for _ in range(3)]
         self._rate = 1.0 if ideal else 1.0 + rng.uniform(-ODR_SPREAD, ODR_SPREAD)

@@ -85,13 +85,13 @@ class SonarAir:
                 continue
             if cycles < other.listening_until:
                 self._carry(source, other, cycles)
-            if other.readings and cycles - other.last_ping_cycles < other.lasts(CROSS_TALK_CYCLES):
+            if other.readings and cycles - other.last_ping_cycles < other.scaled(CROSS_TALK_CYCLES):
                 self._carry(other, source, other.last_ping_cycles)
 
     def _carry(self, source: LvMaxSonar, listener: LvMaxSonar, cycles: int) -> None:
         path_m = self.cross_source(source.name, listener.name, cycles)
         if path_m is not None:
-            listener.hear(cycles + listener.lasts(path_m / listener.sound_m_s * SYSCLK_HZ))
+            listener.receive_ping(cycles + listener.scaled(path_m / listener.sound_m_s * SYSCLK_HZ))
 
 
 class LvMaxSonar:
@@ -142,7 +142,7 @@ class LvMaxSonar:
         self._period_factor = period_factor
         #: The factor by which its times, in cycles, are longer than they should be.
         self._longer = 1.0
-        self.cycle_cycles = self.lasts(CYCLE_CYCLES * period_factor)
+        self.cycle_cycles = self.scaled(CYCLE_CYCLES * period_factor)
         self.bw_high = bw_high
         #: The reading of the latest ping in inches (0 before the first), its time, and the number of readings.
         self.last_reading_in = 0
@@ -207,10 +207,10 @@ class LvMaxSonar:
     def set_second(self, cycles: float) -> None:
         """Set the length of a second of its own oscillator, from the next ranging cycle on."""
         self._longer = cycles / SYSCLK_HZ
-        self.cycle_cycles = self.lasts(CYCLE_CYCLES * self._period_factor)
+        self.cycle_cycles = self.scaled(CYCLE_CYCLES * self._period_factor)
         self.held.rise_tau = RISE_TAU * self._longer
 
-    def lasts(self, cycles: float) -> int:
+    def scaled(self, cycles: float) -> int:
         """The true length of a time of its own that should last `cycles`."""
         return round(cycles * self._longer)
 
@@ -227,19 +227,19 @@ class LvMaxSonar:
         self._blind_in = None
         self.held.move(0.0, self.clock.now, self.clock.now, finish=True)
         # A read is not reported as one before the first measurement: the sensor had measured before.
-        self.held.tell(None)
+        self.held.set_conversion_callback(None)
         self._lower_tx()
         self._lower_pw()
         if on:
-            self._next = self.clock.after(self.lasts(POWER_UP_CYCLES), self._powered_up)
+            self._next = self.clock.after(self.scaled(POWER_UP_CYCLES), self._powered_up)
 
-    def hear(self, cycles: int) -> None:
+    def receive_ping(self, cycles: int) -> None:
         """Another sensor's sound arrives at `cycles`.  Before the sensor's own echo, it gives a phantom range."""
         flight = cycles - self.last_ping_cycles
         if flight > 0 and cycles < self.listening_until:
             phantom = self._inches(flight / self._longer / PER_INCH_CYCLES)
             if phantom < self.last_reading_in:
-                self._settle(phantom, cycles)
+                self._finish_range(phantom, cycles)
 
     # Start
 
@@ -254,7 +254,7 @@ class LvMaxSonar:
             self.clock.cancel(self._start)
             self._start = None
         elif self._ready and not self._busy and self._start is None:
-            self._start = self.clock.after(self.lasts(START_PULSE_CYCLES), self._begin)
+            self._start = self.clock.after(self.scaled(START_PULSE_CYCLES), self._begin)
 
     def _begin(self) -> None:
         self._start = None
@@ -268,7 +268,7 @@ class LvMaxSonar:
     def _calibration_done(self) -> None:
         self._calibrated = True
         if self._watch is not None:
-            self.held.tell(self._watch.converted)
+            self.held.set_conversion_callback(self._watch.converted)
         echo = None if self.ideal else self.range_source(self.name, self.clock.now)
         # CHOICE: "may be ignored" is one chance in two.
         if echo is not None and echo.range_m / INCH_M < CALIBRATION_CLEAR_IN and self._rng.random() < 0.5:
@@ -280,7 +280,7 @@ class LvMaxSonar:
     def _range(self) -> None:
         now = self.clock.now
         echo = self.range_source(self.name, now)
-        while echo is not None and not self._heard(echo):
+        while echo is not None and not self._is_detected(echo):
             echo = echo.behind
         flight_in = math.inf if echo is None else 2.0 * echo.range_m / self.sound_m_s / 147e-6
         reading = self._inches(flight_in)
@@ -288,18 +288,20 @@ class LvMaxSonar:
         self.ping_interval = now - self.last_ping_cycles if self.readings else 0
         self.last_ping_cycles = now
         self.readings += 1
-        listen = self.lasts(LISTEN_CYCLES)
+        listen = self.scaled(LISTEN_CYCLES)
         self.listening_until = now + listen
         if self._pw is not None:
             self._pw.drive(self.name, 1)
-        self._settle(reading, now + (listen if reading == NOTHING_IN else self.lasts(flight_in * PER_INCH_CYCLES)))
+        self._finish_range(
+            reading, now + (listen if reading == NOTHING_IN else self.scaled(flight_in * PER_INCH_CYCLES))
+        )
         self.air.ping(self, now)
         self._next = self.clock.schedule(now + self.cycle_cycles, self._cycle_done)
         if self._serial is not None and not self.bw_high:
             # CHOICE: the five characters end with the cycle (5.2 ms; the sheet speaks of the last 4.7 ms).
             self.clock.schedule(now + self.cycle_cycles - round(50 * SYSCLK_HZ / _BAUD), self._send_serial)
 
-    def _heard(self, echo: Echo) -> bool:
+    def _is_detected(self, echo: Echo) -> bool:
         if self._blind_in is not None and abs(math.floor(echo.range_m / INCH_M) - self._blind_in) <= 1:
             return False
         if self.ideal:
@@ -318,13 +320,13 @@ class LvMaxSonar:
             return NOTHING_IN
         return max(FLOOR_IN, inches)
 
-    def _settle(self, reading_in: int, echo: int) -> None:
+    def _finish_range(self, reading_in: int, echo: int) -> None:
         """The result of this cycle is known at `echo`: the analog value begins to move, and PW falls."""
         self.last_reading_in = reading_in
         self.held.move(
             reading_in * self.vcc_v / 512.0,
             echo,
-            self.last_ping_cycles + self.lasts(SLEW_END_CYCLES),
+            self.last_ping_cycles + self.scaled(SLEW_END_CYCLES),
             finish=reading_in == self._previous_in,
         )
         if self._watch is not None:
@@ -348,7 +350,7 @@ class LvMaxSonar:
             self._busy = False
         if self.tx is not None and self.bw_high:
             self.tx.drive(self.name, 1)
-            self._tx_fall = self.clock.after(self.lasts(TX_PULSE_CYCLES), self._lower_tx)
+            self._tx_fall = self.clock.after(self.scaled(TX_PULSE_CYCLES), self._lower_tx)
 
     def _lower_tx(self) -> None:
         if self.tx is not None:

@@ -57,7 +57,7 @@ class HeldVoltage:
         self._converted = converted
         self._quiet_until = 0
 
-    def tell(self, converted: Callable[[HeldVoltage, int, float], int] | None) -> None:
+    def set_conversion_callback(self, converted: Callable[[HeldVoltage, int, float], int] | None) -> None:
         """Set the function that is called at conversions from now on."""
         self._converted = converted
         self._calm_from = self._calm_until = self._quiet_until = 0

@@ -27,7 +27,7 @@ NEITHER_IN: Final = 2.0
 PAUSE: Final = 15
 
 
-class Ranging(Protocol):
+class MeasuringSonar(Protocol):
     """The properties of the sensor that are used here."""
 
     name: str
@@ -48,7 +48,7 @@ class SonarReadings:
         "_counting", "_mark", "_mark_then", "_pause", "_report", "_sensor", "_slew_told", "_times",
     )  # fmt: skip
 
-    def __init__(self, sensor: Ranging, report: DeviceReport, mark: Callable[[], Mark]) -> None:
+    def __init__(self, sensor: MeasuringSonar, report: DeviceReport, mark: Callable[[], Mark]) -> None:
         self._sensor, self._report, self._mark = sensor, report, mark
         #: The number of ranges whose readings need not be counted.
         self._pause = 0

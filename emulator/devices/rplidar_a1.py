@@ -25,7 +25,7 @@ from math import inf, tau
 from typing import Final
 
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ, Clock, Event
-from emulator.devices.report import DeviceReport, Silent
+from emulator.devices.report import DeviceReport, DiscardedReports
 from emulator.devices.serial_pacing import LinePacer, received
 from emulator.signals import SerialFrame, SerialLine
 
@@ -90,7 +90,7 @@ class RplidarA1:
         self._clock = clock
         self._rng = rng
         self._ideal = ideal
-        self._report: DeviceReport = report or Silent()
+        self._report: DeviceReport = report or DiscardedReports()
         self.distance_source = distance_source or _nothing
         turns_hz = TURNS_HZ if ideal else TURNS_HZ * (1.0 + rng.uniform(-MOTOR_SPREAD, MOTOR_SPREAD))
         self.turn_cycles = round(SYSCLK_HZ / turns_hz)
@@ -156,9 +156,9 @@ class RplidarA1:
                 self.discarded += 1
                 return
         request.clear()
-        self._obey(command)
+        self._execute(command)
 
-    def _obey(self, command: int) -> None:
+    def _execute(self, command: int) -> None:
         now = self._clock.now
         if command in (STOP, RESET):
             self._stop_scan()

@@ -86,7 +86,7 @@ class XBeeModule:
     @property
     def bytes_from_host(self) -> int:
         """The number of bytes from the host that have not reached the other module."""
-        return len(self._di) + self._command.held + self.air.flying(self)
+        return len(self._di) + self._command.waiting + self.air.flying(self)
 
     @property
     def bytes_to_host(self) -> int:

@@ -60,7 +60,7 @@ class CommandMode:
         self._live = live
         self._host = host
         self._report = report
-        self._held = 0
+        self._waiting = 0
         self._guard: Event | None = None
         self._timeout: Event | None = None
         # CHOICE: the line was silent before power-on.
@@ -68,9 +68,9 @@ class CommandMode:
         self._line = bytearray()
 
     @property
-    def held(self) -> int:
+    def waiting(self) -> int:
         """Command characters that wait for their guard time."""
-        return self._held
+        return self._waiting
 
     def character(self, byte: int, start: int, end: int) -> bool:
         """Take a character from the host.  Returns True if it is not data, or not yet known to be."""
@@ -80,8 +80,8 @@ class CommandMode:
         if self.active:
             self._collect(byte)
             return True
-        if byte == self._live["CC"] and (silent if not self._held else self._held < 3):
-            self._held += 1
+        if byte == self._live["CC"] and (silent if not self._waiting else self._waiting < 3):
+            self._waiting += 1
             self._clock.cancel(self._guard)
             self._guard = self._clock.schedule(end + guard, self._guard_over)
             return True
@@ -102,16 +102,16 @@ class CommandMode:
         self._clock.cancel(self._guard)
         self._clock.cancel(self._timeout)
         self._guard = self._timeout = None
-        self._held = 0
+        self._waiting = 0
         self.active = False
         self._line.clear()
 
     def _guard_over(self) -> None:
         self._guard = None
-        if self._held < 3:
+        if self._waiting < 3:
             self._release()
             return
-        self._held = 0
+        self._waiting = 0
         self.active = True
         self._host.command_entered()
         self._host.reply(b"OK\r")
@@ -119,11 +119,11 @@ class CommandMode:
 
     def _release(self) -> None:
         """CHOICE: command characters are held back until the guard times decide.  Without a command they are data."""
-        if self._held:
+        if self._waiting:
             self._clock.cancel(self._guard)
             self._guard = None
-            held, self._held = self._held, 0
-            self._host.command_data(bytes((self._live["CC"],)) * held)
+            waiting, self._waiting = self._waiting, 0
+            self._host.command_data(bytes((self._live["CC"],)) * waiting)
 
     def _restart_timeout(self) -> None:
         """CHOICE: any character restarts CT."""

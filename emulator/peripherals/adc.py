@@ -59,7 +59,6 @@ class Adc:
         "_acqps_min",
         "_adcint1",
         "_at_end",
-        "_attended",
         "_awaited",
         "_begun",
         "_by_hardware",
@@ -70,10 +69,10 @@ class Adc:
         "_converter",
         "_ctl1",
         "_ctl2",
-        "_dead",
         "_eoc_is_plain",
         "_epoch",
         "_event",
+        "_extra_work_socs",
         "_findings",
         "_flag_at",
         "_flags_then",
@@ -85,7 +84,6 @@ class Adc:
         "_intovf",
         "_intsel12",
         "_intsel34",
-        "_killers",
         "_last_soc",
         "_latch",
         "_latch_at",
@@ -98,7 +96,6 @@ class Adc:
         "_noise_lsb",
         "_notes_collisions",
         "_obeyed",
-        "_obeys",
         "_overflows_then",
         "_plain_from",
         "_position",
@@ -117,8 +114,11 @@ class Adc:
         "_socsel2",
         "_span_v",
         "_start",
+        "_stopped_by_fault",
+        "_stopping_faults",
         "_sync_cycles",
         "_t_eoc",
+        "_trigger_changed",
         "_unlatched",
         "_vreflo_v",
         "conversions",
@@ -131,7 +131,7 @@ class Adc:
                  sync_cycles: int = 2, any_write_resets_pointer: bool = False, flag_collision: Collision = "cleared",
                  left_by: Callable[[int], Place | None] = lambda n: None,
                  awaited: Callable[[int], bool] = lambda n: True,
-                 obeys: Callable[[int, bool], None] = lambda _trigsel, _on: None) -> None:  # fmt: skip
+                 trigger_changed: Callable[[int, bool], None] = lambda _trigsel, _on: None) -> None:  # fmt: skip
         """Raises ValueError for wrong numbers of pins or interrupts, a reference that is not positive, bad noise.
 
         CHOICE, as the manual is silent: `vrefhi_v` 3.0 V on the LaunchPad; `sync_cycles` from trigger to window;
@@ -141,7 +141,7 @@ class Adc:
         charged a block of statements at a time, so that one cycle of its time means little).
         `left_by(n)` returns where the routine of ADCINT(n+1) is in the source, if it has run since the last pulse.
         `awaited(n)` tells whether anything uses that interrupt.
-        `obeys(trigsel, on)` is called when that hardware trigger begins (or ceases) to start conversions here.
+        `trigger_changed(trigsel, on)` is called when that hardware trigger begins (or ceases) to start conversions.
         """
         if len(interrupts) != 4:
             raise ValueError(f"{regs.name}: {len(interrupts)} interrupts: want the 4 pulses ADCINT1..4")
@@ -149,7 +149,7 @@ class Adc:
         self._regs, self._result_regs = regs, results
         registers = regs.registers
         #: ADCINT1 to 4 and ADCxEVT, for listeners besides the PIE.
-        self.pulsed: tuple[Signal[[]], ...] = tuple(Signal(partial(self._heard, n)) for n in range(5))
+        self.pulsed: tuple[Signal[[]], ...] = tuple(Signal(partial(self._listener_changed, n)) for n in range(5))
         self._interrupts = (*interrupts, event)
         #: The function that a pulse calls: the PIE's input itself, as long as nothing else listens.
         self._pulses, self._adcint1 = list(self._interrupts), interrupts[0]
@@ -171,9 +171,9 @@ class Adc:
         self._vreflo_v, self._span_v = converter.vreflo_v, converter.span_v
         self._noise_lsb, self._noise = converter.noise_lsb, converter.noise
         self._sync_cycles = sync_cycles
-        self._dead = False
-        self._killers = 0
-        self._obeys = obeys
+        self._stopped_by_fault = False
+        self._stopping_faults = 0
+        self._trigger_changed = trigger_changed
         #: The hardware triggers that start a conversion.
         self._obeyed: frozenset[int] = frozenset()
         #: Conversions ended since the object was made.
@@ -223,7 +223,7 @@ class Adc:
         self._socs.reset()
         self._ppb.reset()
         self._begun = 0  # SOCs that have begun a conversion
-        self._attended = 0xFFFF  # SOCs of which more is to be done when they begin: see `_attend`
+        self._extra_work_socs = 0xFFFF  # SOCs of which more is to be done when they begin: see `_extra_work`
         self._soc = self._last_soc = self._socs.every[0]
         self._start = self._sample = 0
         self._code: int | None = None  # sampled by an early pulse, not ended yet
@@ -244,45 +244,45 @@ class Adc:
         self._converter.force_codes(codes)
         self._configure()
 
-    def spoil(self, by: Callable[[int, int, int], int]) -> Callable[[], None]:
+    def inject_fault(self, by: Callable[[int, int, int], int]) -> Callable[[], None]:
         """Inject a fault: each code becomes `by(soc, channel, code)`.  Returns a function that ends the fault."""
-        self._converter.spoil(by)
+        self._converter.inject_fault(by)
         self._configure()
-        return partial(self._mend, by)
+        return partial(self._remove_fault, by)
 
-    def _mend(self, by: Callable[[int, int, int], int]) -> None:
-        self._converter.unspoil(by)
+    def _remove_fault(self, by: Callable[[int, int, int], int]) -> None:
+        self._converter.remove_fault(by)
         self._configure()
 
-    def kill(self) -> Callable[[], None]:
-        """Make the converter `dead` until the returned function is called; after several calls, all of them."""
-        self._killers += 1
-        self.dead = True
+    def stop_converting(self) -> Callable[[], None]:
+        """Stop the converter until the returned function is called; after several calls, all of theirs."""
+        self._stopping_faults += 1
+        self.stopped_by_fault = True
 
-        def mend() -> None:
-            self._killers -= 1
-            self.dead = self._killers > 0
+        def resume() -> None:
+            self._stopping_faults -= 1
+            self.stopped_by_fault = self._stopping_faults > 0
 
-        return mend
+        return resume
 
     @property
-    def dead(self) -> bool:
+    def stopped_by_fault(self) -> bool:
         """Whether the converter is broken: SOCs stay pending and no conversion ends.  Afterwards the SOCs go on."""
-        return self._dead
+        return self._stopped_by_fault
 
-    @dead.setter
-    def dead(self, dead: bool) -> None:
-        if dead == self._dead:
+    @stopped_by_fault.setter
+    def stopped_by_fault(self, stopped_by_fault: bool) -> None:
+        if stopped_by_fault == self._stopped_by_fault:
             return
-        self._dead = dead
-        if dead and self._event is not None:
+        self._stopped_by_fault = stopped_by_fault
+        if stopped_by_fault and self._event is not None:
             self._clock.cancel(self._event)
             self._event = self._code = None
             self._socs.give_back(self._soc)
             self._configure()
             return
         self._configure()
-        if not dead and self._socs.pending and self._frozen_at is None:
+        if not stopped_by_fault and self._socs.pending and self._frozen_at is None:
             self._begin(self._clock.now + self._sync_cycles)
 
     # --- triggers ------------------------------------------------------------------------------------------------
@@ -303,7 +303,7 @@ class Adc:
         watched = socs & self._ppb.watched
         if watched:
             self._ppb.requested(watched, self._read_ADCCOUNTER())
-            self._attended |= watched
+            self._extra_work_socs |= watched
         self._request(socs)
 
     def set_clock(self, on: bool) -> None:
@@ -330,7 +330,7 @@ class Adc:
         """Set pending flags and let the arbiter look."""
         if self._event is None:
             self._socs.add(socs)
-            if self._dead:
+            if self._stopped_by_fault:
                 self._still_latching()
             else:
                 self._begin(self._clock.now + self._sync_cycles)
@@ -349,9 +349,9 @@ class Adc:
         soc = self._socs.choose()
         n = soc.n
         if soc.window <= self._acqps_min or start < self._ready_at:
-            self._doubt(n, soc.window - 1, start >= self._ready_at)
-        if self._attended >> n & 1:
-            self._attend(n, start)
+            self._check_use(n, soc.window - 1, start >= self._ready_at)
+        if self._extra_work_socs >> n & 1:
+            self._extra_work(n, start)
         self._last_soc = self._soc
         self._soc = soc
         self._sel_then = self._intsel12.value
@@ -363,7 +363,7 @@ class Adc:
         else:
             self._event = self._clock.schedule(sample + 1, self._early)
 
-    def _attend(self, n: int, start: int) -> None:
+    def _extra_work(self, n: int, start: int) -> None:
         """Extra work when SOC `n` begins: its first conversion, or the delay stamp of its hardware trigger."""
         soc = 1 << n
         if not self._begun & soc:
@@ -373,9 +373,9 @@ class Adc:
         if soc & self._by_hardware & self._ppb.watched:
             self._ppb.begins(n, start - self._epoch & 0xFFF)
         else:
-            self._attended &= ~soc
+            self._extra_work_socs &= ~soc
 
-    def _doubt(self, n: int, acqps: int, powered: bool) -> None:
+    def _check_use(self, n: int, acqps: int, powered: bool) -> None:
         """Report doubts about a conversion at the statement that forced it.
 
         A hardware trigger has no statement.  Then the place is the write to ADCSOCxCTL.
@@ -384,7 +384,7 @@ class Adc:
         by_hardware = self._by_hardware >> n & 1
         findings.cause = self._socs.settings.get(n) if by_hardware else self._cause
         try:
-            self._converter.doubt(findings, n, acqps, powered)
+            self._converter.check_use(findings, n, acqps, powered)
         finally:
             findings.cause = None
 
@@ -458,9 +458,9 @@ class Adc:
         self._socs.configure()
         before, self._obeyed = self._obeyed, self._socs.obeyed()
         for trigsel in sorted(before ^ self._obeyed):
-            self._obeys(trigsel, trigsel in self._obeyed)
+            self._trigger_changed(trigsel, trigsel in self._obeyed)
         self._single = {}
-        if self._late and not self._dead:
+        if self._late and not self._stopped_by_fault:
             for soc in self._socs.every[self._socs.high :]:
                 if soc.window > self._acqps_min and self._begun >> soc.n & 1:
                     self._single[1 << soc.n] = soc
@@ -489,9 +489,9 @@ class Adc:
         for listener in self.pulsed[n].listeners:
             listener()
 
-    def _heard(self, n: int, heard: bool) -> None:
-        """A first listener besides the PIE connects to a pulse (`heard`), or the last one has gone."""
-        self._pulses[n] = partial(self._pulse, n) if heard else self._interrupts[n]
+    def _listener_changed(self, n: int, listened: bool) -> None:
+        """A first listener besides the PIE connects to a pulse (`listened`), or the last one has gone."""
+        self._pulses[n] = partial(self._pulse, n) if listened else self._interrupts[n]
         self._adcint1 = self._pulses[0]
 
     def _source_changed(self, soc: int, then: int, now: int) -> None:

@@ -90,17 +90,17 @@ class Converter:
         """Determine whether a code is just the scaled voltage of one pin plus noise."""
         self.plain = self._forced is None and not self.differential and not self._faults
 
-    def spoil(self, by: Callable[[int, int, int], int]) -> None:
+    def inject_fault(self, by: Callable[[int, int, int], int]) -> None:
         """Replace each code by `by(soc, channel, code)` from now on, after the faults that are active already."""
         self._faults = (*self._faults, by)
         self._simplify()
 
-    def unspoil(self, by: Callable[[int, int, int], int]) -> None:
-        """Remove a fault that `spoil` has added."""
+    def remove_fault(self, by: Callable[[int, int, int], int]) -> None:
+        """Remove a fault that `inject_fault` has added."""
         self._faults = tuple(each for each in self._faults if each is not by)
         self._simplify()
 
-    def doubt(self, findings: Findings, soc: int, acqps: int, powered: bool) -> None:
+    def check_use(self, findings: Findings, soc: int, acqps: int, powered: bool) -> None:
         """Report errors that spoil the conversion that begins and that no chip detects."""
         name, ctl2 = f"{self.name}.ADCSOC{soc}CTL", f"{self.name}.ADCCTL2"
         bits16 = bool(self._ctl2 & 0x40)
@@ -138,12 +138,12 @@ class Converter:
 
     def code(self, soc: int, channel: int, cycles: int, powered: bool) -> int:
         """The code of `channel` as it stood at `cycles`."""
-        code = self._sound(soc, channel, cycles, powered)
-        for spoil in self._faults:
-            code = spoil(soc, channel, code)
+        code = self._fault_free_code(soc, channel, cycles, powered)
+        for inject_fault in self._faults:
+            code = inject_fault(soc, channel, code)
         return code
 
-    def _sound(self, soc: int, channel: int, cycles: int, powered: bool) -> int:
+    def _fault_free_code(self, soc: int, channel: int, cycles: int, powered: bool) -> int:
         """The code of a converter without injected faults."""
         if self._forced is not None:
             return self._forced(soc) & 0xFFFF

@@ -105,15 +105,15 @@ class Can:
     """One controller over its registers, at a port of the chip and on a bus.
 
     `clock_cycles()` are the cycles of the module's bit clock, 0 if it has none; `lines` are interrupts 0 and 1, and
-    `held(line)` is called for one that its global flag keeps back.
+    `on_blocked(line)` is called for one that its global flag keeps back.
     """
 
     def __init__(
         self, clock: Clock, cpu: Cpu, regs: CanRegs, port: CanPort, bus: CanBus, lines: tuple[Callable[[], None], ...],
-        *, clock_cycles: Callable[[], int], held: Callable[[int], None],
+        *, clock_cycles: Callable[[], int], on_blocked: Callable[[int], None],
     ) -> None:  # fmt: skip
         self._clock, self._findings, self._regs, self._port = clock, cpu.findings, regs, port
-        self._lines, self._clock_cycles, self._held = lines, clock_cycles, held
+        self._lines, self._clock_cycles, self._on_blocked = lines, clock_cycles, on_blocked
         registers = regs.registers
         self._ctl, self._es, self._errc = registers["CAN_CTL"], registers["CAN_ES"], registers["CAN_ERRC"]
         self._int, self._test, self._btr = registers["CAN_INT"], registers["CAN_TEST"], registers["CAN_BTR"]
@@ -142,7 +142,7 @@ class Can:
         self._commanded = {1: -NEVER, 2: -NEVER}
         self._recovery: Event | None = None
         self._recovered = 0
-        self._bus_on: Event | None = None
+        self._bus_on_event: Event | None = None
         self._ram_event: Event | None = None
         self._bind()
         port.changed.connect(self._settle)
@@ -194,15 +194,15 @@ class Can:
             self._clock.cancel(event)
             self._transfers[n] = None
         self._clock.cancel(self._recovery)
-        self._clock.cancel(self._bus_on)
-        self._recovery = self._bus_on = None
+        self._clock.cancel(self._bus_on_event)
+        self._recovery = self._bus_on_event = None
         self._regs.reset()
         for name, value in kept.items():
             self._regs.registers[name].value = value
         self._tec = self._rec = self._next_update = 0
         self._status_pending = False
         self._settle()
-        self._tell()
+        self._update_lines()
 
     # --- the bus -----------------------------------------------------------------------------------------------------
 
@@ -213,7 +213,7 @@ class Can:
     def _settle(self) -> None:
         """Join the bus that pins, test mode and Init select, or leave the bus."""
         active = self._on and not self._ctl.value & INIT and self._clock_cycles() > 0
-        outside = self._port.connected and not self.hears_itself
+        outside = self._port.connected and not self.in_loopback
         at = None if not active else self._bus if outside else self._inside
         if at is self._at:
             return
@@ -228,7 +228,7 @@ class Can:
                 self._joined_at = self._clock.now + IDLE_BITS * self.bit_cycles
             at.attach(self)
 
-    def _ask(self) -> None:
+    def _request_bus(self) -> None:
         """Request the bus: there may be a frame to send."""
         if self._at is not None and self.ram.next_request():
             self._at.request()
@@ -252,22 +252,22 @@ class Can:
         return not self._mode() & SILENT
 
     @property
-    def hears_itself(self) -> bool:
+    def in_loopback(self) -> bool:
         """In both kinds of loopback."""
         return bool(self._mode() & (LBACK | EXL))
 
     @property
-    def unheard(self) -> bool:
+    def unconnected(self) -> bool:
         """Without pins and without loopback."""
-        return self._at is self._inside and not self.hears_itself
+        return self._at is self._inside and not self.in_loopback
 
-    def joined(self, now: int) -> bool:
+    def follows_bus(self, now: int) -> bool:
         """Whether eleven recessive bits have passed since Init was cleared."""
         return self._joined_at <= now
 
-    def sends_from(self) -> int:
+    def earliest_start(self) -> int:
         """As soon as it takes part, if an object waits; never in silent mode."""
-        if self._joined_at == NEVER or (self._mode() & SILENT and not self.hears_itself) or not self.ram.next_request():
+        if self._joined_at == NEVER or (self._mode() & SILENT and not self.in_loopback) or not self.ram.next_request():
             return NEVER
         return max(self._joined_at, self._suspended_until)
 
@@ -279,7 +279,7 @@ class Can:
             sending.control &= ~TXRQST
         elif sending.arbitration & DIR:
             sending.control &= ~NEWDAT
-        if self.unheard:
+        if self.unconnected:
             self._findings.report(
                 "not-configured", f"{self._port.missing}: the frame does not reach the bus", object=self._port.name
             )
@@ -303,9 +303,9 @@ class Can:
             each.control &= ~TXRQST
         if each.control & TXIE:
             each.control |= INTPND
-        self._note(0, TXOK)
-        if self.hears_itself and not self._mode() & SILENT and self._port.connected and self._offered is not None:
-            self._bus.witness(self._offered)
+        self._record_result(0, TXOK)
+        if self.in_loopback and not self._mode() & SILENT and self._port.connected and self._offered is not None:
+            self._bus.report_loopback(self._offered)
 
     def received(self, frame: CanFrame) -> None:
         """A frame has arrived.  Store it in the object that accepts it, if there is one."""
@@ -314,12 +314,12 @@ class Can:
         elif self._rec:
             self._rec -= 1
         number = self.ram.receive(frame)
-        if not number and self.hears_itself and not frame.remote:
+        if not number and self.in_loopback and not frame.remote:
             self.passed_by += 1
         if number and self._updates.value >> number - 1 & 1:
             self._update(number)
-        self._note(0, RXOK)
-        self._ask()
+        self._record_result(0, RXOK)
+        self._request_bus()
 
     def failed(self, error: CanError, sending: bool) -> None:
         """An error frame."""
@@ -334,11 +334,11 @@ class Can:
                 bits = INTERMISSION_BITS + SUSPEND_BITS
                 at = self._at.free_at if self._at is not None else 0
                 self._suspended_until = at + (bits - INTERMISSION_BITS) * self.bit_cycles
-        self._note(error, 0)
+        self._record_result(error, 0)
         if self._tec >= BUS_OFF:
-            self._go_off()
+            self._bus_off()
 
-    def _note(self, lec: int, ok: int) -> None:
+    def _record_result(self, lec: int, ok: int) -> None:
         """Last error code, flags and counters after a frame, with their interrupts."""
         before = self._es.value
         counted = self._tec, self._rec
@@ -350,10 +350,10 @@ class Can:
         ctl = self._ctl.value
         if ctl & SIE or (ctl & EIE and (before ^ self._es.value) & (BOFF | EWARN)):
             self._status_pending = True
-        self._tell()
+        self._update_lines()
         for line, enable in enumerate((IE0, IE1)):
             if self._flags.value >> line & 1 and ctl & enable and self._int.value >> 16 * line & 0xFFFF:
-                self._held(line)
+                self._on_blocked(line)
 
     def _show_counters(self) -> None:
         passive = 1 << 15 if self._rec >= PASSIVE else 0
@@ -361,16 +361,16 @@ class Can:
 
     # --- bus-off -----------------------------------------------------------------------------------------------------
 
-    def _go_off(self) -> None:
+    def _bus_off(self) -> None:
         """The hardware sets Init; with ABO it clears it again after CAN_ABOTR clocks."""
         self._ctl.value |= INIT
         self._settle()
         if self._ctl.value & ABO:
             cycles = self._regs.registers["CAN_ABOTR"].value * max(1, self._clock_cycles())
-            self._bus_on = self._clock.after(max(1, cycles), self._come_back)
+            self._bus_on_event = self._clock.after(max(1, cycles), self._leave_bus_off)
 
-    def _come_back(self) -> None:
-        self._bus_on = None
+    def _leave_bus_off(self) -> None:
+        self._bus_on_event = None
         self._ctl.value &= ~INIT
         self._settle()
 
@@ -385,17 +385,17 @@ class Can:
             return
         self._recovered += 1
         if self._recovered < RECOVERY:
-            self._note(CanError.BIT0, 0)
+            self._record_result(CanError.BIT0, 0)
             self._recover()
             return
         self._tec = self._rec = 0
         self._joined_at = self._clock.now
-        self._note(CanError.BIT0, 0)
-        self._ask()
+        self._record_result(CanError.BIT0, 0)
+        self._request_bus()
 
     # --- interrupts --------------------------------------------------------------------------------------------------
 
-    def _tell(self) -> None:
+    def _update_lines(self) -> None:
         """Update CAN_INT and the interrupt lines."""
         pending, second = self.ram.flags(INTPND), self._mux.value
         ids = [_first(pending & ~second), _first(pending & second)]
@@ -413,20 +413,20 @@ class Can:
         self._es.value = word & ~(TXOK | RXOK) | NO_EVENT
         if self._status_pending:
             self._status_pending = False
-            self._tell()
+            self._update_lines()
         return word
 
     def _write_CAN_GLB_INT_EN(self, word: int, lanes: int = ALL) -> None:
         self._enables.store(word, lanes)
-        self._tell()
+        self._update_lines()
 
     def _write_CAN_GLB_INT_CLR(self, word: int, lanes: int = ALL) -> None:
         self._flags.value &= ~(word & lanes)
-        self._tell()
+        self._update_lines()
 
     def _write_CAN_IP_MUX21(self, word: int, lanes: int = ALL) -> None:
         self._mux.store(word, lanes)
-        self._tell()
+        self._update_lines()
 
     @staticmethod
     def _groups(flags: Callable[[], int]) -> int:
@@ -442,10 +442,10 @@ class Can:
             self._reset()
             return
         if not self._ctl.value & INIT:
-            self._clock.cancel(self._bus_on)
-            self._bus_on = None
+            self._clock.cancel(self._bus_on_event)
+            self._bus_on_event = None
         self._settle()
-        self._tell()
+        self._update_lines()
 
     def _write_CAN_BTR(self, word: int, lanes: int = ALL) -> None:
         if self._ctl.value & (INIT | CCE) == INIT | CCE:
@@ -478,7 +478,7 @@ class Can:
         self._ram_event = None
         self.ram.clear()
         self._ram_init.value = RAM_DONE | IDLE_KEY
-        self._tell()
+        self._update_lines()
 
     # --- IF1 and IF2 -------------------------------------------------------------------------------------------------
 
@@ -568,8 +568,8 @@ class Can:
                 each.control &= ~INTPND
             if word & REQUEST:
                 each.control &= ~NEWDAT
-        self._tell()
-        self._ask()
+        self._update_lines()
+        self._request_bus()
 
     # --- IF3 ---------------------------------------------------------------------------------------------------------
 

@@ -51,7 +51,7 @@ _TRIP_OUT: Final = COMPCTL.CTRIPOUTHSEL.lo
 _ASYNCHRONOUS: Final = COMPCTL.ASYNCHEN.mask
 
 
-class Half:
+class ComparatorChannel:
     """The high or the low comparator: its level before inversion, its filter and latch, its two outputs."""
 
     __slots__ = ("filter", "letter", "limit_v", "raw", "shift", "trip", "trip_out")
@@ -101,7 +101,7 @@ class Cmpss:
         self._sync_listen, self._epwms = sync_listen, epwms
         self.look_cycles = look_cycles
         self._control = regs.registers["COMPCTL"]
-        self.high, self.low = Half(f"CMPSS{number}", "H"), Half(f"CMPSS{number}", "L")
+        self.high, self.low = ComparatorChannel(f"CMPSS{number}", "H"), ComparatorChannel(f"CMPSS{number}", "L")
         self._both = (self.high, self.low)
         self._ramp = Ramp()
         self._event: Event | None = None
@@ -165,13 +165,13 @@ class Cmpss:
     def _reference_v(self) -> float:
         return self._references_v[bool(self._regs.registers["COMPDACCTL"].value & COMPDACCTL.SELREF.mask)]
 
-    def _code(self, half: Half, cycles: int) -> int:
+    def _code(self, half: ComparatorChannel, cycles: int) -> int:
         """The code of a comparator's DAC."""
         if half is self.high and self._on_ramp:
             return self._ramp.code(cycles)
         return self._regs.registers[f"DAC{half.letter}VALA"].value
 
-    def _limit(self, half: Half, cycles: int) -> float:
+    def _limit(self, half: ComparatorChannel, cycles: int) -> float:
         """The voltage above which a comparator is high before its inversion."""
         if self._control.value >> half.shift & _SOURCE:
             negative_v = self._negative.volts(cycles)
@@ -319,7 +319,7 @@ class Cmpss:
             self._ramp.stand(self._regs.registers["RAMPMAXREFA"].value)
         self._choose_sync()
 
-    def _write_filter(self, half: Half, name: str, word: int) -> None:
+    def _write_filter(self, half: ComparatorChannel, name: str, word: int) -> None:
         digital, value = half.filter, self._regs.registers[name].value
         if name.endswith("FILCLKCTL"):
             digital.set_period(self._clock.now, value + 1)

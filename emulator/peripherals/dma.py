@@ -28,7 +28,7 @@ from typing import Final
 from emulator.c28x.findings import Cause, Findings
 from emulator.clock import Clock, Event, event_callback, event_time
 from emulator.cpu import Cpu
-from emulator.peripherals.dma_doubts import CAUSES, Region, TransferDoubts
+from emulator.peripherals.dma_checks import CAUSES, Region, TransferChecks
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
 from emulator.registers.dma import DmaClaSrcSelRegs, DmaRegs
@@ -99,7 +99,7 @@ def signed16(word: int) -> int:
 class _Channel:
     """One channel: its registers by name, and the word that it is moving."""
 
-    __slots__ = ("cause", "doubts", "interrupt", "n", "name", "registers", "stopping", "word")
+    __slots__ = ("cause", "checks", "interrupt", "n", "name", "registers", "stopping", "word")
 
     def __init__(
         self, n: int, regs: DmaRegs, interrupt: Callable[[], None], findings: Findings,
@@ -116,7 +116,7 @@ class _Channel:
         self.stopping = False
         #: The statement that switched the channel on.
         self.cause: Cause | None = None
-        self.doubts = TransferDoubts(f"{regs.name}.{self.name}", self.registers, findings, region)
+        self.checks = TransferChecks(f"{regs.name}.{self.name}", self.registers, findings, region)
 
     def value(self, name: str) -> int:
         """The stored word of a register."""
@@ -135,14 +135,14 @@ class Dma:
     `region(address)` returns the object that the linker has placed there.  `bridges()` returns SECMSEL.  `interrupts`
     are the six pulses to the PIE.  `listen(sources)` is called with the numbers of all triggers that some channel waits
     for, whenever this set changes.  From then on, `trigger` must be called for their events, and `level` for their
-    levels; `stands(source)` tells whether a level is active.  `known` are the numbers of all triggers that exist here.
+    levels; `level_is_active(source)` tells whether a level is active.  `known` are the numbers of all triggers here.
     """
 
     def __init__(
         self, clock: Clock, cpu: Cpu, regs: DmaRegs, select: DmaClaSrcSelRegs, interrupts: Sequence[Callable[[], None]],
         *, read: Callable[[int, int], int], write: Callable[[int, int, int], None],
         region: Callable[[int], Region | None],
-        bridges: Callable[[], int], listen: Callable[[frozenset[int]], None], stands: Callable[[int], bool],
+        bridges: Callable[[], int], listen: Callable[[frozenset[int]], None], level_is_active: Callable[[int], bool],
         known: Container[int],
     ) -> None:  # fmt: skip
         """Raises ValueError for a wrong number of interrupts."""
@@ -150,15 +150,15 @@ class Dma:
             raise ValueError(f"{regs.name}: {len(interrupts)} interrupts: want the 6 pulses of the channels")
         self._clock, self._cpu, self._regs, self._select = clock, cpu, regs, select
         self._bus_read, self._bus_write, self._region = read, write, region
-        self._bridges, self._listen, self._stands, self._known = bridges, listen, stands, known
+        self._bridges, self._listen, self._level_is_active, self._known = bridges, listen, level_is_active, known
         self._names = source_names()
         self._channels = tuple(
             _Channel(n, regs, pulse, cpu.findings, region) for n, pulse in enumerate(interrupts, 1)
         )  # fmt: skip
         #: Channels that move words now and were triggered only by the program.
-        self.moving: list[TransferDoubts] = []
+        self.moving: list[TransferChecks] = []
         #: Trigger -> the channels that wait for it.
-        self._heard: dict[int, list[_Channel]] = {}
+        self._channels_of_source: dict[int, list[_Channel]] = {}
         self._status, self._priority = regs.registers["PRIORITYSTAT"], regs.registers["PRIORITYCTRL1"]
         self._locks = select.registers["DMACHSRCSELLOCK"]
         regs.bind("DMACTRL", write=self._write_DMACTRL)
@@ -166,7 +166,7 @@ class Dma:
             regs.bind(f"{channel.name}.MODE", write=partial(self._write_MODE, channel))
             regs.bind(f"{channel.name}.CONTROL", write=partial(self._write_CONTROL, channel))
             for name in CAUSES:
-                regs.bind(f"{channel.name}.{name}", write=partial(channel.doubts.write, name))
+                regs.bind(f"{channel.name}.{name}", write=partial(channel.checks.write, name))
         for n in (1, 2):
             select.bind(f"DMACHSRCSEL{n}", write=partial(self._write_DMACHSRCSEL, n))
         self._event: Event | None = None
@@ -187,7 +187,7 @@ class Dma:
         self._round_ends = False
         self.moving.clear()
         for channel in self._channels:
-            channel.stopping, channel.cause, channel.doubts.moving = False, None, None
+            channel.stopping, channel.cause, channel.checks.moving = False, None, None
         self._configure()
 
     def set_clock(self, on: bool) -> None:
@@ -207,13 +207,13 @@ class Dma:
     @property
     def objects(self) -> dict[str, Cause | None]:
         """The objects that transfers began in, each with the statement that gave its address."""
-        return {name: cause for channel in self._channels for name, cause in channel.doubts.used.items()}
+        return {name: cause for channel in self._channels for name, cause in channel.checks.used.items()}
 
     # --- triggers ----------------------------------------------------------------------------------------------------
 
     def trigger(self, source: int) -> None:
         """Trigger `source` (its number in DMACHSRCSEL) has come."""
-        for channel in self._heard.get(source, ()) if self._clocked else ():
+        for channel in self._channels_of_source.get(source, ()) if self._clocked else ():
             control = channel.registers["CONTROL"]
             if control.value & PERINTFLG:
                 self._overflow(channel, control)
@@ -222,7 +222,7 @@ class Dma:
 
     def level(self, source: int) -> None:
         """The level of trigger `source` is active.  A channel with a burst under way reads it again after the burst."""
-        for channel in self._heard.get(source, ()) if self._clocked else ():
+        for channel in self._channels_of_source.get(source, ()) if self._clocked else ():
             control = channel.registers["CONTROL"]
             if not control.value & BURSTSTS:
                 control.value |= PERINTFLG
@@ -249,15 +249,15 @@ class Dma:
 
     def _configure(self) -> None:
         """Follow the registers that assign triggers to channels."""
-        heard: dict[int, list[_Channel]] = {}
+        channels_of_source: dict[int, list[_Channel]] = {}
         for channel in self._channels:
             source = self._source(channel)
             if source:
-                heard.setdefault(source, []).append(channel)
-        changed = heard.keys() != self._heard.keys()
-        self._heard = heard
+                channels_of_source.setdefault(source, []).append(channel)
+        changed = channels_of_source.keys() != self._channels_of_source.keys()
+        self._channels_of_source = channels_of_source
         if changed:
-            self._listen(frozenset(heard))
+            self._listen(frozenset(channels_of_source))
 
     # --- arbitration -------------------------------------------------------------------------------------------------
 
@@ -317,9 +317,9 @@ class Dma:
                     registers[f"{side}_{address}_ACTIVE"].value = value(f"{side}_{address}_SHADOW")
             if value("MODE") & (CHINTE | CHINTMODE) == CHINTE:
                 channel.interrupt()
-        channel.doubts.begins(2 if value("MODE") & DATASIZE else 1, alone=not self._source(channel))
-        if channel.doubts.moving and channel.doubts not in self.moving:
-            self.moving.append(channel.doubts)
+        channel.checks.begins(2 if value("MODE") & DATASIZE else 1, alone=not self._source(channel))
+        if channel.checks.moving and channel.checks not in self.moving:
+            self.moving.append(channel.checks)
 
     def _state(self) -> None:
         """Set PRIORITYSTAT: the channel that has the bus, and the channel that channel 1 took it from."""
@@ -397,7 +397,7 @@ class Dma:
             if mode & (CHINTE | CHINTMODE) == CHINTE | CHINTMODE:
                 channel.interrupt()
         source = self._source(channel)
-        if source and self._stands(source):
+        if source and self._level_is_active(source):
             control.value |= PERINTFLG
         if mode & ONESHOT and control.value & TRANSFERSTS and control.value & RUNSTS:
             if self._interrupted(channel):
@@ -415,9 +415,9 @@ class Dma:
 
     def _release(self) -> None:
         """The bus is free."""
-        if self._active is not None and self._active.doubts.moving:
-            self._active.doubts.moving = None
-            self.moving.remove(self._active.doubts)
+        if self._active is not None and self._active.checks.moving:
+            self._active.checks.moving = None
+            self.moving.remove(self._active.checks)
         self._active = None
         if self._round_ends and self._held is None:
             self._round_ends, self._last = False, 0
@@ -431,7 +431,7 @@ class Dma:
         findings.cause = channel.cause
         try:
             why = self._unreachable(address)
-            if channel.doubts.beyond(side, address):
+            if channel.checks.beyond(side, address):
                 if why:
                     return 0
             elif why:
@@ -469,9 +469,9 @@ class Dma:
 
     def _write_MODE(self, channel: _Channel, word: int, lanes: int = ALL) -> None:
         channel.registers["MODE"].store(word, lanes)
-        channel.doubts.configured()
+        channel.checks.configured()
         self._configure()
-        self._look(channel)
+        self._check_level(channel)
 
     def _write_DMACHSRCSEL(self, n: int, word: int, lanes: int = ALL) -> None:
         register = self._select.registers[f"DMACHSRCSEL{n}"]
@@ -484,12 +484,12 @@ class Dma:
         register.store(word, lanes)
         self._configure()
         for channel in self._channels:
-            self._look(channel)
+            self._check_level(channel)
 
-    def _look(self, channel: _Channel) -> None:
+    def _check_level(self, channel: _Channel) -> None:
         """Trigger a channel that begins to wait for a level, if the level is active already."""
         source = self._source(channel)
-        if source and self._clocked and self._stands(source) and not channel.value("CONTROL") & BURSTSTS:
+        if source and self._clocked and self._level_is_active(source) and not channel.value("CONTROL") & BURSTSTS:
             channel.registers["CONTROL"].value |= PERINTFLG
             self._serve()
 
@@ -518,7 +518,7 @@ class Dma:
                     "not-configured", f"{path} = 0: the channel takes no trigger, not even one by PERINTFRC",
                     object=path,
                 )  # fmt: skip
-        self._look(channel)
+        self._check_level(channel)
         self._serve()
 
     def _stop(self, channel: _Channel) -> None:
@@ -531,9 +531,9 @@ class Dma:
     def _run(self, channel: _Channel, control: Cell, *, alone: bool) -> None:
         """RUN is set, `alone` without a trigger in the same write."""
         states = RUNSTS | TRANSFERSTS | BURSTSTS | PERINTFLG
-        stands = control.value & states == RUNSTS | TRANSFERSTS
-        if alone and stands and not self._source(channel) and not channel.value("MODE") & ONESHOT:
-            channel.doubts.started_again(channel.value("TRANSFER_COUNT") + 1)
+        waiting = control.value & states == RUNSTS | TRANSFERSTS
+        if alone and waiting and not self._source(channel) and not channel.value("MODE") & ONESHOT:
+            channel.checks.started_again(channel.value("TRANSFER_COUNT") + 1)
         if control.value & BURSTSTS:
             channel.stopping = False
         channel.cause = self._cpu.findings.mark()

@@ -54,23 +54,44 @@ class ECap:
     """One eCAP module.
 
     `interrupt` is pulsed on the module's PIE line.  `listen(on)` is called when the module begins (or ceases) to need
-    the edges of its input.  `sync_out` is pulsed for the next module of the chain.  `held` is called for an enabled
-    event that ECFLG.INT holds back.
+    the edges of its input.  `sync_out` is pulsed for the next module of the chain.  `on_blocked` is called for an
+    enabled event that ECFLG.INT holds back.
     """
 
     __slots__ = (
-        "_armed", "_caps", "_clock", "_control1", "_control2", "_counter", "_divided", "_edges_polled", "_enabled",
-        "_event", "_findings", "_flags", "_held", "_interrupt", "_listen", "_listening", "_next", "_next_look",
-        "_polled", "_regs", "_rises", "_shadows", "_since", "_sync_out",
+        "_armed",
+        "_caps",
+        "_clock",
+        "_control1",
+        "_control2",
+        "_counter",
+        "_divided",
+        "_edges_polled",
+        "_enabled",
+        "_event",
+        "_findings",
+        "_flags",
+        "_interrupt",
+        "_listen",
+        "_listening",
+        "_next",
+        "_next_check",
+        "_on_blocked",
+        "_polled",
+        "_regs",
+        "_rises",
+        "_shadows",
+        "_since",
+        "_sync_out",
         "output",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: ECapRegs, interrupt: Callable[[], None], *,
                  listen: Callable[[bool], None] = lambda _on: None,
                  sync_out: Callable[[], None] = lambda: None,
-                 held: Callable[[], object] = lambda: None) -> None:  # fmt: skip
+                 on_blocked: Callable[[], object] = lambda: None) -> None:  # fmt: skip
         self._clock, self._findings, self._regs = clock, cpu.findings, regs
-        self._interrupt, self._listen, self._sync_out, self._held = interrupt, listen, sync_out, held
+        self._interrupt, self._listen, self._sync_out, self._on_blocked = interrupt, listen, sync_out, on_blocked
         registers = regs.registers
         self._counter = registers["TSCTR"]
         self._caps = [registers[f"CAP{n}"] for n in range(1, 5)]
@@ -78,7 +99,7 @@ class ECap:
         self._enabled, self._flags = registers["ECEINT"], registers["ECFLG"]
         self._listening = False
         self._event: Event | None = None
-        self._next_look: Event | None = None
+        self._next_check: Event | None = None
         #: ECAPn.OUT
         self.output = ApwmOutput(self._output_level, self._plan)
         self.reset()
@@ -95,8 +116,8 @@ class ECap:
 
     def reset(self) -> None:
         """Module reset (power-on or SOFTPRES3): every register and all internal state."""
-        self._clock.cancel(self._next_look)
-        self._next_look = None
+        self._clock.cancel(self._next_check)
+        self._next_check = None
         self._regs.reset()
         #: TSCTR and the flags of counting are up to date for this cycle.
         self._since = self._clock.now
@@ -225,11 +246,11 @@ class ECap:
         """Schedule an event at the counter's next flag or edge that is waited for, or earlier on the way to it."""
         self._clock.cancel(self._event)
         self._event = None
-        if self.output.heard:
-            self.output.tell()
+        if self.output.has_listeners:
+            self.output.report_level()
         if self._event is None and self._runs:  # a listener may have written to the module
             ticks = self._until_flag()
-            if self.output.heard and self._apwm:
+            if self.output.has_listeners and self._apwm:
                 edge = self._until_edge()
                 ticks = edge if ticks == 0 else min(ticks, edge or ticks)
             if ticks:
@@ -289,13 +310,13 @@ class ECap:
 
     def _read_TSCTR(self) -> int:
         self._catch_up()
-        if self._next_look is None and self._runs:
+        if self._next_check is None and self._runs:
             # A poll of the counter goes on a cycle later.
-            self._next_look = self._clock.after(1, self._look_again)
+            self._next_check = self._clock.after(1, self._check_again)
         return self._counter.value
 
-    def _look_again(self) -> None:
-        self._next_look = None
+    def _check_again(self) -> None:
+        self._next_check = None
 
     def _write_TSCTR(self, word: int, lanes: int = ALL) -> None:
         self._catch_up()
@@ -351,7 +372,7 @@ class ECap:
 
     def _raise(self, flags: int) -> None:
         if self._flags.value & _INT and flags & self._enabled.value:
-            self._held()
+            self._on_blocked()
         self._flags.value |= flags
         self._gate()
 

@@ -25,9 +25,9 @@ from collections.abc import Callable, Mapping
 from emulator.clock import Clock, Event, event_time
 from emulator.cpu import Cpu
 from emulator.peripherals.epwm_action_qualifier import Phases, act, event_phases
+from emulator.peripherals.epwm_checks import CompareBeyondPeriod, EPwmChecks
 from emulator.peripherals.epwm_dead_band import SWITCHES
 from emulator.peripherals.epwm_digital_compare import DigitalCompare
-from emulator.peripherals.epwm_doubts import Beyond, EPwmDoubts
 from emulator.peripherals.epwm_event_trigger import EventTrigger
 from emulator.peripherals.epwm_outputs import EpwmOutputs, Output
 from emulator.peripherals.epwm_shadow import AT_PERIOD, AT_ZERO, LOAD_POINTS, Shadow
@@ -51,15 +51,15 @@ class EPwm:
     `interrupt` is pulsed on the module's PIE line of group 3, `trip_interrupt` on that of group 2; `soc_a` and `soc_b`
     are pulsed towards the ADC.  Call `trip_input` with the level of TZn.  `trip_listen(n, on)` is called when the
     module begins (or ceases) to need TZn; answer with a call of `trip_input`.  `tripin` and `tripin_listen` are the
-    same for TRIPINn.  `held()` is called for an event that gives no interrupt because ETFLG.INT is set.
+    same for TRIPINn.  `on_blocked()` is called for an event that gives no interrupt because ETFLG.INT is set.
     `epwmclk_divider()` is SYSCLK / EPWMCLK (CLKCFG.PERCLKDIVSEL): call `clock_changed` when it changes.
     CHOICE: `stopped_loads`: a counter that stands at 0 while TBCLK runs loads what waits for 0, one TBCLK later.  So
     TI's example, which sets up period and compare before it starts the counter, has its first SOC where it says.
     """
 
     __slots__ = (
-        "_cmpa", "_cmpb", "_csfrc", "_dbctl", "_dbfed", "_dbred", "_digital_compare", "_divider", "_doubts",
-        "_load_event", "_load_points", "_next_look", "_on_path", "_outputs", "_prd", "_shadows", "_stopped_loads",
+        "_checks", "_cmpa", "_cmpb", "_csfrc", "_dbctl", "_dbfed", "_dbred", "_digital_compare", "_divider",
+        "_load_event", "_load_points", "_next_check", "_on_path", "_outputs", "_prd", "_shadows", "_stopped_loads",
         "_sync_pulse", "_tbclksync", "_time_base", "_triggers", "_trip_zone", "clock", "cpu", "number", "regs",
     )  # fmt: skip
 
@@ -68,7 +68,7 @@ class EPwm:
                  trip_interrupt: Callable[[], None] = lambda: None, trip_held: Callable[[], object] = lambda: None,
                  trip_listen: Callable[[int, bool], None] = lambda _n, _on: None,
                  tripin_listen: Callable[[int, bool], None] = lambda _n, _on: None,
-                 held: Callable[[], object] = lambda: None, epwmclk_divider: Callable[[], int] = lambda: 2,
+                 on_blocked: Callable[[], object] = lambda: None, epwmclk_divider: Callable[[], int] = lambda: 2,
                  stopped_loads: bool = True) -> None:  # fmt: skip
         self.clock = clock
         self.cpu = cpu
@@ -77,11 +77,11 @@ class EPwm:
         self._divider = epwmclk_divider
         self._tbclksync = False
         self._load_event: Event | None = None
-        self._next_look: Event | None = None
+        self._next_check: Event | None = None
         self._load_points = 0
         self._stopped_loads = stopped_loads
         self._time_base = TimeBase(clock)
-        self._doubts = EPwmDoubts(clock, cpu, regs)
+        self._checks = EPwmChecks(clock, cpu, regs)
         registers = regs.registers
         self._prd = Shadow(registers["TBPRD"])
         self._cmpa = Shadow(registers["CMPA"], shift=16)
@@ -97,16 +97,16 @@ class EPwm:
         )
         self._trip_zone = TripZone(
             clock, regs, self._refresh, trip_interrupt, self._next_point, trip_listen, trip_held,
-            self._doubts.old_trip,
+            self._checks.old_trip,
         )  # fmt: skip
         self._outputs = EpwmOutputs(
             clock, self._time_base,
             Output(0, output_a, control_a, AQCSFRC.CSFA), Output(1, output_b, control_b, AQCSFRC.CSFB),
             compare=(self._cmpa, self._cmpb), csfrc=self._csfrc, dead_band=(self._dbctl, self._dbred, self._dbfed),
-            trip_zone=self._trip_zone, settled=self._look,
+            trip_zone=self._trip_zone, settled=self._update_outputs,
         )  # fmt: skip
         self._triggers = EventTrigger(
-            clock, regs, self._time_base, self._phases, interrupt, held, soc_a, soc_b
+            clock, regs, self._time_base, self._phases, interrupt, on_blocked, soc_a, soc_b
         )  # fmt: skip
         #: Functions to call when the path of the counter changes, while they are needed.
         self._on_path: list[Callable[[], None]] = []
@@ -137,10 +137,10 @@ class EPwm:
     def reset(self) -> None:
         """Module reset (power-on or SOFTPRES2).  TBCLKSYNC and the clock gate belong to the system and stay."""
         self.clock.cancel(self._load_event)
-        self.clock.cancel(self._next_look)
-        self._load_event = self._next_look = None
+        self.clock.cancel(self._next_check)
+        self._load_event = self._next_check = None
         self._triggers.reset()
-        self._doubts.reset()
+        self._checks.reset()
         self.regs.reset()
         self._time_base.reset()
         self._time_base.change(tick=self._tick())
@@ -198,7 +198,7 @@ class EPwm:
 
     def levels(self) -> tuple[int, int]:
         """The levels of outputs A and B at this cycle (high impedance counts as 0)."""
-        self._look()
+        self._update_outputs()
         a, b = [self._outputs.level(output) or 0 for output in self._outputs.both]
         return a, b
 
@@ -220,7 +220,7 @@ class EPwm:
     def _settle(self, before_this_tick: bool = False) -> None:
         self._outputs.settle(before_this_tick)
 
-    def _look(self) -> None:
+    def _update_outputs(self) -> None:
         """Bring the outputs up to now.  The result does not depend on the order of the events of this cycle."""
         if self._load_event is not None and event_time(self._load_event) == self.clock.now:
             self.clock.cancel(self._load_event)
@@ -237,10 +237,10 @@ class EPwm:
         for follow in self._on_path:
             follow()
         self._outputs.reschedule()
-        self._outputs.tell()
+        self._outputs.report_levels()
 
     def _refresh(self) -> None:
-        self._look()
+        self._update_outputs()
         self._rearrange()
 
     # -- shadow registers ----------------------------------------------------------------------------------------
@@ -255,11 +255,11 @@ class EPwm:
                 return
             if full is not None:
                 period = max(self._prd.register.value, self._prd.active)
-                self._doubts.compared(register.name, register.value >> 16, period)
+                self._checks.compared(register.name, register.value >> 16, period)
             elif shadow is self._prd:
-                self._doubts.period_written()
+                self._checks.period_written()
             if full is not None and (not self._time_base.running or not self._prd.register.value or self._unseen):
-                self._doubt(shadow)
+                self._check_use(shadow)
             if shadow.immediate:
                 self._settle()
                 shadow.load()
@@ -284,9 +284,9 @@ class EPwm:
         return None
 
     @property
-    def above(self) -> Mapping[str, Beyond]:
+    def above(self) -> Mapping[str, CompareBeyondPeriod]:
         """Compare register -> its first value above the period."""
-        return self._doubts.above
+        return self._checks.above
 
     @property
     def unpaired(self) -> PwmWire | None:
@@ -298,8 +298,8 @@ class EPwm:
             return None
         return a if a.missing else b
 
-    def _doubt(self, compare: Shadow) -> None:
-        self._doubts.duty(
+    def _check_use(self, compare: Shadow) -> None:
+        self._checks.duty(
             compare.register.name, stopped=not self._time_base.running, tbclksync=self._tbclksync, unseen=self._unseen
         )
 
@@ -391,11 +391,11 @@ class EPwm:
 
     def _mark_next_tick(self) -> None:
         """Schedule an event at the next TBCLK, where a poll of the counter goes on."""
-        if self._next_look is None and self._time_base.running:
-            self._next_look = self.clock.schedule(self._time_base.next_tick(), self._look_again)
+        if self._next_check is None and self._time_base.running:
+            self._next_check = self.clock.schedule(self._time_base.next_tick(), self._check_again)
 
-    def _look_again(self) -> None:
-        self._next_look = None
+    def _check_again(self) -> None:
+        self._next_check = None
 
     def _read_TBSTS(self) -> int:
         self._mark_next_tick()

@@ -58,9 +58,26 @@ class DigitalCompare:
     """
 
     __slots__ = (
-        "_choosing", "_clock", "_close_event", "_close_time", "_filter", "_findings", "_follow", "_heard", "_high",
-        "_listen", "_next_point", "_offset_event", "_offset_time", "_point_event", "_regs", "_soc", "_sync",
-        "_time_base", "_trip_zone", "_window",
+        "_choosing",
+        "_clock",
+        "_close_event",
+        "_close_time",
+        "_filter",
+        "_findings",
+        "_follow",
+        "_high",
+        "_listen",
+        "_listened_inputs",
+        "_next_point",
+        "_offset_event",
+        "_offset_time",
+        "_point_event",
+        "_regs",
+        "_soc",
+        "_sync",
+        "_time_base",
+        "_trip_zone",
+        "_window",
     )  # fmt: skip
 
     def __init__(
@@ -74,7 +91,7 @@ class DigitalCompare:
         self._soc, self._sync, self._follow = soc, sync, follow
         self._filter = regs.registers["DCFCTL"]
         #: Trip inputs that are high, and those that the module listens to (bits).
-        self._high = self._heard = 0
+        self._high = self._listened_inputs = 0
         #: Whether the levels of newly needed inputs are being read, one by one.
         self._choosing = False
         #: Whether the blanking window is open.
@@ -162,7 +179,7 @@ class DigitalCompare:
                 wanted |= self._inputs(first)
             if condition in (3, 4, 5):
                 wanted |= self._inputs(first + 1)
-        before, self._heard = self._heard, wanted
+        before, self._listened_inputs = self._listened_inputs, wanted
         self._high &= wanted
         self._choosing = True
         for n in range(1, 16):
@@ -228,9 +245,9 @@ class DigitalCompare:
         register = self._regs.registers[name]
         register.store(word, lanes)
         if name == "DCTRIPSEL":
-            self._doubt_choices(register.path, register.value)
+            self._check_choices(register.path, register.value)
         if name in ("DCFCTL", "DCACTL", "DCBCTL"):
-            self._doubt_filter()
+            self._check_filter()
             self._end_blanking()
             self._follow(self.reschedule, self._blanks)
             if self._blanks:
@@ -238,7 +255,7 @@ class DigitalCompare:
         self._choose()
         self._evaluate()
 
-    def _doubt_choices(self, path: str, value: int) -> None:
+    def _check_choices(self, path: str, value: int) -> None:
         for signal, name in enumerate(SIGNALS):
             if value >> 4 * signal & 0xF == _RESERVED:
                 self._findings.report(
@@ -246,7 +263,7 @@ class DigitalCompare:
                     object=f"{path}.{name}COMPSEL", value=_RESERVED,
                 )  # fmt: skip
 
-    def _doubt_filter(self) -> None:
+    def _check_filter(self) -> None:
         path = f"{self._filter.path}.PULSESEL"
         if self._blanks and not _POINTS[(self._filter.value & DCFCTL.PULSESEL.mask) >> DCFCTL.PULSESEL.lo]:
             self._findings.report(

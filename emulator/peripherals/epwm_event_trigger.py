@@ -54,14 +54,15 @@ class _Trigger:
 class EventTrigger:
     """ETSEL, ETPS, ETFLG and their companions.  `phases()` gives the counter's events as they are now."""
 
-    __slots__ = ("_clock", "_flags", "_held", "_interrupt", "_phases", "_regs", "_time_base", "_triggers")
+    __slots__ = ("_clock", "_flags", "_interrupt", "_on_blocked", "_phases", "_regs", "_time_base", "_triggers")
 
     def __init__(self, clock: Clock, regs: EPwmRegs, time_base: TimeBase,
                  phases: Callable[[], dict[str, Phases]], interrupt: Callable[[], None],
-                 held: Callable[[], object], soc_a: Callable[[], None], soc_b: Callable[[], None]) -> None:  # fmt: skip
-        """`held()` is called at an event that ETFLG.INT keeps from being an interrupt."""
+                 on_blocked: Callable[[], object], soc_a: Callable[[], None],
+                 soc_b: Callable[[], None]) -> None:  # fmt: skip
+        """`on_blocked()` is called at an event that ETFLG.INT keeps from being an interrupt."""
         self._clock = clock
-        self._held = held
+        self._on_blocked = on_blocked
         self._regs = regs
         self._time_base = time_base
         self._phases = phases
@@ -132,7 +133,7 @@ class EventTrigger:
             # An interrupt that is due waits at the full count until ETCLR.INT.
             self._set_count(trigger, count)
             if count >= period:
-                self._held()
+                self._on_blocked()
         else:
             self._fire(trigger)
 

@@ -268,14 +268,14 @@ class EpwmOutputs:
         self._settled()
         return self._next_edge(output)
 
-    def tell(self) -> None:
+    def report_levels(self) -> None:
         """Report the present levels to listeners that want edges."""
         for output in self.both:
             if output.wire.watched:
-                output.wire.tell(self.level(output))
+                output.wire.report_level(self.level(output))
 
     def _edge(self) -> None:
         self._edge_event = None
         self._settled()
         self.reschedule()
-        self.tell()
+        self.report_levels()

@@ -51,21 +51,37 @@ class TripZone:
 
     `changed()` is called when an output may have been tripped or released; `interrupt` is pulsed.  `next_point(points)`
     is the cycle when the counter next reaches 0 or TBPRD, None while it does not run.  `listen(n, on)` is called when
-    the module begins (or ceases) to need TZn; answer with a call of `input`.  `held()` is called for an enabled event
-    that TZFLG.INT holds back.  `stale()` is called when TZFLG.OST gives its interrupt again and again, because only
-    TZFLG.INT is cleared.
+    the module begins (or ceases) to need TZn; answer with a call of `input`.  `on_blocked()` is called for an enabled
+    event that TZFLG.INT holds back.  `stale()` is called when TZFLG.OST gives its interrupt again and again, because
+    only TZFLG.INT is cleared.
     """
 
     __slots__ = (
-        "_again", "_changed", "_clock", "_control", "_cycle", "_event", "_events", "_flags", "_heard", "_held",
-        "_interrupt", "_listen", "_low", "_next_point", "_points", "_regs", "_select", "_stale",
+        "_again",
+        "_changed",
+        "_clock",
+        "_control",
+        "_cycle",
+        "_event",
+        "_events",
+        "_flags",
+        "_interrupt",
+        "_listen",
+        "_listened_inputs",
+        "_low",
+        "_next_point",
+        "_on_blocked",
+        "_points",
+        "_regs",
+        "_select",
+        "_stale",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, regs: EPwmRegs, changed: Callable[[], None], interrupt: Callable[[], None],
                  next_point: Callable[[int], int | None], listen: Callable[[int, bool], None],
-                 held: Callable[[], object] = lambda: None,
+                 on_blocked: Callable[[], object] = lambda: None,
                  stale: Callable[[], None] = lambda: None) -> None:  # fmt: skip
-        self._clock, self._held, self._stale = clock, held, stale
+        self._clock, self._on_blocked, self._stale = clock, on_blocked, stale
         self._regs = regs
         self._changed = changed
         self._interrupt = interrupt
@@ -74,7 +90,7 @@ class TripZone:
         registers = regs.registers
         self._flags, self._control, self._select = registers["TZFLG"], registers["TZCTL"], registers["TZSEL"]
         #: Inputs that are low, inputs that are listened to, and the causes of a cycle-by-cycle trip that lasts (bits).
-        self._low = self._heard = self._cycle = 0
+        self._low = self._listened_inputs = self._cycle = 0
         #: The events of the digital compare that are active.
         self._events = 0
         #: How often the flag of the same one-shot trip has given an interrupt again.
@@ -184,13 +200,13 @@ class TripZone:
                         self._stale()
                 self._interrupt()
         elif flags.value & self._regs.TZEINT.value & _SOURCES:
-            self._held()
+            self._on_blocked()
 
     def _choose(self) -> None:
         """Listen to the inputs that TZSEL names, and to no others."""
         select = self._select.value
         wanted = (select | select >> _ONE_SHOT) & _INPUTS
-        before, self._heard = self._heard, wanted
+        before, self._listened_inputs = self._listened_inputs, wanted
         for n in range(1, 7):
             if (before ^ wanted) >> n - 1 & 1:
                 self._listen(n, bool(wanted >> n - 1 & 1))

@@ -24,7 +24,7 @@ from typing import Final
 
 from emulator.clock import Clock
 from emulator.cpu import Cpu
-from emulator.peripherals.eqep_doubts import EQepDoubts
+from emulator.peripherals.eqep_checks import EQepChecks
 from emulator.peripherals.eqep_position import distance, move
 from emulator.peripherals.eqep_timers import Capture, EqepWatchdog, UnitTimer
 from emulator.registers.core import F
@@ -47,20 +47,40 @@ class EQep:
     `interrupt` is pulsed on the module's PIE line.  `error(on)` is called when QFLG.PHE is set or cleared.
     `unit_period_extra` is added to QUPRD for the length of a unit: CHOICE: 0, so that QUPRD = 2,000,000 is 100 Hz as in
     TI's examples; whether silicon adds 1 is unconfirmed.  `sticky_direction_error` is the CHOICE of `Capture` about a
-    change of direction.  `held()` is called for events while QFLG.INT is set.  It returns whether it has reported the
-    routine that left the flag.
+    change of direction.  `on_blocked()` is called for events while QFLG.INT is set.  It returns whether it has reported
+    the routine that left the flag.
     """
 
     __slots__ = (
-        "_capture", "_compare_active", "_compare_on", "_compare_pending", "_control", "_doubts", "_error", "_flags",
-        "_in_error", "_index_seen", "_interrupt", "_maximum", "_on", "_position", "_reversed", "_source", "_status",
-        "_unit", "_watchdog", "clock", "cpu", "quadrature", "regs",
+        "_capture",
+        "_checks",
+        "_compare_active",
+        "_compare_on",
+        "_compare_pending",
+        "_control",
+        "_error",
+        "_flags",
+        "_in_error",
+        "_index_seen",
+        "_interrupt",
+        "_maximum",
+        "_on",
+        "_position",
+        "_reversed",
+        "_source",
+        "_status",
+        "_unit",
+        "_watchdog",
+        "clock",
+        "cpu",
+        "quadrature",
+        "regs",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EQepRegs, quadrature: QuadratureWire,
                  interrupt: Callable[[], None], *, error: Callable[[bool], None] = lambda _on: None,
                  unit_period_extra: int = 0, sticky_direction_error: bool = False,
-                 held: Callable[[], bool] = lambda: False) -> None:  # fmt: skip
+                 on_blocked: Callable[[], bool] = lambda: False) -> None:  # fmt: skip
         self.clock = clock
         self.cpu = cpu
         self.regs = regs
@@ -77,7 +97,7 @@ class EQep:
         # `sync` is read at each call, because the plant sets it after the chip is built.
         self._watchdog = EqepWatchdog(clock, regs, lambda: quadrature.sync(), lambda: self._raise(QFLG.WTO.mask))
         self._capture = Capture(clock, regs, lambda: quadrature.sync(), sticky=sticky_direction_error)
-        self._doubts = EQepDoubts(cpu, regs, quadrature, held)
+        self._checks = EQepChecks(cpu, regs, quadrature, on_blocked)
         quadrature.moved.connect(self._on_edges)
         quadrature.clashed.connect(self._on_clash)
         self.reset()
@@ -278,7 +298,7 @@ class EQep:
 
     def _raise(self, flags: int) -> None:
         if self._flags.value & _INT and flags & self.regs.QEINT.value & _SOURCES:
-            self._doubts.event(flags)
+            self._checks.event(flags)
         self._flags.value |= flags
         self._gate()
 
@@ -291,12 +311,12 @@ class EQep:
 
     def _read_QPOSLAT(self) -> int:
         self.quadrature.sync()
-        self._doubts.latch_read()
+        self._checks.latch_read()
         return self.regs.registers["QPOSLAT"].value
 
     def _read_QFLG(self) -> int:
         self.quadrature.sync()
-        self._doubts.flags_read(self._flags.value)
+        self._checks.flags_read(self._flags.value)
         return self._flags.value
 
     def _write_QEINT(self, word: int, lanes: int) -> None:
@@ -308,7 +328,7 @@ class EQep:
         self.quadrature.sync()
         self._flags.value &= ~word
         self._tell_error()
-        self._doubts.cleared(word)
+        self._checks.cleared(word)
         self._gate()
 
     def _write_QFRC(self, word: int, lanes: int) -> None:
@@ -330,7 +350,7 @@ class EQep:
     def _read_QPOSCNT(self) -> int:
         self.quadrature.sync()
         if not self._on or not self._maximum.value or self.quadrature.missing:
-            self._doubts.position_read()
+            self._checks.position_read()
         if not self._control.value & QEPCTL.QCLM.mask:
             self._capture.latch()
         return self._position.value
@@ -418,5 +438,5 @@ class EQep:
         if _field(control, QEPCTL.PCRM) == 3:
             # CHOICE: QSRC decides where the count starts again (TRM): at the top when it only counts down, else at 0.
             self._position.value = self._maximum.value if self._source == 3 else 0
-        self._doubts.unit_timeout(self._flags.value)
+        self._checks.unit_timeout(self._flags.value)
         self._raise(QFLG.UTO.mask)

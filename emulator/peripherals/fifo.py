@@ -44,19 +44,28 @@ class Fifo:
     """One direction.  `receive` decides between "at least" and "at most" for the interrupt level.
 
     `fresh`: a flag that was set while it was not enabled gives its interrupt only while its level still holds.
-    `held()` is called when a word reaches the level and gives no interrupt, because the last one's flag is still set.
+    `on_blocked()` is called when a word reaches the level and gives no interrupt, because the last flag is still set.
     """
 
     __slots__ = (
-        "_fresh", "_held", "_interrupt", "_line", "_receive", "_register", "_taken", "enabled", "requested", "short",
+        "_fresh",
+        "_interrupt",
+        "_line",
+        "_on_blocked",
+        "_receive",
+        "_register",
+        "_taken",
+        "enabled",
+        "requested",
+        "short",
         "words",
     )  # fmt: skip
 
     def __init__(
         self, register: Cell, interrupt: Callable[[], None], *, receive: bool, fresh: bool = False,
-        held: Callable[[], object] | None = None,
+        on_blocked: Callable[[], object] | None = None,
     ) -> None:  # fmt: skip
-        self._fresh, self._held = fresh, held
+        self._fresh, self._on_blocked = fresh, on_blocked
         self._register = register
         self._interrupt = interrupt
         self._receive = receive
@@ -135,8 +144,8 @@ class Fifo:
         self.words.append(word)
         stood = self._line
         self.refresh()
-        if stood and self._line and self._held is not None and len(self.words) >= register.value & LEVEL:
-            self._held()
+        if stood and self._line and self._on_blocked is not None and len(self.words) >= register.value & LEVEL:
+            self._on_blocked()
         return not lost
 
     def left_behind(self) -> str:

@@ -78,7 +78,7 @@ class GpioPort:
         self._followed = 0
         #: Pins with a computed level.  It is computed when DAT is read.
         self._computed = 0
-        self._next_look: Event | None = None
+        self._next_check: Event | None = None
         for i, wire in enumerate(wires):
             wire.noticed.connect(partial(self._wire_changed, i, 1 << i))
             wire.computed.connect(partial(self._wire_computed, 1 << i))
@@ -134,7 +134,7 @@ class GpioPort:
         for i, wire in enumerate(self._wires):
             wire.set_pull(self._floating[i])
         for i in set_bits(moved):
-            self._tell(i)
+            self._emit_mux(i)
 
     def mux(self, i: int) -> int:
         """The function of pin `i` of the port: GMUX << 2 | MUX."""
@@ -153,7 +153,7 @@ class GpioPort:
 
     def _read_DAT(self) -> int:
         if self._computed:
-            self._look()
+            self._read_computed()
         self._read_at = self._cpu.findings.position.at
         return self._levels ^ self._inv.value
 
@@ -251,7 +251,7 @@ class GpioPort:
             else:
                 self._plain |= 1 << i
             self._drive(1 << i)
-            self._tell(i)
+            self._emit_mux(i)
 
     def _pull_changed(self, _name: str, changed: int) -> None:
         disabled = self._ctrl["PUD"].value
@@ -333,7 +333,7 @@ class GpioPort:
     def _wire_computed(self, mask: int, computed: bool) -> None:
         self._computed = self._computed | mask if computed else self._computed & ~mask
 
-    def _look(self) -> None:
+    def _read_computed(self) -> None:
         """Read the wires with a computed level; `_wire_changed` gets their changes.
 
         An event at the next change of one of them lets a poll of DAT go on there.
@@ -342,12 +342,12 @@ class GpioPort:
         for i in set_bits(self._computed):
             _ = self._wires[i].level
             until = min(until, self._wires[i].stays_until())
-        if until != NEVER and (self._next_look is None or event_time(self._next_look) > until):
-            self._clock.cancel(self._next_look)
-            self._next_look = self._clock.schedule(until, self._look_again)
+        if until != NEVER and (self._next_check is None or event_time(self._next_check) > until):
+            self._clock.cancel(self._next_check)
+            self._next_check = self._clock.schedule(until, self._check_again)
 
-    def _look_again(self) -> None:
-        self._next_look = None
+    def _check_again(self) -> None:
+        self._next_check = None
 
     def _accept(self, mask: int, level: int) -> None:
         before = self._levels
@@ -360,7 +360,7 @@ class GpioPort:
         for listener in self.input_changed[i].listeners:
             listener(level)
 
-    def _tell(self, i: int) -> None:
+    def _emit_mux(self, i: int) -> None:
         self._muxed.emit(self._first + i, self.mux(i))
 
 

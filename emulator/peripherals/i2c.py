@@ -29,8 +29,8 @@ from emulator.c28x.findings import Cause
 from emulator.c28x.sites import Place
 from emulator.clock import CYCLES_PER_MS, Clock, Event
 from emulator.cpu import Cpu
+from emulator.peripherals.i2c_checks import I2cChecks
 from emulator.peripherals.i2c_data import I2cData
-from emulator.peripherals.i2c_doubts import I2cDoubts
 from emulator.peripherals.i2c_interrupts import ARBL, ARDY, NACK, SCD, I2cInterrupts
 from emulator.registers.cell import Cell
 from emulator.registers.i2c import I2cRegs
@@ -107,7 +107,7 @@ class I2c:
         self._data = I2cData(
             regs, cpu.findings, self._interrupts, fifo_interrupt, written=self._written, read=self._go_on
         )
-        self._doubts = I2cDoubts(regs, cpu.findings, bus)
+        self._checks = I2cChecks(regs, cpu.findings, bus)
         #: The state on the bus, and the event at its end.  HELD has an event only when it is about to go on.
         self._state = IDLE
         self._event: Event | None = None
@@ -130,7 +130,7 @@ class I2c:
         self.refusals = 0
         #: SYSCLK cycles a module clock, and d; they follow I2CPSC when IRS is set.
         self._module_cycles, self._delay = 1, DELAYS[0]
-        bus.taken_changed.connect(self._taken)
+        bus.taken_changed.connect(self._bus_taken)
         regs.bind("I2CMDR", write=self._write_I2CMDR)
         regs.bind("I2CPSC", write=self._write_I2CPSC)
 
@@ -150,7 +150,7 @@ class I2c:
     def _write_I2CPSC(self, word: int, lanes: int) -> None:
         before = self._psc.value
         self._psc.store(word, lanes)
-        self._doubts.prescaler(before, running=bool(self._mdr.value & IRS))
+        self._checks.prescaler(before, running=bool(self._mdr.value & IRS))
 
     def _write_I2CMDR(self, word: int, lanes: int) -> None:
         mdr = self._mdr
@@ -176,26 +176,26 @@ class I2c:
         self._cause = self._findings.mark()
         if not mode & MST:
             if mode & STT:
-                self._doubts.no_controller()
+                self._checks.no_controller()
         elif mode & RESERVED_COMMAND == RESERVED_COMMAND:
             # CHOICE: both bits are cleared, so that the next write does not start this command.
             self._mdr.value &= ~(STT | STP)
-            self._doubts.reserved_command()
+            self._checks.reserved_command()
         else:
             if mode & STT and not before & STT:
-                self._doubts.start(self._module_cycles, self.bit_cycles)
+                self._checks.start(self._module_cycles, self.bit_cycles)
                 self._interrupts.clear(ARDY)
             if mode & STP and mode == before and self._unanswered and self._old_refusal:
-                self._doubts.old_refusal()
-            self._obey(mode, before)
+                self._checks.old_refusal()
+            self._execute(mode, before)
 
-    def _obey(self, mode: int, before: int) -> None:
+    def _execute(self, mode: int, before: int) -> None:
         """Carry out a valid command."""
         if self._state != IDLE:
             # The operation under way reads both bits when it ends.  CHOICE: so a START that comes too early is made
             # after the STOP, or after the byte.
             if mode & STT and before & STP and not before & STT and self._state in (BYTE, STOPPING):
-                self._doubts.early()
+                self._checks.early()
             if self._finished or not self._data.overrun:
                 self._go_on()
         elif self._str.value & BB:
@@ -235,7 +235,7 @@ class I2c:
         self._data.run(False)
         self._interrupts.reset()
 
-    def _taken(self, taken: bool) -> None:
+    def _bus_taken(self, taken: bool) -> None:
         """A second controller has the bus, or has made its STOP."""
         if self._mdr.value & IRS and not self._owner:
             if taken:
@@ -269,7 +269,7 @@ class I2c:
         self._left = self._cnt.value or LONGEST_COUNT
         self._finished = False
         if mode & DLB and not self._transmitter:
-            self._doubts.receiver_in_loopback()
+            self._checks.receiver_in_loopback()
         self._shift(self._address_sent)
 
     def report_retry(self, place: Place) -> None:
@@ -309,19 +309,19 @@ class I2c:
         else:
             self._hold()
             self._forgotten, self._seen_held_at = True, None
-            self._str.tap(self._look, reads=True)
+            self._str.tap(self._on_status_read, reads=True)
 
-    def _look(self, register: Cell, access: str, _word: int, _mask: int) -> None:
+    def _on_status_read(self, register: Cell, access: str, _word: int, _mask: int) -> None:
         """The program reads I2CSTR after a message was refused."""
         now = self._clock.now
         if self._state != HELD or not self._forgotten:
-            register.untap(self._look)
+            register.untap(self._on_status_read)
         elif access == "read":
             if self._seen_held_at is None:
                 self._seen_held_at = now
             elif now - self._seen_held_at >= LONG_CYCLES:
-                self._doubts.left_busy(now - self._seen_held_at)
-                register.untap(self._look)
+                self._checks.left_busy(now - self._seen_held_at)
+                register.untap(self._on_status_read)
 
     def _hold(self) -> None:
         self._state, self._event = HELD, None
@@ -412,9 +412,9 @@ class I2c:
             self._caused(self._bus.stop)
         self._str.value &= ~BB
         self._interrupts.set(SCD)
-        self._event = self._clock.after(self._module_cycles, self._let_go)
+        self._event = self._clock.after(self._module_cycles, self._release_bus)
 
-    def _let_go(self) -> None:
+    def _release_bus(self) -> None:
         """Clear STP and MST, after SCD."""
         self._state, self._event = IDLE, None
         mode = self._mdr.value & ~STP

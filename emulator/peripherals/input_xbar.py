@@ -59,11 +59,11 @@ class InputXbar:
     def _wanted(self, n: int, wanted: bool) -> None:
         """A first listener connects to INPUTn (`wanted`), or the last one has gone."""
         if wanted:
-            self._hear(n, self._regs.registers[f"INPUT{n}SELECT"].value)
+            self._listen(n, self._regs.registers[f"INPUT{n}SELECT"].value)
         else:
             self._stops.pop(n)()
 
-    def _hear(self, n: int, pin: int) -> None:
+    def _listen(self, n: int, pin: int) -> None:
         """Listen to this pin for INPUTn.  A pin that does not exist never changes."""
         self._stops[n] = self._pin_changed[pin].connect(self.changed[n].emit) if pin < self._pins else _nothing
 
@@ -96,7 +96,7 @@ class InputXbar:
         """An input gets another pin.  If the pin's level differs, the input sees an edge."""
         was, level = self._level_of(before), self._level_of(after)
         self._stops[n]()
-        self._hear(n, after)
+        self._listen(n, after)
         if level != was:
             self.changed[n].emit(level)
 

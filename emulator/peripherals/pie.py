@@ -72,7 +72,7 @@ class Pie:
         #: Vector -> when its routine ended, if there has been no pulse since.
         self._served: dict[int, int] = {}
         #: (group, number) -> the flag that has kept a further event back, and the routine that left the flag.
-        self._kept_back: dict[tuple[int, int], tuple[str, Place]] = {}
+        self._blocked: dict[tuple[int, int], tuple[str, Place]] = {}
         regs.bind("PIECTRL", write=self._write_PIECTRL)
         regs.bind("PIEACK", write=self._write_PIEACK)
         for x in range(GROUPS):
@@ -98,7 +98,7 @@ class Pie:
                 del served[vector]
             if ier.value & bit:
                 if self._ack.value & 1 << x:
-                    self._held(x, n, again=bool(ifr.value & bit))
+                    self._check_blocked(x, n, again=bool(ifr.value & bit))
                 ifr.value |= bit
                 self._deliver(x)
             else:
@@ -117,19 +117,19 @@ class Pie:
         handler, begins = self._vectors.get(vector, (None, None))
         if since is None or begins is None or handler is None:
             return False
-        self._kept_back[group, n] = flag, begins
+        self._blocked[group, n] = flag, begins
         if at_once or self._clock.now >= since + LONG_CYCLES:
-            self._tell_kept_back(flag, begins, group, n)
+            self._report_blocked(flag, begins, group, n)
         return True
 
     def finish(self) -> None:
         """The run ends.  Report also flags that have kept an interrupt back for half of that time."""
-        for (group, n), (flag, begins) in self._kept_back.items():
+        for (group, n), (flag, begins) in self._blocked.items():
             since = self._served.get(vector_id(group, n))
             if since is not None and self._clock.now >= since + LONG_CYCLES // 2:
-                self._tell_kept_back(flag, begins, group, n)
+                self._report_blocked(flag, begins, group, n)
 
-    def _tell_kept_back(self, flag: str, begins: Place, group: int, n: int) -> None:
+    def _report_blocked(self, flag: str, begins: Place, group: int, n: int) -> None:
         self._cpu.findings.report_at(
             begins, "flag-not-cleared",
             f"{flag} is still set after the routine of interrupt {group}.{n}: no further interrupt is generated until "
@@ -176,19 +176,19 @@ class Pie:
             self._ack.value |= ack
             self._cpu.raise_line(x + 1)
 
-    def _held(self, x: int, n: int, *, again: bool) -> None:
+    def _check_blocked(self, x: int, n: int, *, again: bool) -> None:
         """A missing acknowledge holds an interrupt back.  Report it if one is lost (`again`) or waits for long."""
         if again:
             self._not_acknowledged(x, n)
         elif not self._cpu.in_interrupt:
             before = self._acknowledged[x]
-            self._clock.after(LONG_CYCLES, partial(self._held_for_long, x, n, before))
+            self._clock.after(LONG_CYCLES, partial(self._report_if_blocked, x, n, before))
 
-    def _held_for_long(self, x: int, n: int, acknowledged: int) -> None:
+    def _report_if_blocked(self, x: int, n: int, acknowledged: int) -> None:
         if self._acknowledged[x] == acknowledged:
             self._not_acknowledged(x, n)
 
-    def held_back(self, group: int, n: int) -> bool:
+    def is_blocked(self, group: int, n: int) -> bool:
         """Whether a missing acknowledge holds a pending interrupt `group`.`n` back.  Then report it."""
         x = group - 1
         waits = self._ifr[x].value & self._ier[x].value & 1 << n - 1

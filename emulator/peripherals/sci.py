@@ -51,7 +51,7 @@ class Sci:
 
     `rx_interrupt` and `tx_interrupt` are pulses into the PIE, `lspclk_divider()` is SYSCLK cycles a LSPCLK cycle.
     `break_bits`: how long the line stays low after a missing stop bit before BRKDT (CHOICE: 10; later manuals of the
-    family say 9.625).  `held()` is that of the receive FIFO (`Fifo`).
+    family say 9.625).  `on_blocked()` is that of the receive FIFO (`Fifo`).
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class Sci:
         *,
         lspclk_divider: Callable[[], int] = lambda: 4,
         break_bits: float = 10.0,
-        held: Callable[[], object] | None = None,
+        on_blocked: Callable[[], object] | None = None,
     ) -> None:
         self._clock = clock
         self._cpu = cpu
@@ -87,7 +87,7 @@ class Sci:
         #: The last result of `format`, kept for speed, and the register values that it was made from.
         self._format_key: tuple[int, int, int] | None = None
         self._format: Format
-        self._receiver = SciReceiver(clock, cpu, regs, rx, rx_interrupt, self.format, break_bits, held)
+        self._receiver = SciReceiver(clock, cpu, regs, rx, rx_interrupt, self.format, break_bits, on_blocked)
         #: Without FIFO: whether SCITXBUF holds a character that waits for the shifter.
         #: The statement that wrote the latest character.  Findings about its frame are reported there.
         self._cause: Cause | None = None
@@ -189,11 +189,11 @@ class Sci:
         receiver = self._receiver
         enabled = bool(word & ENHANCED)
         # CHOICE: SCIRST holds the channels in FIFO mode only.
-        held = enabled and not word & CHANNELS_RUN
+        on_blocked = enabled and not word & CHANNELS_RUN
         self._fifo.enabled = receiver.fifo.enabled = enabled
         self._fifo.write(word, lanes)
-        receiver.channel_held = held
-        if held:
+        receiver.channel_held = on_blocked
+        if on_blocked:
             self._stop()
             self._fifo.clear()
             receiver.clear_channel()

@@ -49,7 +49,7 @@ class SciReceiver:
         interrupt: Callable[[], None],
         own_format: Callable[[], Format],
         break_bits: float,
-        held: Callable[[], object] | None = None,
+        on_blocked: Callable[[], object] | None = None,
     ) -> None:
         self._clock = clock
         self._cpu = cpu
@@ -64,7 +64,7 @@ class SciReceiver:
         self._ffrx = register["SCIFFRX"]
         self._rxst = register["SCIRXST"]
         self._rxbuf = register["SCIRXBUF"]
-        self.fifo = Fifo(register["SCIFFRX"], interrupt, receive=True, held=held)
+        self.fifo = Fifo(register["SCIFFRX"], interrupt, receive=True, on_blocked=on_blocked)
         #: Whether SWRESET is 1.
         self._running = False
         #: Whether a break was detected.  Then the receiver is deaf until SWRESET.

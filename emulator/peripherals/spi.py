@@ -50,7 +50,7 @@ class Spi:
     `rx_interrupt` and `tx_interrupt` are pulses into the PIE; without FIFO all interrupts use the RX line.
     `select(level)` drives SPISTE.
     `lspclk_divider()` is SYSCLK cycles a LSPCLK cycle; code that changes it calls `clock_changed`.
-    `held()` is that of the receive FIFO (`Fifo`).
+    `on_blocked()` is that of the receive FIFO (`Fifo`).
     """
 
     def __init__(
@@ -64,7 +64,7 @@ class Spi:
         *,
         select: Callable[[int], None] = lambda _level: None,
         lspclk_divider: Callable[[], int] = lambda: 4,
-        held: Callable[[], object] | None = None,
+        on_blocked: Callable[[], object] | None = None,
     ) -> None:
         self._clock = clock
         self._cpu = cpu
@@ -84,7 +84,7 @@ class Spi:
         self._fftx = register["SPIFFTX"]
         self._ffct = register["SPIFFCT"]
         self._tx_fifo = Fifo(self._fftx, tx_interrupt, receive=False)
-        self._rx_fifo = Fifo(register["SPIFFRX"], rx_interrupt, receive=True, held=held)
+        self._rx_fifo = Fifo(register["SPIFFRX"], rx_interrupt, receive=True, on_blocked=on_blocked)
         #: The event at the end of the word that is being shifted.
         self._shift: Event | None = None
         self._length = 16
@@ -196,7 +196,7 @@ class Spi:
 
     def _write_SPITXBUF(self, word: int, lanes: int) -> None:
         self._caused()
-        self._doubt(word & 0xFFFF)
+        self._check_use(word & 0xFFFF)
         self._txbuf.value = word = word & 0xFFFF
         if self._tx_fifo.enabled:
             if not self._tx_fifo.push(word):
@@ -213,7 +213,7 @@ class Spi:
                 del self._causes[:-1]
             self._sts.value |= BUFFULL_FLAG
 
-    def _doubt(self, word: int) -> None:
+    def _check_use(self, word: int) -> None:
         """Check a word whose lower bits are not sent, when those of the word before were not sent either.
 
         A driver that sends a word in parts writes the rest next, shifted up.  A driver that only wants an answer writes
@@ -385,7 +385,7 @@ class Spi:
                 # CHOICE: with TALK=0 a slave reads the floating SIMO as zeros.
                 in_bits = self._bus.exchange(out_bits if ctl & TALK else 0, length, self._cpol, self._cpha)
                 if not self._bus.addressed and self._bus.connected and not self._cut:
-                    self._nobody()
+                    self._check_selected()
                 elif self._clock_hz > self._bus.greatest_clock_hz:
                     self._too_fast()
             finally:
@@ -410,7 +410,7 @@ class Spi:
             self._sts.value &= ~BUFFULL_FLAG
             self._start(self._txbuf.value)
 
-    def _nobody(self) -> None:
+    def _check_selected(self) -> None:
         name = self._bus.name
         self._cpu.findings.report(
             "spi-no-device", f"a word was sent on {name} while no chip select was low: no device took it", object=name

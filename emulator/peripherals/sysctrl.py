@@ -137,7 +137,7 @@ class SysCtrl:
         self._clkcfg.registers["SYSPLLCTL1"].value |= SYSPLLCTL1.PLLCLKEN.mask
         self._write_SYSCLKDIVSEL(divider)
 
-    def doubt_sysclk(self) -> None:
+    def check_sysclk(self) -> None:
         """Report a SYSCLK that is set to another frequency than the 200 MHz that it has here.
 
         CHOICE: the board's crystal is not known.  Any crystal that would give 200 MHz is taken as right.
@@ -235,10 +235,10 @@ class SysCtrl:
         self._clkcfg.registers[name].store(word, lanes)
         if name == "CLKSRCCTL2":
             for letter in CAN_SOURCE:
-                self._doubt_can_clock(letter)
+                self._check_can_clock(letter)
         self.dividers_changed.emit()
 
-    def _doubt_can_clock(self, letter: str) -> None:
+    def _check_can_clock(self, letter: str) -> None:
         if not self.can_cycles(letter):
             field = f"{self._clkcfg.registers['CLKSRCCTL2'].path}.CAN{letter}BCLKSEL"
             self._cpu.findings.report(
@@ -274,7 +274,7 @@ class SysCtrl:
         clock = self._cpu.clock
         self._set_by = self._cpu.findings.mark()
         clock.cancel(self._settling)
-        self._settling = clock.after(_SETTLED, self.doubt_sysclk)
+        self._settling = clock.after(_SETTLED, self.check_sysclk)
 
     def _write_TMR2CLKCTL(self, word: int, lanes: int = ALL) -> None:
         register = self._cpusys.registers["TMR2CLKCTL"]

@@ -50,7 +50,7 @@ class Watchdog:
         self._serviced_at = 0
         self.reset()
 
-    def report_in_vain(self, since: int, hung: Place) -> None:
+    def report_hung_main(self, since: int, hung: Place) -> None:
         """Report a service of the watchdog although `main` hangs at `hung` since the cycle `since`."""
         begun, findings = self._begun, self._cpu.findings
         if self._wdcr.value & WDDIS or begun is None or self._serviced_at <= since:

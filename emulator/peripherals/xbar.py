@@ -47,10 +47,10 @@ class XbarFlags:
         """Set the flag of a signal from now on."""
         if name in _FLAGS and name not in self._followed:
             self._followed.add(name)
-            self._signals[name].changed.connect(partial(self._hear, name))
-            self._hear(name, self._signals[name].level)
+            self._signals[name].changed.connect(partial(self._on_level, name))
+            self._on_level(name, self._signals[name].level)
 
-    def _hear(self, name: str, level: int) -> None:
+    def _on_level(self, name: str, level: int) -> None:
         if level:
             register, mask = _FLAGS[name]
             self._regs.registers[register].value |= mask
@@ -61,7 +61,7 @@ class XbarFlags:
 
     def _set_again(self) -> None:
         for name in self._followed:
-            self._hear(name, self._signals[name].level)
+            self._on_level(name, self._signals[name].level)
 
     def _read_XBARFLG2(self) -> int:
         self._follow_later()

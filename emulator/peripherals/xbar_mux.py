@@ -53,8 +53,18 @@ class XbarOutput:
     """
 
     __slots__ = (
-        "_changed", "_configs", "_enable", "_findings", "_in_use", "_locked", "_signals", "_stops", "_table", "_told",
-        "_used", "level",
+        "_changed",
+        "_configs",
+        "_enable",
+        "_findings",
+        "_in_use",
+        "_locked",
+        "_reported",
+        "_signals",
+        "_stops",
+        "_table",
+        "_used",
+        "level",
     )  # fmt: skip
 
     def __init__(
@@ -72,7 +82,7 @@ class XbarOutput:
         #: Signal -> the function that stops listening to it.
         self._stops: dict[str, Callable[[], None]] = {}
         #: Signals that are not modelled and were reported.
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self.level = 0
         for register in (*self._configs, self._enable):
             regs.bind(register.name, write=partial(self._write, register.name, regs))
@@ -87,14 +97,14 @@ class XbarOutput:
                     if name in self._signals:
                         names.append(name)
                     else:
-                        self._tell(mux, choice, name)
+                        self._report_unmodelled(mux, choice, name)
         return list(dict.fromkeys(names))
 
-    def _tell(self, mux: int, choice: int, name: str) -> None:
+    def _report_unmodelled(self, mux: int, choice: int, name: str) -> None:
         path = f"{self._configs[mux // _HALF].path}.MUX{mux}"
         key = f"{mux}.{choice}"
-        if key not in self._told:
-            self._told.add(key)
+        if key not in self._reported:
+            self._reported.add(key)
             what = f"{name} is not modelled" if name else "the manual names no such signal"
             self._findings.report("unmodelled", f"{path} = {choice}: {what}, it stays low", object=path, value=choice)
 
@@ -106,11 +116,11 @@ class XbarOutput:
                 self._stops.pop(name)()
         for name in self._in_use:
             if name not in before:
-                self._stops[name] = self._signals[name].changed.connect(self._hear)
+                self._stops[name] = self._signals[name].changed.connect(self._on_level)
                 self._used(name)
-        self._hear(0)
+        self._on_level(0)
 
-    def _hear(self, _level: int) -> None:
+    def _on_level(self, _level: int) -> None:
         self.level = max((self._signals[name].level for name in self._in_use), default=0)
         self._changed()
 

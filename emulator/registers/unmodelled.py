@@ -40,7 +40,7 @@ class UnmodelledBlock:
             self._block.bind(name, read=partial(self._read, register), write=partial(self._write, register))
         return registers[name]
 
-    def in_vain(self, name: str) -> bool:
+    def blames_unmodelled(self, name: str) -> bool:
         """A wait for a register never ends: whether that is one of these, and has another value now."""
         register = self._block.registers.get(name)
         if register is None:

@@ -36,7 +36,7 @@ class Heap(KernelObject):
         return f"<{type(self).__name__} {self.name} {self.words} words>"
 
 
-class Blocks:
+class HeapBlocks:
     """Creates and ends the objects of blocks."""
 
     def __init__(self, core: KernelCore, memory: Memory | None) -> None:

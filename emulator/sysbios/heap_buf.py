@@ -19,7 +19,7 @@ from typing import Any, Final
 from emulator.c28x.memory import NULL, Pointer
 from emulator.sysbios import params as struct_params
 from emulator.sysbios.core import KernelCore, UniqueNames
-from emulator.sysbios.heap import NONE_GIVEN, Blocks, Heap
+from emulator.sysbios.heap import NONE_GIVEN, Heap, HeapBlocks
 from emulator.sysbios.heap_mem import buffer_address, is_power_of_two, store_statistics
 
 #: The smallest alignment, and the smallest block: two pointers.
@@ -47,7 +47,7 @@ class HeapBuf(Heap):
 class HeapBufModule:
     """`HeapBuf_*`."""
 
-    def __init__(self, core: KernelCore, blocks: Blocks) -> None:
+    def __init__(self, core: KernelCore, blocks: HeapBlocks) -> None:
         self.core = core
         self.blocks = blocks
         self._names = UniqueNames()

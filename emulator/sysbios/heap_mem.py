@@ -24,7 +24,7 @@ from emulator.c28x.tree import Declaration
 from emulator.sysbios import params as struct_params
 from emulator.sysbios.core import KernelCore, UniqueNames
 from emulator.sysbios.gate_mutex import GateMutex, GateMutexModule
-from emulator.sysbios.heap import NONE_GIVEN, Blocks, Heap
+from emulator.sysbios.heap import NONE_GIVEN, Heap, HeapBlocks
 
 #: Words of a header, which is also the smallest block.
 HEADER_WORDS: Final = 4
@@ -101,7 +101,7 @@ class HeapMem(Heap):
 class HeapMemModule:
     """`HeapMem_*`, and the default heap."""
 
-    def __init__(self, core: KernelCore, blocks: Blocks, gates: GateMutexModule, default_words: int) -> None:
+    def __init__(self, core: KernelCore, blocks: HeapBlocks, gates: GateMutexModule, default_words: int) -> None:
         self.core = core
         self.blocks = blocks
         self.gates = gates

@@ -24,7 +24,7 @@ from greenlet import GreenletExit, getcurrent, greenlet
 
 from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Memory
-from emulator.clock import NEVER, SYSCLK_HZ, Clock, event_callback, nobody, us
+from emulator.clock import NEVER, SYSCLK_HZ, Clock, event_callback, no_attention, us
 from emulator.cpu import Cpu
 from emulator.signal import Signal
 from emulator.sysbios.clock import ClockObject
@@ -34,7 +34,7 @@ from emulator.sysbios.gate_key import GateKey, GateKeyModule
 from emulator.sysbios.gate_mutex import GateMutex, GateMutexModule
 from emulator.sysbios.gate_mutex_pri import GateMutexPri, GateMutexPriModule
 from emulator.sysbios.handles import Find, Handles
-from emulator.sysbios.heap import Blocks, Heap
+from emulator.sysbios.heap import Heap, HeapBlocks
 from emulator.sysbios.heap_buf import HeapBuf, HeapBufModule
 from emulator.sysbios.heap_mem import HEAP_WORDS, HeapMem, HeapMemModule
 from emulator.sysbios.hwi import Hwi, HwiModule
@@ -141,7 +141,7 @@ class Kernel:
         self.gates = GateMutexPriModule(core, self.tasks, order_fault=gate_order_fault)
         self.plain_gates = GateMutexModule(core, self.tasks, self.semaphores)
         self.key_gates = GateKeyModule(core, self.tasks, self.swis, self.hwis)
-        blocks = Blocks(core, memory)
+        blocks = HeapBlocks(core, memory)
         self.heaps = HeapMemModule(core, blocks, self.plain_gates, heap_words)
         self.buffer_heaps = HeapBufModule(core, blocks)
         self.heap_memory = MemoryModule(core, blocks, self.heaps, self.buffer_heaps)
@@ -278,7 +278,7 @@ class Kernel:
             self._ended = True
         self._stopped = self._stopped or "it was shut down"
         self.active = False
-        self.core.clock.serve_with(nobody)
+        self.core.clock.serve_with(no_attention)
         mine = getcurrent()
         for victim in [task.greenlet for task in self.tasks.all] + [self._main]:
             if victim is not None and not victim.dead and victim is not mine:
@@ -337,7 +337,7 @@ class Kernel:
         self.exit_status = status
         self.swis.locked = self.tasks.locked = True
         self.core.cpu.intm = True
-        self.core.clock.serve_with(nobody)
+        self.core.clock.serve_with(no_attention)
         self._leave_for_good()
 
     def _run_main(self, main: Callable[[], Any]) -> None:

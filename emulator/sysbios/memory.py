@@ -21,7 +21,7 @@ from typing import Any, Final
 from emulator.c28x.ctypes import CHAR, ULONG
 from emulator.c28x.memory import NULL, Pointer
 from emulator.sysbios.core import KernelCore
-from emulator.sysbios.heap import NONE_GIVEN, Blocks, Heap
+from emulator.sysbios.heap import NONE_GIVEN, Heap, HeapBlocks
 from emulator.sysbios.heap_buf import HeapBuf, HeapBufModule
 from emulator.sysbios.heap_mem import HEADER_WORDS, HeapMem, HeapMemModule, store_statistics
 
@@ -33,7 +33,7 @@ _SIZE: Final = 0xFFFFFFFF
 class MemoryModule:
     """`Memory_*`, `malloc`, `calloc`, `realloc`, `free`."""
 
-    def __init__(self, core: KernelCore, blocks: Blocks, mem: HeapMemModule, buf: HeapBufModule) -> None:
+    def __init__(self, core: KernelCore, blocks: HeapBlocks, mem: HeapMemModule, buf: HeapBufModule) -> None:
         self.core = core
         self.blocks = blocks
         self.mem = mem
@@ -154,7 +154,7 @@ class MemoryModule:
         if size == 0:
             return NULL
         heap = self.mem.default
-        address = self.mem.take(heap, whole, MAX_ALIGN, _Ignored())
+        address = self.mem.take(heap, whole, MAX_ALIGN, _IgnoredErrorBlock())
         if address is None:
             return NULL
         memory = self.blocks.memory
@@ -179,10 +179,10 @@ class MemoryModule:
         return int(self.blocks.memory.load(ULONG, address))
 
 
-class _Ignored:
+class _IgnoredErrorBlock:
     """An Error_Block whose content is not used."""
 
-    def member(self, name: str) -> _Ignored:
+    def member(self, name: str) -> _IgnoredErrorBlock:
         """Any member."""
         return self
 

@@ -21,7 +21,7 @@ UPDATE_S: Final = 1e-3
 RECEIVED_MOST: Final = 4096
 
 
-class Over(BaseException):
+class ScriptEnded(BaseException):
     """The script has ended.  It leaves any loop that the console is in."""
 
 
@@ -119,7 +119,7 @@ class Desk:
         """The program updates the window: it handles the clicks that came meanwhile."""
         self.wait(UPDATE_S)
         if self.now_s >= self.script.seconds:
-            raise Over
+            raise ScriptEnded
         while self._clicks and self._clicks[0][0] <= self.now_s:
             text = self._clicks.pop(0)[1]
             try:
@@ -145,7 +145,7 @@ class Desk:
         """A console from its start until the script or the console has ended."""
         try:
             program(self)
-        except Over:
+        except ScriptEnded:
             pass
         except SystemExit:
             self.left_at_s = self.now_s

@@ -34,7 +34,7 @@ class Picture:
     plane: bool = False
 
 
-class By(Enum):
+class EvidenceKind(Enum):
     """The kind of evidence.  Only the first two are proofs."""
 
     DETECTOR = "detector"
@@ -48,7 +48,7 @@ class By(Enum):
 class Evidence:
     """The outcome on one firmware (faithful or corrected)."""
 
-    by: By
+    by: EvidenceKind
     seen: bool
     #: One line: the measured value and the right one, with units; or the finding's message.
     line: str
@@ -71,7 +71,7 @@ def reported(findings: Iterable[Finding], rule: str, *, function: str = "", obje
     )
     where = " ".join(part for part in (function, object) if part)
     line = hits[0].message if hits else f"no finding {rule}{f' in {where}' if where else ''}"
-    return Evidence(By.DETECTOR, bool(hits), line, hits)
+    return Evidence(EvidenceKind.DETECTOR, bool(hits), line, hits)
 
 
 def measured(
@@ -88,9 +88,9 @@ def measured(
     else:
         right = f"{low:g}..{high:g}"
     unit = f" {unit}" if unit else ""
-    return Evidence(By.PROPERTY, not holds, f"{what}: {value:g}{unit}, right is {right}{unit}")
+    return Evidence(EvidenceKind.PROPERTY, not holds, f"{what}: {value:g}{unit}, right is {right}{unit}")
 
 
 def read(what: str, value: float, unit: str, *, low: float, high: float) -> Evidence:
     """As `measured`, for numbers of the text, or numbers that follow from these alone."""
-    return replace(measured(what, value, unit, low=low, high=high), by=By.READ)
+    return replace(measured(what, value, unit, low=low, high=high), by=EvidenceKind.READ)

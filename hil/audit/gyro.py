@@ -43,7 +43,7 @@ def _rates(rig: Rig, gyro: ScriptedGyro, most_rad_s: float) -> Picture:
     return Picture("The rate as it is read", "rate in rad/s", "get_GYRO in rad/s", lines)
 
 
-class Disturbed:
+class DisturbedSpiSlave:
     """A bus on which the first value written to CTRL_REG1 arrives as 0."""
 
     def __init__(self, slave: SpiSlave) -> None:
@@ -79,7 +79,7 @@ def fifo_bypassed(fixes: Fixes) -> Evidence:
 def write_unchecked(fixes: Fixes) -> Evidence:
     """One disturbed byte during Init_GYRO."""
     rig = _rig(fixes)
-    rig.board.spi_bus["A"].attach(rig.board.pins[GYRO_CS_GPIO], Disturbed(rig.board.gyro))
+    rig.board.spi_bus["A"].attach(rig.board.pins[GYRO_CS_GPIO], DisturbedSpiSlave(rig.board.gyro))
     rig.fw.gyro.Init_GYRO()
     power = rig.board.gyro.registers[CTRL_REG1] >> 3 & 1
     return measured("CTRL_REG1.PD (1 is awake) after one disturbed write", power, low=1)

@@ -34,14 +34,14 @@ _STATES: Final = {
 }  # fmt: skip
 
 
-class Understood(NamedTuple):
+class OrderEffect(NamedTuple):
     """What orders change: the state, and the reference of the telemanipulation (m/s, rad/s)."""
 
     state: str
     v_m_s: float
     w_rad_s: float
 
-    def after(self, order: bytes) -> Understood:
+    def after(self, order: bytes) -> OrderEffect:
         """With a well-formed order obeyed: TFG 3.3.1, SETR sets both references in TELE; they are 0 in other states."""
         if order[1:5] == b"SETR":
             if self.state != _STATES[b"TELE"]:
@@ -50,13 +50,13 @@ class Understood(NamedTuple):
             return self._replace(v_m_s=v, w_rad_s=w)
         if order[1:5] == b"TELE":
             return self._replace(state=_STATES[b"TELE"])
-        return Understood(_STATES[order[1:5]], 0.0, 0.0)
+        return OrderEffect(_STATES[order[1:5]], 0.0, 0.0)
 
 
-def understood(bench: Bench) -> Understood:
+def understood(bench: Bench) -> OrderEffect:
     """What the robot has understood so far."""
     reference = bench.firmware.servidores.Telemanipulation_Reference
-    return Understood(bench.status().state, round(reference.V, 5), round(reference.W, 5))
+    return OrderEffect(bench.status().state, round(reference.V, 5), round(reference.W, 5))
 
 
 def drive(bench: Bench) -> float:
@@ -85,7 +85,7 @@ def _sampled(bench: Bench, look: Callable[[], Any], duration_s: float) -> list[t
     return seen
 
 
-def _fed(bench: Bench, orders: bytes, after_s: float, patience_s: float) -> list[tuple[float, Understood]]:
+def _fed(bench: Bench, orders: bytes, after_s: float, patience_s: float) -> list[tuple[float, OrderEffect]]:
     """What was understood, by the time (s) since the last character of `orders`, which begin in `after_s`."""
     bench.clock.after(round(after_s * SYSCLK_HZ) + 1, lambda: bench.feed(orders))
     on_line_s = after_s + len(orders) * CHARACTER_S

@@ -25,7 +25,7 @@ from firmware_model.catalogue import CATALOGUE, Defect, DefectKind
 from firmware_model.corrections import ALL, resolve
 from hil.audit import forked
 from hil.audit.demonstrations import DEMONSTRATIONS
-from hil.audit.evidence import By, Evidence
+from hil.audit.evidence import Evidence, EvidenceKind
 from hil.audit.rig import Rig, Variant
 from hil.audit.templates import Templates
 from hil.collector import uncollected
@@ -64,7 +64,7 @@ class DemonstrationOutcome:
     @property
     def proven(self) -> bool:
         """Shown, and something ran for it."""
-        return self.shown and self.faithful is not None and self.faithful.by is not By.READ
+        return self.shown and self.faithful is not None and self.faithful.by is not EvidenceKind.READ
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""

@@ -9,7 +9,7 @@ from typing import Any
 from hil.audit.rig import Rig, Variant
 
 
-class _EnoughError(Exception):
+class _TurnsDoneError(Exception):
     """The task has made its turns."""
 
 
@@ -36,7 +36,7 @@ class TaskRig(Rig):
 
     def _pend(self, _semaphore: Any, _timeout: int) -> int:
         if self._left == 0:
-            raise _EnoughError
+            raise _TurnsDoneError
         self._left -= 1
         self._each_turn()
         return 1
@@ -44,5 +44,5 @@ class TaskRig(Rig):
     def turns(self, task: str, count: int = 1) -> None:
         """Run `task` from its start until it has made `count` turns."""
         self._left = count
-        with suppress(_EnoughError):
+        with suppress(_TurnsDoneError):
             getattr(self.fw.main_robot, task)(0, 0)

@@ -47,7 +47,7 @@ def poll_forever(fixes: Fixes) -> Evidence:
     """A converter that does not answer."""
     rig = _rig(fixes)
     rig.fw.us.Init_US()
-    rig.board.adc["A"].dead = True
+    rig.board.adc["A"].stopped_by_fault = True
     rig.call(rig.fw.us.Read_Channel, 0)
     return reported(rig.findings, "endless-poll", function="Read_Channel")
 

@@ -212,10 +212,10 @@ def _print_table(outcomes: list[DemonstrationOutcome]) -> None:
 
 def _by_kind(outcomes: list[DemonstrationOutcome]) -> dict[str, int]:
     """How many are shown by each kind of evidence."""
-    from hil.audit.evidence import By
+    from hil.audit.evidence import EvidenceKind
 
     kinds = Counter(outcome.faithful.by for outcome in outcomes if outcome.shown and outcome.faithful)
-    return {by.value: kinds[by] for by in By}
+    return {by.value: kinds[by] for by in EvidenceKind}
 
 
 def _page(outcome: DemonstrationOutcome) -> Panel:

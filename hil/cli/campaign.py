@@ -12,7 +12,7 @@ from hil.cli import show
 from hil.ending import EXIT_INTERRUPTED
 
 if TYPE_CHECKING:
-    from hil.safety.campaign import Failed
+    from hil.safety.campaign import FailedRun
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
@@ -61,7 +61,7 @@ def campaign(
         with bar:
             task = bar.add_task("all held", total=runs)
 
-            def told(failed: Failed | None) -> None:
+            def told(failed: FailedRun | None) -> None:
                 nonlocal done, wrong
                 done, wrong = done + 1, wrong + (failed is not None)
                 bar.update(task, completed=done, description=f"{wrong} failed" if wrong else "all held")

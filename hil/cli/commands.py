@@ -26,7 +26,7 @@ IN_FILE_OF: Final = {"replay": "record", "compare": "record"}
 TAKE_WHAT_LOOKS_LIKE_OPTIONS: Final = ("drive",)
 
 
-class Unopened(TyperCommand):
+class LazyCommand(TyperCommand):
     """A command whose module is not imported yet: enough for `hil --help`.  `whole` imports the module."""
 
     def __init__(self, name: str) -> None:
@@ -68,7 +68,7 @@ class Unopened(TyperCommand):
         return self.whole.make_context(*arguments, **more)
 
 
-COMMANDS: Final = {name: Unopened(name) for name in NAMES}
+COMMANDS: Final = {name: LazyCommand(name) for name in NAMES}
 
 
 def import_chosen(arguments: list[str]) -> None:

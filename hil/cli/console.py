@@ -136,7 +136,7 @@ def _play(
     """Run the program of `--app`: checks, ports, program, end.  Returns its summary."""
     from hil.console.app import read_app
     from hil.console.folder import RunFolder
-    from hil.console.launcher import Farewell, Process
+    from hil.console.launcher import Process, StopWhenAppEnds
     from hil.console.needs import check
     from hil.recording.tap import Tap, open_robot
     from hil.recording.wire import header_at, header_of, record
@@ -158,12 +158,12 @@ def _play(
             stack.callback(machine.close)
             machine.boot()
             process = stack.enter_context(Process(app, folder, python))
-            carrier = Session(machine, line, Pacer(1.0), wire=wire, tick=Farewell(process))
+            carrier = Session(machine, line, Pacer(1.0), wire=wire, tick=StopWhenAppEnds(process))
         else:
             robot = open_robot(port)
             stack.callback(robot.close)
             process = stack.enter_context(Process(app, folder, python))
-            carrier = Tap(robot, line, wire=wire, tick=Farewell(process))
+            carrier = Tap(robot, line, wire=wire, tick=StopWhenAppEnds(process))
         stop.ends(process.end)
         show.say(f"console: {app.path.name}, process {process.pid}, in {folder.path}", to_stderr=quiet)
         failure = ""

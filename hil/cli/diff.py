@@ -59,13 +59,13 @@ def diff(
     """
     with show.user_errors():
         from firmware_model.c_files import own
-        from hil.diff.compare import Wanted, compare_firmware
+        from hil.diff.compare import ComparisonOptions, compare_firmware
 
         show.policy()
         for file in own(firmware).left_out:
             show.say(f"note: {file}: no file of the robot, left out", to_stderr=True)
         folders, defines = own_c.read_as(firmware, project, include, define)
-        wanted = Wanted(
+        wanted = ComparisonOptions(
             [str(path) for path in firmware], folders, defines, world=world, seed=seed, fill=fill, calls=calls,
             seconds=for_s, orders=tuple(order) if order else ("mission",), cycles=cycles,
         )  # fmt: skip

@@ -25,7 +25,7 @@ from hil.recording.wire import header_at, header_of
 from hil.recording.wire import record as new_log
 from hil.reports.json_report import findings_of
 from hil.reports.model import report_of
-from hil.serial_port import Deliver, PortError, open_port
+from hil.serial_port import Delivery, PortError, open_port
 
 _LOG_HELP: Final = "A wire log (hil record, hil console --wire)."
 
@@ -46,7 +46,7 @@ def record(
     for_s: Annotated[
         float | None, typer.Option("--for", metavar="SECONDS", min=0, help="Record for this time.")
     ] = None,
-    deliver: Annotated[Deliver, typer.Option(help="Deliver whole frames, or single bytes.")] = Deliver.FRAMES,
+    deliver: Annotated[Delivery, typer.Option(help="Deliver whole frames, or single bytes.")] = Delivery.FRAMES,
     json_output: Annotated[
         bool, typer.Option("--json", help="Print the summary as one JSON object on stdout.")
     ] = False,

@@ -24,7 +24,7 @@ from hil.cli.feeds import Feed
 from hil.client.orders import TimedOrder, parse_timed_order
 from hil.client.plot import MOVING, SUFFIXES, check_plot_file
 from hil.ending import EXIT_INTERRUPTED
-from hil.files import Growing, check_target
+from hil.files import GrowingFile, check_target
 from hil.instruments.recorder import recorded
 from hil.instruments.trace_file import DEFAULT as DEFAULT_CHANNELS
 from hil.instruments.trace_file import checked as checked_channels
@@ -37,9 +37,9 @@ from hil.reports.model import report_of
 from hil.reports.policy import Policy
 from hil.robot.options.names import checked
 from hil.running import RunningBoard
-from hil.scenarios.expectation import Check, Watching
+from hil.scenarios.expectation import Check, ExpectationWatch
 from hil.scenarios.script import LiveScript, ScriptFailed
-from hil.serial_port import DEFAULT_KEEP, Deliver, PortError, SerialPort, check_choice, open_port
+from hil.serial_port import DEFAULT_KEEP, Delivery, PortError, SerialPort, check_choice, open_port
 from hil.session import Session
 
 if TYPE_CHECKING:
@@ -157,7 +157,7 @@ def run(
         bool | None, typer.Option("--xbee/--no-xbee", help="Connect the robot and the port by a pair of XBees, or not.")
     ] = None,
     deliver: Annotated[
-        Deliver | None,
+        Delivery | None,
         typer.Option(
             help="Deliver whole frames (default of the robot) or single bytes."
         ),
@@ -257,7 +257,7 @@ def run(
         wants_port = asked_for_a_port if view else not no_port
         if wants_port:
             check_choice(link=link, listen=listen, device=port)
-        manner = deliver or (Deliver.FRAMES if robot else Deliver.BYTES)
+        manner = deliver or (Delivery.FRAMES if robot else Delivery.BYTES)
 
         def open_line(machine: Machine) -> SerialPort | None:
             if not wants_port:
@@ -289,7 +289,7 @@ def run(
         stack.callback(machine.close)
         if wire is not None and without_line(machine):
             raise ValueError(f"--wire: {board} has no line to a PC")
-        logs: list[Growing] = []
+        logs: list[GrowingFile] = []
         wire_log = None if wire is None else stack.enter_context(record(wire, header_of(setup)))
         if wire_log is not None:
             logs.append(wire_log.file)

@@ -13,7 +13,7 @@ from hil.cli import show
 from hil.ending import EXIT_INTERRUPTED
 
 if TYPE_CHECKING:
-    from hil.scenarios.soak import Soaked
+    from hil.scenarios.soak import SoakResult
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
@@ -55,7 +55,7 @@ def soak(
         with bar:
             task = bar.add_task("soak", total=for_s)
 
-            def told(soaked: Soaked) -> None:
+            def told(soaked: SoakResult) -> None:
                 bar.update(task, completed=soaked.seconds, description=f"{sum(soaked.mounted.values())} faults")
 
             soaked = run(for_s, seed=seed, fixes=() if faithful else ("all",), world=world, told=told)
@@ -67,7 +67,7 @@ def soak(
         raise typer.Exit(EXIT_INTERRUPTED)
 
 
-def _print(soaked: Soaked) -> None:
+def _print(soaked: SoakResult) -> None:
     terminal = show.console()
     table = Table(title="Faults", title_justify="left")
     for heading, justify in (("kind", "left"), ("so often", "right"), ("fired", "right"), ("met", "right")):

@@ -20,7 +20,7 @@ from hil.tolerance import EXPLANATION, OFF_BY, residual_percent
 
 
 @dataclass(frozen=True, slots=True)
-class Published:
+class ThesisTimes:
     """The thesis' figures for a task: the measured range (figure 37), computation time and deadline (figure 39)."""
 
     figure37_min_us: float | None
@@ -36,12 +36,12 @@ class Published:
 
 #: Facts of the thesis (3.4.2).  The period of TaskORD is the time of its shortest order on the line.
 PUBLISHED: Final = {
-    "TaskUS": Published(105.26, 107.28, 106.55, 5),
-    "TaskGYRO": Published(42.56, 43.29, 42.97, 5),
-    "TaskORD": Published(None, None, 27.54, 6.25),
-    "TaskSERVO": Published(28.87, 28.87, 20.91, 25),
-    "TaskNAVIGATION": Published(27.76, 27.76, 29.37, 50),
-    "TaskODO": Published(861.68, 861.68, 872.50, 250),
+    "TaskUS": ThesisTimes(105.26, 107.28, 106.55, 5),
+    "TaskGYRO": ThesisTimes(42.56, 43.29, 42.97, 5),
+    "TaskORD": ThesisTimes(None, None, 27.54, 6.25),
+    "TaskSERVO": ThesisTimes(28.87, 28.87, 20.91, 25),
+    "TaskNAVIGATION": ThesisTimes(27.76, 27.76, 29.37, 50),
+    "TaskODO": ThesisTimes(861.68, 861.68, 872.50, 250),
 }
 #: The thesis' sum of C/T over its tasks and interrupts (3.4.4).
 PUBLISHED_CPU_LOAD: Final = 0.043188

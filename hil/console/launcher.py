@@ -96,7 +96,7 @@ class ByteCarrier(Protocol):
         """End soon."""
 
 
-class Farewell:
+class StopWhenAppEnds:
     """After each turn: has the app ended?  Then one ``#STOP``, and the end when the robot has had time for it."""
 
     def __init__(self, process: Process) -> None:

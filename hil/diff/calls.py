@@ -39,7 +39,7 @@ Step = tuple[str, tuple[Value, ...]]
 
 
 @dataclass
-class Called:
+class CallComparison:
     """A function that was called on both sides, or was not."""
 
     calls: int = 0
@@ -115,23 +115,25 @@ class Caller:
         self._ours = {function.path: function for function in self._roles.functions}
         self._theirs = {function.path: function for module in own.modules for function in module.functions}
 
-    def compare(self, path: str) -> Called:
+    def compare(self, path: str) -> CallComparison:
         """Call one function of both."""
         function = self._ours.get(path)
         other = self._theirs.get(path)
         if function is None or other is None:
-            return Called(reason=f"only {OWN if function is None else PORT} has it")
+            return CallComparison(reason=f"only {OWN if function is None else PORT} has it")
         if path in self._roles.entries:
-            return Called(reason=f"it is {self._roles.entries[path]}: the runs show it")
+            return CallComparison(reason=f"it is {self._roles.entries[path]}: the runs show it")
         if path in self._roles.kernel:
-            return Called(reason=f"it uses {self._roles.kernel[path]}, which needs a running program: the runs show it")
+            return CallComparison(
+                reason=f"it uses {self._roles.kernel[path]}, which needs a running program: the runs show it"
+            )
         if [v.ctype.name for v in function.parameters] != [v.ctype.name for v in other.parameters]:
-            return Called(reason="its parameters have other types")
+            return CallComparison(reason="its parameters have other types")
         try:
             wanted = parameters(function, self._ours)
         except NotGenerated as why:
-            return Called(reason=f"{why}: the runs show it")
-        called = Called()
+            return CallComparison(reason=f"{why}: the runs show it")
+        called = CallComparison()
         for before in self._circumstances(path):
             self._compare(called, function, other, wanted, before)
         return called
@@ -159,7 +161,8 @@ class Caller:
             return None
 
     def _compare(
-        self, called: Called, function: Function, other: Function, wanted: list[Parameter], before: tuple[Step, ...]
+        self, called: CallComparison, function: Function, other: Function, wanted: list[Parameter],
+        before: tuple[Step, ...],
     ) -> None:  # fmt: skip
         sides: tuple[_Side, _Side] | None = None
         unended = 0
@@ -188,7 +191,7 @@ class Caller:
             side.image.close()
 
     def _note(
-        self, called: Called, functions: tuple[Function, Function], sides: tuple[_Side, _Side],
+        self, called: CallComparison, functions: tuple[Function, Function], sides: tuple[_Side, _Side],
         seen: tuple[_CallResult, _CallResult], text: str,
     ) -> None:  # fmt: skip
         """Take up how two calls differ, each kind of difference once."""

@@ -11,7 +11,7 @@ from emulator.c28x.program import Program
 from firmware_model.c_files import own as own_files
 from firmware_model.calibration import CALIBRATION
 from firmware_model.image import MODULES
-from hil.diff.calls import Called, Caller
+from hil.diff.calls import CallComparison, Caller
 from hil.diff.difference import BOTH, Difference
 from hil.diff.runs import Runs, compare_runs
 from hil.diff.trees import Trees, compare_trees
@@ -26,7 +26,7 @@ Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True)
-class Wanted:
+class ComparisonOptions:
     """What is compared, and how."""
 
     #: The robot's own C files, or folders with them.
@@ -51,7 +51,7 @@ class Result:
 
     trees: Trees
     #: Function that differs -> what calls of it showed.
-    calls: dict[str, Called] = field(default_factory=dict)
+    calls: dict[str, CallComparison] = field(default_factory=dict)
     runs: Runs | None = None
     cycles: bool = False
 
@@ -139,7 +139,7 @@ class Result:
         }  # fmt: skip
 
 
-def compare_firmware(wanted: Wanted, progress: Progress = lambda what, fraction: None) -> Result:
+def compare_firmware(wanted: ComparisonOptions, progress: Progress = lambda what, fraction: None) -> Result:
     """Compare the port with C files of the robot.
 
     Raises ValueError for what is no file of the robot, SourceError for what is outside the language, LinkError for a

@@ -130,7 +130,7 @@ def _layout(ctype: CType) -> list[tuple[int, str]]:
 
 def compare_functions(port: CompiledFunction, own: CompiledFunction, factor: float = 1.0) -> list[Difference]:
     """How two functions differ; nothing if they are equal.  `factor`: the factor on its cycles."""
-    walk = _Walk(port.function, own.function, factor)
+    walk = _FunctionComparison(port.function, own.function, factor)
     walk.signature()
     walk.retyped()
     bodies = _undeclared(port.function.body), _undeclared(own.function.body)
@@ -215,7 +215,7 @@ _FIELDS: Final = {
 # The walk
 
 
-class _Walk:
+class _FunctionComparison:
     """Two functions, side by side.  `found` collects how they differ, in the order of the text."""
 
     def __init__(self, port: Function, own: Function, factor: float) -> None:

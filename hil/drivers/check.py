@@ -10,11 +10,11 @@ from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Finding
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from hil.board import Board
-from hil.drivers.judge import Exercised, Judge, Key, key_of
-from hil.drivers.program_run import Ran, run_program
+from hil.drivers.judge import CheckedFunction, Judge, Key, key_of
+from hil.drivers.program_run import ProgramOutcome, run_program
 from hil.drivers.roles import Roles, roles
 from hil.drivers.units import mixed_units
-from hil.faults import Fired
+from hil.faults import FaultOutcome
 from hil.image import Build
 from hil.reports.accepted import allowances
 from hil.reports.model import CalledFunction
@@ -61,9 +61,9 @@ class Checked:
 
     findings: list[Finding] = field(default_factory=list)
     functions: list[CalledFunction] = field(default_factory=list)
-    ran: Ran | None = None
+    ran: ProgramOutcome | None = None
     #: The effect of each fault, in the run and all calls together.
-    faults: tuple[Fired, ...] = ()
+    faults: tuple[FaultOutcome, ...] = ()
 
 
 def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction: None) -> Checked:
@@ -117,7 +117,7 @@ def _add(checked: Checked, findings: Iterable[Finding], keys: dict[Key, Finding]
     return keys
 
 
-def _function(exercised: Exercised, found: Roles, ran: Ran | None) -> CalledFunction:
+def _function(exercised: CheckedFunction, found: Roles, ran: ProgramOutcome | None) -> CalledFunction:
     function = exercised.function
     reason = exercised.reason
     if ran is not None and (function is found.main or function in found.tasks):

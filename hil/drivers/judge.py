@@ -34,7 +34,7 @@ from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, seconds
 from emulator.rules import Severity
 from hil.drivers.budget import CALLS, TimeBudget, computed
 from hil.drivers.places import anchored, of_parts
-from hil.drivers.properties import Property, Tested, broken_contracts, contracted, properties
+from hil.drivers.properties import Property, PropertyTest, broken_contracts, contracted, properties
 from hil.drivers.roles import Roles, deciding, globals_of, reached
 from hil.drivers.values import GUESSED, NotGenerated, Parameter, Value, arguments, moderate, number, parameters
 from hil.drivers.waiting import WAITING, blocks_of_loop, looks_outside, loop_waits, meant_endless, waits_for_others
@@ -117,7 +117,7 @@ Step = tuple[Candidate, tuple[Value, ...]]
 
 
 @dataclass
-class Exercised:
+class CheckedFunction:
     """A function, and what the check did with it."""
 
     function: Function
@@ -137,7 +137,7 @@ class Exercised:
 
 
 @dataclass
-class Prepared:
+class PreparedImage:
     """A fresh image after some calls."""
 
     image: Image
@@ -168,7 +168,7 @@ class CallOutcome:
 
 
 @dataclass(frozen=True)
-class Best:
+class BestCircumstances:
     """The circumstances that suit a function best so far: their findings, and the calls before."""
 
     rank: tuple[int, int] = (0, 0)
@@ -188,7 +188,7 @@ class Judge:
         self.seed = seed
         self.limit_s = limit_s
         self.found: dict[Key, Finding] = {}
-        self.exercised: list[Exercised] = []
+        self.exercised: list[CheckedFunction] = []
         self._files, self._others = build.files, build.others
         self._own = {function.path: function for function in roles.functions}
         self.callables: list[Candidate] = []
@@ -201,7 +201,7 @@ class Judge:
                     self.callables.append(Candidate(function, self._parameters(function)))
                 except NotGenerated as why:
                     reason = str(why)
-            self.exercised.append(Exercised(function, reason=reason))
+            self.exercised.append(CheckedFunction(function, reason=reason))
             if not reason:
                 self.exercised[-1].guessed = tuple(p.name for p in self.callables[-1].parameters if p.guessed)
         self._before: dict[str, tuple[tuple[Step, ...], bool]] = {}
@@ -265,7 +265,7 @@ class Judge:
                 continue
             results, objects = partial(self._results, candidate), partial(self._objects, candidate)
             seed = f"{self.seed}:{function.path}:properties"
-            tested = Tested(function, candidate.parameters, results, objects, seed)
+            tested = PropertyTest(function, candidate.parameters, results, objects, seed)
             for one, example in tested.broken():
                 yield self._told(function, f"{function.name} is declared {_as_declared(one)}: {example}", one)
         for place, message, _ in broken_contracts(self.roles.functions):
@@ -279,7 +279,7 @@ class Judge:
             "declared-property", message, function.path, "", place, (place,), "main", 0, details=(declared,)
         )
 
-    def _alone(self, candidate: Candidate) -> Prepared | None:
+    def _alone(self, candidate: Candidate) -> PreparedImage | None:
         """A fresh image after the calls that the function needs; None if there is none."""
         path = candidate.function.path
         before, started = self._before.get(path) or (self._initialising(None, _SIZES[0]), self._started)
@@ -288,7 +288,7 @@ class Judge:
     def _results(self, candidate: Candidate, lists: Sequence[tuple[Value, ...]], fresh: bool) -> list[Any]:
         """`properties.Results`."""
         found: list[Any] = []
-        prepared: Prepared | None = None
+        prepared: PreparedImage | None = None
         for values in lists:
             prepared = prepared or self._alone(candidate)
             outcome = self._one(prepared, candidate, values, settle=False) if prepared else CallOutcome(ended=False)
@@ -303,7 +303,7 @@ class Judge:
     def _objects(
         self, candidate: Candidate, lists: Sequence[tuple[Value, ...]]
     ) -> list[dict[str, list[Any]]] | None:  # fmt: skip
-        """`Tested.objects`."""
+        """`PropertyTest.objects`."""
         prepared = self._alone(candidate)
         if prepared is None:
             return None
@@ -349,11 +349,11 @@ class Judge:
                 self._keep(key, replace(finding, how="generated"))
         prepared.close()
 
-    def _best(self, candidate: Candidate, probes: Sequence[tuple[Value, ...]], *, started: bool) -> Best:
+    def _best(self, candidate: Candidate, probes: Sequence[tuple[Value, ...]], *, started: bool) -> BestCircumstances:
         """The circumstances with the fewest findings, with clocks on from the start or not, and these findings."""
         if self.roles.main is not None:  # all that could be proven is a note: the program says how it is used
-            return Best(before=self._initialising(candidate, _SIZES[0]))
-        best: Best | None = None
+            return BestCircumstances(before=self._initialising(candidate, _SIZES[0]))
+        best: BestCircumstances | None = None
         deciders = [c for c in self.callables if c.function.path in self._decided_by(candidate)]
         hopeless = not started and not any(self._switches(c, _CLOCKS) for c in deciders)
         for before in self._circumstances(candidate):
@@ -364,7 +364,7 @@ class Judge:
                 continue
             rank = sum(rule in _UNPREPARED for rule, *_ in proven), len(proven)
             if best is None or rank < best.rank:
-                best = Best(rank, proven, before)
+                best = BestCircumstances(rank, proven, before)
             elif rank == best.rank:
                 best = replace(best, proven={key: f for key, f in best.proven.items() if key in proven})
             if not best.proven or (hopeless and any(rule == "clock-gated" for rule, *_ in proven)):
@@ -378,7 +378,7 @@ class Judge:
         before = self._initialising(None, _SIZES[0])
         waiting = [c for c in self.callables if not self._prepares(c)]
         lists = {c: arguments(c.parameters, PROBES, f"{self.seed}:{c.function.path}") for c in waiting}
-        prepared: Prepared | None = None
+        prepared: PreparedImage | None = None
         for _ in range(_TURNS * len(waiting) if len(waiting) > 1 else 0):
             prepared = prepared or self._prepared(before, settle=True, started=self._started)
             if prepared is None or not waiting or self._budget.over:
@@ -488,7 +488,7 @@ class Judge:
         self, candidate: Candidate, before: tuple[Step, ...], lists: Sequence[tuple[Value, ...]], *, started: bool
     ) -> None:  # fmt: skip
         """Call it with every argument list.  Calls follow each other on one image as long as they return."""
-        prepared: Prepared | None = None
+        prepared: PreparedImage | None = None
         exercised = self._by_path[candidate.function.path]
         cuts = 0
         again = len(lists) == 1 and not self._prepares(candidate)
@@ -511,7 +511,7 @@ class Judge:
         if prepared is not None:
             prepared.close()
 
-    def _prepared(self, before: tuple[Step, ...], *, settle: bool, started: bool) -> Prepared | None:
+    def _prepared(self, before: tuple[Step, ...], *, settle: bool, started: bool) -> PreparedImage | None:
         """A fresh image after some calls, and with `settle` after some time; None if a call does not return.
 
         `started`: all clocks are on before the calls.
@@ -519,7 +519,7 @@ class Judge:
         image = self.build.image()
         self._budget.image()
         guard(image.board, image.linked, self.limit_s)
-        prepared = Prepared(image)
+        prepared = PreparedImage(image)
         if started:
             image.start()
         for step, values in before:
@@ -534,7 +534,7 @@ class Judge:
         return prepared
 
     def _one(
-        self, prepared: Prepared, candidate: Candidate, values: tuple[Value, ...], *, settle: bool = True
+        self, prepared: PreparedImage, candidate: Candidate, values: tuple[Value, ...], *, settle: bool = True
     ) -> CallOutcome:  # fmt: skip
         """One call, and with `settle` some time after it."""
         image, ready = prepared.image, prepared.ready

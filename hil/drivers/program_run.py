@@ -19,7 +19,7 @@ from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
 from hil.drivers.stale import AgeWatch, watched
 from hil.drivers.waiting import (
-    Nobody,
+    EndedParties,
     in_last_loop,
     meant_endless,
     retried,
@@ -45,7 +45,7 @@ _OBSERVED: Final = 2 * RUN
 
 
 @dataclass
-class Stood:
+class EndPosition:
     """Where a `main` stood at the end of its time; empty if it returned.
 
     It holds the places, innermost first, and the loops without a limit that `main` was in for half of its run.
@@ -55,12 +55,12 @@ class Stood:
     loops: set[tuple[str, int]] | None = None
 
 
-class _Over(Exception):
+class _TimeUp(Exception):
     """The time or the budget of the run is used up."""
 
 
 @dataclass(frozen=True)
-class Ran:
+class ProgramOutcome:
     """The outcome of a run."""
 
     findings: tuple[Finding, ...]
@@ -74,7 +74,7 @@ class Ran:
 def run_program(
     build: Build, roles: Roles, for_s: float, progress: Callable[[float], None], *, board_named: bool = False,
     silence: bool = False,
-) -> Ran:  # fmt: skip
+) -> ProgramOutcome:  # fmt: skip
     """Run `main`, or without one the tasks, for `for_s` seconds of virtual time.
 
     Findings of tasks without a `main` are notes: the part of their program that creates objects before they run is not
@@ -120,21 +120,21 @@ def _begin(build: Build, roles: Roles) -> Image:
 
 def _go(
     image: Image, roles: Roles, until: Callable[[], int], budget: TimeBudget, progress: Callable[[float], None]
-) -> Stood:  # fmt: skip
+) -> EndPosition:  # fmt: skip
     """Run the program until the time `until()`.  At that time it may return a later one.  Returns as `_bare`."""
     if roles.main is not None and not roles.begins_kernel:
         return _bare(image, roles, roles.main, until, budget, progress)
     _kernel(image, roles, until, budget, progress)
-    return Stood()
+    return EndPosition()
 
 
 def _run(
     build: Build, roles: Roles, for_s: float, progress: Callable[[float], None], *, patient: bool, board_named: bool
-) -> Ran:  # fmt: skip
+) -> ProgramOutcome:  # fmt: skip
     image = _begin(build, roles)
     budget = TimeBudget(RUN)
     stop: BaseException | None = None
-    stood = Stood()
+    stood = EndPosition()
     end = image.board.clock.now + round(for_s * SYSCLK_HZ)
     if patient:
         image.allow_loops(2 * end + SYSCLK_HZ)
@@ -164,7 +164,7 @@ def _run(
         )  # fmt: skip
     for hung in image.board.findings.of("endless-poll"):
         if hung.task == "main" and hung.place is not None and not waits_for_others(hung, roles):
-            image.board.watchdog.report_in_vain(hung.time_cycles - image.linked.runtime.poll_limit, hung.place)
+            image.board.watchdog.report_hung_main(hung.time_cycles - image.linked.runtime.poll_limit, hung.place)
     seen = [anchored(finding, build.files, build.others) for finding in image.board.findings if finding.how != "static"]
     # Behind the end only the poll that was waited for is the run's, and what its close shows.
     waited_for = ("endless-poll", "watchdog-in-vain")
@@ -184,10 +184,10 @@ def _run(
     cut = ""
     if image.board.clock.now < end and budget.over:
         cut = "this machine took too long" if budget.cut else "it has computed as much as a run may"
-    return Ran(weighed, seconds(min(image.board.clock.now, end)), "" if said else str(stop), cut)
+    return ProgramOutcome(weighed, seconds(min(image.board.clock.now, end)), "" if said else str(stop), cut)
 
 
-def _retried(image: Image, stood: Stood, roles: Roles) -> None:
+def _retried(image: Image, stood: EndPosition, roles: Roles) -> None:
     """Report a transaction that the program repeats until it succeeds, and that no device answers."""
     for letter, i2c in image.board.i2c.items() if stood.loops else ():
         found = retried(stood.loops or (), f"I2c{letter.lower()}Regs", roles) if i2c.refusals >= _REFUSALS else None
@@ -197,23 +197,23 @@ def _retried(image: Image, stood: Stood, roles: Roles) -> None:
             i2c.report_retry(Place(at.file, at.line, function.name, function.c_file, at.column))
 
 
-def _nobody(image: Image) -> Nobody:
+def _nobody(image: Image) -> EndedParties:
     """The interrupt routines and devices that can end no wait any more, at the end of a run."""
     board = image.board
     blocks = [f"I2c{letter.lower()}Regs" for letter in I2C_PIE]
     refused = [block for block in blocks if board.register(block, "I2CSTR").value & I2CSTR.NACK.mask]
-    return Nobody(board.connections.silent if board.connections is not None else (), refused)
+    return EndedParties(board.connections.silent if board.connections is not None else (), refused)
 
 
 def _bare(
     image: Image, roles: Roles, main: Function, until: Callable[[], int], budget: TimeBudget,
     progress: Callable[[float], None],
-) -> Stood:  # fmt: skip
+) -> EndPosition:  # fmt: skip
     """Run a `main` without a kernel until its time or its budget is used up.
 
     If it then only polls, it runs on until the poll ends or is found to be endless.
     """
-    stood = Stood()
+    stood = EndPosition()
     clock, position, places = image.board.clock, image.board.findings.position, image.board.findings.places
     end = until()
     step = max(1, min((end - clock.now) // 50, SYSCLK_HZ // 50))
@@ -236,12 +236,12 @@ def _bare(
             stood.frames = [places[at] for at, _ in position.frames()]
             if image.board.connections is not None:
                 image.board.connections.started_up = in_last_loop(stood.frames, main)
-            raise _Over
+            raise _TimeUp
         progress(min(1.0, clock.now / end))
         clock.after(min(step, end - clock.now) if clock.now < end else step, look)
 
     look()
-    with suppress(_Over):
+    with suppress(_TimeUp):
         image.call(main.path, ())
     return stood
 

@@ -119,7 +119,7 @@ def broken_contracts(functions: Sequence[Function]) -> Iterator[tuple[Place, str
 
 
 @dataclass(frozen=True, slots=True)
-class Tested:
+class PropertyTest:
     """A function with declared properties, its parameters, and how to call it."""
 
     function: Function
@@ -247,10 +247,10 @@ def _size(values: tuple[Value, ...]) -> float:
     return sum(abs(s) for value in values for s in value.scalars if isinstance(s, int | float))
 
 
-_TESTS: Final[dict[str, Callable[[Tested, Property], str]]] = {
-    "range": Tested._in_range,
-    "monotone": Tested._monotone,
-    "odd": Tested._mirrored,
-    "even": Tested._mirrored,
-    "idempotent": Tested._idempotent,
+_TESTS: Final[dict[str, Callable[[PropertyTest, Property], str]]] = {
+    "range": PropertyTest._in_range,
+    "monotone": PropertyTest._monotone,
+    "odd": PropertyTest._mirrored,
+    "even": PropertyTest._mirrored,
+    "idempotent": PropertyTest._idempotent,
 }

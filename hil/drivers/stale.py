@@ -246,7 +246,7 @@ class ValueSources:
 
 
 @dataclass
-class Followed:
+class SourceTracking:
     """How an output has followed a source, at one statement."""
 
     #: The place where its value is chosen, and the calls to it.
@@ -304,7 +304,7 @@ class AgeWatch:
         self._laid: set[tuple[str, int]] = set()
         self._laid_at = 0
         #: (place of the output, place where its value is chosen, source) -> how the output followed the source.
-        self.followed: dict[tuple[Place, Place, str], Followed] = {}
+        self.followed: dict[tuple[Place, Place, str], SourceTracking] = {}
         #: When the sources were cut off.
         self._cut = 0
         image.linked.watch_with(self._touch)
@@ -380,7 +380,7 @@ class AgeWatch:
                 known = self.followed.get((place, path[0], source))
                 if known is None:
                     where = "" if path[0] == place else f" in {place}"
-                    known = Followed(path, self._findings.context(), register_text(s.target), where, birth)
+                    known = SourceTracking(path, self._findings.context(), register_text(s.target), where, birth)
                     self.followed[place, path[0], source] = known
                 known.objects |= {o[0] for o in origins if o[0] and source in self._of(frozenset({o}))}
                 known.use(birth, self._clock.now, word & mask)

@@ -43,7 +43,7 @@ _KEEPS = ("+", "-")
 
 
 @dataclass(frozen=True, slots=True)
-class Mixed:
+class UnitMismatch:
     """A place where a value of one unit goes to a target of another unit."""
 
     place: Place
@@ -51,7 +51,7 @@ class Mixed:
     object: str
 
 
-def mixed_units(modules: Iterable[Module]) -> list[Mixed]:
+def mixed_units(modules: Iterable[Module]) -> list[UnitMismatch]:
     """The places of `modules` where units are mixed.
 
     Raises ValueError, one line with file and line, for a declaration that names nothing.
@@ -67,7 +67,7 @@ class _Units:
     def __init__(self, modules: list[Module]) -> None:
         self.results: dict[str, str] = {}
         self.variables: dict[Variable, str] = {}
-        self._found: list[Mixed] = []
+        self._found: list[UnitMismatch] = []
         functions = [function for module in modules for function in module.functions]
         objects = [variable for module in modules for variable in module.variables]
         objects += [variable for function in functions for variable in (*function.parameters, *function.locals)]
@@ -106,13 +106,13 @@ class _Units:
                 taken.setdefault(root, set()).add(self._unit(value))
         self.variables.update({v: units.pop() for v, units in taken.items() if len(units) == 1 and "" not in units})
 
-    def of(self, function: Function) -> list[Mixed]:
+    def of(self, function: Function) -> list[UnitMismatch]:
         """The places in one function where units are mixed."""
         self._found = []
 
         def say(where: Where, message: str, what: str) -> None:
             place = Place(function.where.file, where.line, function.name, function.c_file, where.column)
-            self._found.append(Mixed(place, message, what))
+            self._found.append(UnitMismatch(place, message, what))
 
         for s in statements(function.body):
             for root in roots(s):

@@ -52,7 +52,7 @@ _OF_REFUSAL: Final = ("NACK", "ARDY")
 
 
 @dataclass(frozen=True, slots=True)
-class Nobody:
+class EndedParties:
     """The parties that can end no wait any more, in a run that is over."""
 
     #: Names of interrupt routines that never run again.
@@ -61,10 +61,10 @@ class Nobody:
     refused: Collection[str] = ()
 
 
-NOBODY: Final = Nobody()
+NOBODY: Final = EndedParties()
 
 
-def waits_for_others(finding: Finding, roles: Roles, nobody: Nobody = NOBODY) -> bool:
+def waits_for_others(finding: Finding, roles: Roles, nobody: EndedParties = NOBODY) -> bool:
     """Whether a finding is about an endless loop that something outside of its function can end.
 
     A loop that is written without an end, as `for (;;)`, in a function that never returns is endless on purpose.
@@ -85,7 +85,7 @@ def meant_endless(finding: Finding, roles: Roles) -> bool:
     return any(without_end(loop) for loop in loops)
 
 
-def loop_waits(place: Place, roles: Roles, *, main: bool = False, nobody: Nobody = NOBODY) -> bool:
+def loop_waits(place: Place, roles: Roles, *, main: bool = False, nobody: EndedParties = NOBODY) -> bool:
     """Whether a place lies in a loop that something outside of its function can end.
 
     While `main` waits, only functions run that the chip or the kernel enters.
@@ -131,7 +131,7 @@ def retried(loops: Collection[tuple[str, int]], block: str, roles: Roles) -> tup
     return None
 
 
-def vain_loop(frames: Sequence[Place], roles: Roles, nobody: Nobody) -> tuple[Place, str] | None:
+def vain_loop(frames: Sequence[Place], roles: Roles, nobody: EndedParties) -> tuple[Place, str] | None:
     """A loop of `main` that only interrupt routines could end, while none of them runs any more.
 
     Returns where the loop begins, and an object that it tests; None if `main` is in no such loop.

@@ -12,7 +12,7 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING
 
 from emulator.clock import SYSCLK_HZ
-from hil.faults.effect import Effect, Mounted
+from hil.faults.effect import Effect, MountedFault
 from hil.faults.kinds import FaultKind, FaultParameter
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ _INPUT = FaultParameter("input", "", "ADC and channel, as A2", type=str)
 class _OfInput(Effect):
     """A fault at one input."""
 
-    def __init__(self, mounted: Mounted) -> None:
+    def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
         found = re.fullmatch(r"([A-D])(\d{1,2})", self.text("input").upper())
         if found is None or int(found[2]) > 15:
@@ -33,7 +33,7 @@ class _OfInput(Effect):
 
     def begin(self) -> None:
         """It begins."""
-        self.ends_with(self.board.adc[self.adc].spoil(self.spoilt))
+        self.ends_with(self.board.adc[self.adc].inject_fault(self.spoilt))
 
     @abstractmethod
     def spoilt(self, soc: int, channel: int, code: int) -> int:
@@ -108,7 +108,7 @@ class ReferenceDrift(Effect):
     def begin(self) -> None:
         """It begins."""
         self._began = self.clock.now
-        self.ends_with(self.board.adc[self.text("adc")].spoil(self._spoilt))
+        self.ends_with(self.board.adc[self.text("adc")].inject_fault(self._spoilt))
 
     def _spoilt(self, soc: int, _channel: int, code: int) -> int:
         over = self.number("over") * SYSCLK_HZ
@@ -121,12 +121,12 @@ class ReferenceDrift(Effect):
         return after
 
 
-class Dead(Effect):
+class ConverterDead(Effect):
     """An ADC does not convert: what is started waits, and no interrupt flag is set."""
 
     def begin(self) -> None:
         """It begins."""
-        self.ends_with(self.board.adc[self.text("adc")].kill())
+        self.ends_with(self.board.adc[self.text("adc")].stop_converting())
         self.fired(self.board.blocks[f"Adc{self.text('adc').lower()}Regs"].registers["ADCINTFLG"])
 
 
@@ -153,5 +153,5 @@ KINDS = (
         "adc-input-shorted", "An ADC input is shorted to one voltage.", "any board", InputShorted,
         (_INPUT, FaultParameter("volts", "V", "which", 0.0, 0.0, 3.6)),
     ),
-    FaultKind("adc-dead", "An ADC stops converting.", "any board", Dead, (_ADC,)),
+    FaultKind("adc-dead", "An ADC stops converting.", "any board", ConverterDead, (_ADC,)),
 )  # fmt: skip

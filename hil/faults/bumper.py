@@ -8,7 +8,7 @@ from emulator.devices.touch_sensor import TouchSensor
 from emulator.registers.cell import Cell
 from emulator.signals import Wire
 from hil.board import Board
-from hil.faults.effect import Effect, FaultTarget, Mounted
+from hil.faults.effect import Effect, FaultTarget, MountedFault
 from hil.faults.kinds import FaultKind, FaultParameter
 
 _DRIVER: Final = "touch sensor"
@@ -17,7 +17,7 @@ _DRIVER: Final = "touch sensor"
 class _OfBumper(Effect):
     """A fault of the contact: the sensor drives a wire that leads nowhere, the fault the pin."""
 
-    def __init__(self, mounted: Mounted) -> None:
+    def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
         self.bumper = _bumper(self.board)
         part = next(part for part in self.board.parts.values() if part.device is self.bumper)

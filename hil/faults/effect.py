@@ -43,7 +43,7 @@ class Phase(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Met:
+class FirstAccess:
     """The first access that met a fault: `place` as file:line, with its function, the task and the time."""
 
     place: str
@@ -53,13 +53,13 @@ class Met:
 
 
 @dataclass(frozen=True, slots=True)
-class Fired:
+class FaultOutcome:
     """What came of a fault.  Times are seconds after start-up, as those of orders."""
 
     fault: Fault
     times_s: tuple[float, ...]
     count: int
-    met: Met | None
+    met: FirstAccess | None
 
     def __str__(self) -> str:
         if not self.count:
@@ -69,9 +69,9 @@ class Fired:
         by = f"met by {met.task} at {met.place} at {met.time_s:.6f} s" if met else "no access of the firmware met it"
         return f"{self.fault}: fired {often}, first at {self.times_s[0]:.6f} s; {by}"
 
-    def and_then(self, later: Fired) -> Fired:
+    def and_then(self, later: FaultOutcome) -> FaultOutcome:
         """Of the same fault on two machines in turn: times, and who met it, are those of the first that has some."""
-        return Fired(self.fault, self.times_s or later.times_s, self.count + later.count, self.met or later.met)
+        return FaultOutcome(self.fault, self.times_s or later.times_s, self.count + later.count, self.met or later.met)
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
@@ -101,7 +101,7 @@ class FaultTarget(Protocol):
 class Effect(ABC):
     """What a kind of fault does.  Made when it is mounted; raises ValueError for a board that has not what it needs."""
 
-    def __init__(self, mounted: Mounted) -> None:
+    def __init__(self, mounted: MountedFault) -> None:
         self.suits(mounted.machine)
         self.mounted = mounted
         self.machine = mounted.machine
@@ -154,7 +154,7 @@ class Effect(ABC):
 
     def repeat(self, rate_hz: float, action: Callable[[], None]) -> None:
         """Call `action` at random times, `rate_hz` a second, until the end."""
-        Repeated(self, rate_hz, action).plan()
+        RandomTimes(self, rate_hz, action).plan()
 
     # Registers through which something comes into the firmware
 
@@ -175,7 +175,7 @@ class Effect(ABC):
         return next((name for name in signals if gpio in PIN_FUNCTIONS.get(name, {})), None)
 
 
-class Repeated:
+class RandomTimes:
     """Something that happens at random times, each `expovariate` after the one before."""
 
     def __init__(self, effect: Effect, rate_hz: float, action: Callable[[], None]) -> None:
@@ -196,7 +196,7 @@ class Repeated:
         self._effect.clock.cancel(self._event)
 
 
-class Mounted:
+class MountedFault:
     """A fault on a board, until it is removed."""
 
     def __init__(self, fault: Fault, machine: FaultTarget, start_cycles: int) -> None:
@@ -208,16 +208,16 @@ class Mounted:
         self.phase = Phase.WAITS
         self._start = start_cycles
         self._times: list[float] = []
-        self._met: Met | None = None
+        self._met: FirstAccess | None = None
         self._tapped: set[Cell] = set()
         self._watching: Callable[[], None] | None = None
         self._effect: Effect = fault.kind.effect(self)
         at = self._start + round(float(fault.values["at"]) * SYSCLK_HZ)
         self._event: Event | None = machine.clock.schedule(max(at, machine.clock.now), self._due)
 
-    def report(self) -> Fired:
+    def report(self) -> FaultOutcome:
         """When it fired, how often, and who met it first."""
-        return Fired(self.fault, tuple(self._times), self.count, self._met)
+        return FaultOutcome(self.fault, tuple(self._times), self.count, self._met)
 
     def remove(self) -> None:
         """End it, and hear of nothing more.  Its report stays."""
@@ -281,7 +281,7 @@ class Mounted:
             place, function = "", ""
             if places:
                 place, function = f"{relative_path(places[0].file)}:{places[0].numbers}", places[0].function
-            self._met = Met(place, function, self.machine.findings.context(), self._since_start_s())
+            self._met = FirstAccess(place, function, self.machine.findings.context(), self._since_start_s())
             # Not now: who is told of an access is not changed while it is told.
             self.machine.clock.after(0, self._untap)
 
@@ -296,7 +296,7 @@ class Mounted:
         return self._met is not None
 
 
-def mount(fault: Fault, machine: Machine | FaultTarget, *, from_now: bool = False) -> Mounted:
+def mount(fault: Fault, machine: Machine | FaultTarget, *, from_now: bool = False) -> MountedFault:
     """Put a fault on a machine, before or after its start-up.  Raises ValueError for a board that cannot have it.
 
     Times count from the end of start-up, or `from_now`.
@@ -305,6 +305,6 @@ def mount(fault: Fault, machine: Machine | FaultTarget, *, from_now: bool = Fals
         raise ValueError(f"{fault.kind.name}: only an emulated board can have faults")
     carrier = cast("FaultTarget", machine)
     try:
-        return Mounted(fault, carrier, carrier.clock.now if from_now else carrier.start_up_cycles)
+        return MountedFault(fault, carrier, carrier.clock.now if from_now else carrier.start_up_cycles)
     except ValueError as error:
         raise ValueError(f"{fault.kind.name}: {error}") from None

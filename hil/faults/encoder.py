@@ -12,7 +12,7 @@ from typing import Any, Final
 from emulator.devices.nxt_motor import NxtMotor
 from emulator.registers.cell import Cell
 from emulator.signals import QuadratureWire
-from hil.faults.effect import Effect, FaultTarget, Mounted
+from hil.faults.effect import Effect, FaultTarget, MountedFault
 from hil.faults.kinds import FaultKind, FaultParameter
 
 _SIDE: Final = FaultParameter("side", "", "which wheel", "left", choices=("left", "right"), type=str)
@@ -22,7 +22,7 @@ _HOLD_NM: Final = 5.0
 class _OfWheel(Effect):
     """A fault of a wheel."""
 
-    def __init__(self, mounted: Mounted) -> None:
+    def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
         name = f"{self.text('side')} motor"
         motor = self.board.find(NxtMotor).get(name)
@@ -83,10 +83,10 @@ class PhasesSwapped(_OfEdges):
         return -edges
 
 
-class _Hampered(_OfWheel):
+class _WheelOnFloorFault(_OfWheel):
     """A fault of a wheel on its floor."""
 
-    def __init__(self, mounted: Mounted) -> None:
+    def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
         self.world: Any = getattr(self.machine, "world", None)
 
@@ -112,7 +112,7 @@ class _Hampered(_OfWheel):
         self.fired(*self.counts)
 
 
-class Slips(_Hampered):
+class WheelSlips(_WheelOnFloorFault):
     """It turns more than it rolls."""
 
     def begin(self) -> None:
@@ -121,7 +121,7 @@ class Slips(_Hampered):
         self.ends_with(self.motor.encoder.moved.connect(self.moved))
 
 
-class Blocked(_Hampered):
+class WheelBlocked(_WheelOnFloorFault):
     """It cannot turn."""
 
     def begin(self) -> None:
@@ -143,7 +143,7 @@ KINDS = (
               FaultParameter("rate", "", "probability for each edge", 0.05, 0.0, 1.0)),
     FaultKind("encoder-phases-swapped", "A and B of an encoder are swapped: it counts backwards.",
               "a motor with encoder", PhasesSwapped, (_SIDE,)),
-    FaultKind("wheel-slips", "A wheel slips and loses a part of its distance.", "a robot in its world", Slips,
+    FaultKind("wheel-slips", "A wheel slips and loses a part of its distance.", "a robot in its world", WheelSlips,
               (_SIDE, FaultParameter("percent", "%", "of its way", 30.0, 0.0, 99.0))),
-    FaultKind("wheel-blocked", "A wheel cannot turn.", "a robot in its world", Blocked, (_SIDE,)),
+    FaultKind("wheel-blocked", "A wheel cannot turn.", "a robot in its world", WheelBlocked, (_SIDE,)),
 )  # fmt: skip

@@ -15,7 +15,7 @@ from emulator.devices.l3g4200d_registers import WHO_AM_I
 from emulator.registers.cell import Cell
 from emulator.signals import SpiBus, SpiSlave
 from hil.board import Board
-from hil.faults.effect import Effect, FaultTarget, Mounted
+from hil.faults.effect import Effect, FaultTarget, MountedFault
 from hil.faults.kinds import FaultKind, FaultParameter
 
 _AXES: Final = ("x", "y", "z")
@@ -29,7 +29,7 @@ Answer = Callable[[int, int, "int | None"], "int | None"]
 class _OfGyro(Effect):
     """A fault of the gyro."""
 
-    def __init__(self, mounted: Mounted) -> None:
+    def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
         self.gyro = _gyro(self.board)
         self._part = next(part for part in self.board.parts.values() if part.device is self.gyro)
@@ -48,7 +48,7 @@ class _OfGyro(Effect):
         `cut`: words do not come to it.
         """
         slave = _on(self.bus, self.gyro)
-        before = slave if isinstance(slave, Tampered) else Tampered(self.bus, self.gyro)
+        before = slave if isinstance(slave, TamperedSlave) else TamperedSlave(self.bus, self.gyro)
         before.add(with_answer, cut=cut)
         self.ends_with(lambda: before.remove(with_answer))
 
@@ -76,7 +76,7 @@ def _on(bus: SpiBus, gyro: L3G4200D) -> SpiSlave | None:
     return next((slave for slave in bus.slaves if getattr(slave, "slave", slave) is gyro), None)
 
 
-class Tampered:
+class TamperedSlave:
     """A device whose answers are changed on their way; it stands before the device on the bus."""
 
     def __init__(self, bus: SpiBus, slave: SpiSlave) -> None:
@@ -142,7 +142,7 @@ class SelectLost(_OfGyro):
         return answer
 
 
-class Reset(_OfGyro):
+class GyroReset(_OfGyro):
     """It loses its supply for a moment."""
 
     def begin(self) -> None:
@@ -199,7 +199,7 @@ class BiasJump(_OfGyro):
         return x, y, z
 
 
-class Saturation(_OfGyro):
+class GyroSaturation(_OfGyro):
     """An axis is at the end of its range."""
 
     def begin(self) -> None:
@@ -218,12 +218,12 @@ KINDS = (
     FaultKind("gyro-miso-stuck", "MISO of the gyro's bus stays at one level.", _NEEDS, MisoStuck,
               (FaultParameter("level", "", "which", 1, 0, 1, type=int),)),
     FaultKind("gyro-select-lost", "The gyro's chip select does not reach it.", _NEEDS, SelectLost),
-    FaultKind("gyro-reset", "The gyro is reset: power-down, registers at their reset values.", _NEEDS, Reset,
+    FaultKind("gyro-reset", "The gyro is reset: power-down, registers at their reset values.", _NEEDS, GyroReset,
               rate=FaultParameter("rate", "Hz", "how often again, at random times; 0: once", 0.0, 0.0, 100.0)),
     FaultKind("gyro-who-am-i", "WHO_AM_I of the gyro is not 0xD3.", _NEEDS, WhoAmI,
               (FaultParameter("value", "", "what WHO_AM_I reads", 0x33, 0, 0xFF, type=int),)),
     FaultKind("gyro-bias-jump", "The zero-rate level of an axis jumps.", _NEEDS, BiasJump,
               (_AXIS, FaultParameter("dps", "deg/s", "by how much", 20.0, -2000.0, 2000.0))),
-    FaultKind("gyro-saturation", "An axis is at the end of its range.", _NEEDS, Saturation,
+    FaultKind("gyro-saturation", "An axis is at the end of its range.", _NEEDS, GyroSaturation,
               (_AXIS, FaultParameter("sign", "", "which end", "+", choices=("+", "-"), type=str))),
 )  # fmt: skip

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from emulator.c28x.ctypes import part_name, scalars
 from emulator.c28x.memory import RAM, Object
-from hil.faults.effect import Effect, Mounted
+from hil.faults.effect import Effect, MountedFault
 from hil.faults.kinds import FaultKind, FaultParameter
 
 
 class BitFlip(Effect):
     """A bit of a word is the other one, once or now and then."""
 
-    def __init__(self, mounted: Mounted) -> None:
+    def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
         self.address = self._address(self.text("word"))
         self._flipped = False

@@ -9,14 +9,14 @@ from abc import abstractmethod
 
 from emulator.clock import CYCLES_PER_MS
 from emulator.devices.xbee import XBeeLink
-from hil.faults.effect import Effect, FaultTarget, Mounted
+from hil.faults.effect import Effect, FaultTarget, MountedFault
 from hil.faults.kinds import FaultKind, FaultParameter
 
 
 class _OfRadio(Effect):
     """A fault of the air."""
 
-    def __init__(self, mounted: Mounted) -> None:
+    def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
         self.air = next(iter(self.board.find(XBeeLink).values())).air
 
@@ -43,7 +43,7 @@ class _OfRadio(Effect):
         """Whether a packet is lost, and how much later it comes."""
 
 
-class Loss(_OfRadio):
+class PacketLoss(_OfRadio):
     """Packets are lost."""
 
     def packet(self) -> tuple[bool, int]:
@@ -54,7 +54,7 @@ class Loss(_OfRadio):
         return lost, 0
 
 
-class Latency(_OfRadio):
+class PacketLatency(_OfRadio):
     """Packets come late."""
 
     def packet(self) -> tuple[bool, int]:
@@ -66,9 +66,9 @@ class Latency(_OfRadio):
 
 
 KINDS = (
-    FaultKind("radio-loss", "Packets of the radio are lost.", "the radio (--xbee)", Loss, (),
+    FaultKind("radio-loss", "Packets of the radio are lost.", "the radio (--xbee)", PacketLoss, (),
               FaultParameter("rate", "", "probability for each packet", 1.0, 0.0, 1.0)),
-    FaultKind("radio-latency", "Packets of the radio come late.", "the radio (--xbee)", Latency,
+    FaultKind("radio-latency", "Packets of the radio come late.", "the radio (--xbee)", PacketLatency,
               (FaultParameter("ms", "ms", "how much later", 200.0, 0.0, 60_000.0),),
               FaultParameter("rate", "", "probability for each packet", 1.0, 0.0, 1.0)),
 )  # fmt: skip

@@ -15,7 +15,7 @@ from typing import Final
 from emulator.clock import SYSCLK_HZ
 from emulator.registers.cell import Cell
 from emulator.signals import SerialFrame, SerialLine
-from hil.faults.effect import Effect, FaultTarget, Mounted
+from hil.faults.effect import Effect, FaultTarget, MountedFault
 from hil.faults.kinds import FaultKind, FaultParameter
 
 _DIRECTION: Final = FaultParameter(
@@ -27,7 +27,7 @@ _RATE: Final = FaultParameter("rate", "", "probability for each byte", 1.0, 0.0,
 class OfLine(Effect):
     """A fault of one direction of the line."""
 
-    def __init__(self, mounted: Mounted) -> None:
+    def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
         pc = self.board.pc
         assert pc is not None
@@ -107,7 +107,7 @@ class ByteDoubled(OfLine):
         self.line.deliver(frame)
 
 
-class Burst(OfLine):
+class NoiseBurst(OfLine):
     """A run of bytes is noise."""
 
     _left = 0
@@ -126,7 +126,7 @@ class Burst(OfLine):
         return (replace(frame, data=noise),)
 
 
-class Stall(OfLine):
+class LineStall(OfLine):
     """Nothing passes; what was held comes afterwards, in one go."""
 
     def begin(self) -> None:
@@ -189,9 +189,9 @@ KINDS = (
                                      type=int)), _RATE),
     FaultKind("serial-byte-lost", "A byte on the line is lost.", _NEEDS, ByteLost, (_DIRECTION,), _RATE),
     FaultKind("serial-byte-doubled", "A byte comes twice.", _NEEDS, ByteDoubled, (_DIRECTION,), _RATE),
-    FaultKind("serial-burst", "A run of bytes is noise.", _NEEDS, Burst,
+    FaultKind("serial-burst", "A run of bytes is noise.", _NEEDS, NoiseBurst,
               (_DIRECTION, FaultParameter("bytes", "", "how long a run is", 8, 1, 1000, type=int)), _RATE),
-    FaultKind("serial-stall", "The line passes nothing; held bytes arrive together at the end.", _NEEDS, Stall,
+    FaultKind("serial-stall", "The line passes nothing; held bytes arrive together at the end.", _NEEDS, LineStall,
               (_DIRECTION,)),
     FaultKind("serial-break", "The line is held low.", _NEEDS, HeldLow, (_DIRECTION,)),
     FaultKind("serial-wrong-baud", "The sender uses another baud rate.", _NEEDS, WrongBaud,

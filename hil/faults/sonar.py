@@ -15,7 +15,7 @@ from emulator.devices.lv_maxsonar import SLEW_END_CYCLES, LvMaxSonar
 from emulator.devices.lv_maxsonar_beam import Echo
 from emulator.devices.lv_maxsonar_ring import SonarRing
 from hil.board import Board
-from hil.faults.effect import Effect, FaultTarget, Mounted
+from hil.faults.effect import Effect, FaultTarget, MountedFault
 from hil.faults.kinds import FaultKind, FaultParameter
 
 _SENSOR: Final = FaultParameter("sensor", "", "name in the ring: LEFT, FRONT, RIGHT, ...", "FRONT", type=str)
@@ -34,7 +34,7 @@ def sensors(board: Board) -> dict[str, tuple[LvMaxSonar, str, int]]:
 class _OfSensor(Effect):
     """A fault of one sensor."""
 
-    def __init__(self, mounted: Mounted) -> None:
+    def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
         found = sensors(self.board)
         wanted = self.text("sensor").upper()
@@ -65,7 +65,7 @@ class _OfSensor(Effect):
         self.mounted.watch(self.results(self.adc, self.channel))
 
 
-class Deaf(_OfSensor):
+class SonarDeaf(_OfSensor):
     """It hears nothing."""
 
     def begin(self) -> None:
@@ -101,13 +101,15 @@ class CrossTalk(_OfSensor):
 
     def _arrives(self) -> None:
         before = self.sensor.last_reading_in
-        self.sensor.hear(self.clock.now)
+        self.sensor.receive_ping(self.clock.now)
         if self.sensor.last_reading_in != before:
             self.pinged()
 
 
 KINDS = (
-    FaultKind("sonar-deaf", "A sonar hears no echo: it reports its ceiling.", "a ring of sonars", Deaf, (_SENSOR,)),
+    FaultKind(
+        "sonar-deaf", "A sonar hears no echo: it reports its ceiling.", "a ring of sonars", SonarDeaf, (_SENSOR,)
+    ),
     FaultKind(
         "sonar-stuck", "A sonar always reports the same range.", "a ring of sonars", EchoStuck,
         (_SENSOR, FaultParameter("range", "m", "the distance that it reports", 0.1524, 0.1524, 6.45)),

@@ -15,7 +15,7 @@ from typing import Final
 
 from emulator.devices.lv_maxsonar_ring import SonarRing
 from emulator.devices.nxt_motor import NxtMotor
-from hil.faults.effect import Effect, FaultTarget, Mounted
+from hil.faults.effect import Effect, FaultTarget, MountedFault
 from hil.faults.gyro import SelectLost
 from hil.faults.kinds import FaultKind, FaultParameter
 from hil.faults.sonar import sensors
@@ -39,10 +39,10 @@ def supplied(motor: NxtMotor, volts: float) -> Callable[[], None]:
     return partial(put, before_v)
 
 
-class Sag(Effect):
+class SupplySag(Effect):
     """The motors' supply falls."""
 
-    def __init__(self, mounted: Mounted) -> None:
+    def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
         self.motors = list(self.board.find(NxtMotor).values())
 
@@ -88,7 +88,7 @@ class BrownOut(SelectLost):
 
 
 KINDS = (
-    FaultKind("supply-sag", "The motors' supply falls.", "motors", Sag,
+    FaultKind("supply-sag", "The motors' supply falls.", "motors", SupplySag,
               (FaultParameter("volts", "V", "what is left", 4.0, 0.1, 9.0),)),
     FaultKind("brown-out", "All supplies except the chip's drop: gyro and sonars restart, the motors stop.",
               "a gyro L3G4200D on an SPI", BrownOut,

@@ -1,10 +1,10 @@
 """Feeding the inputs of a machine: by Python's own things, or by a line of text.
 
-    feed(bench, "ADCINA3", 1.25)
-    feed(bench, "gyro.yaw_rate_rad_s", ([0.0, 1.0, 2.0], [0, 90, 0]), how="linear", unit="deg/s")
-    feed(bench, "sonars.FRONT_range_m", lambda time_s: 1.0 + 0.5 * sin(time_s))
-    feed(bench, "ADCINA3", "physics")
-    load("sonars.FRONT_range_m=[[0, 2], [1.5, 0.5]],linear").feed(bench)
+feed(bench, "ADCINA3", 1.25)
+feed(bench, "gyro.yaw_rate_rad_s", ([0.0, 1.0, 2.0], [0, 90, 0]), how="linear", unit="deg/s")
+feed(bench, "sonars.FRONT_range_m", lambda time_s: 1.0 + 0.5 * sin(time_s))
+feed(bench, "ADCINA3", "physics")
+load("sonars.FRONT_range_m=[[0, 2], [1.5, 0.5]],linear").feed(bench)
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ FORM: Final = "want [INPUT=]FILE[#COLUMN][,linear], INPUT=[[SECONDS,VALUE],...][
 _INPUT: Final = re.compile(r"\s*([^=/\\]*\.\w+|ADCIN\w*)\s*=(.*)", re.DOTALL)
 
 
-class Fed(Protocol):
+class FeedTarget(Protocol):
     """What a feed needs of a machine: `hil.running.RunningBoard` is one."""
 
     board: Board
@@ -48,7 +48,8 @@ class Fed(Protocol):
 
 
 def feed(
-    machine: Fed, name: str, source: Source | Column, *, how: str = "hold", unit: str = "", from_now: bool = False
+    machine: FeedTarget, name: str, source: Source | Column, *, how: str = "hold", unit: str = "",
+    from_now: bool = False,
 ) -> None:
     """Have an input see a source instead of the physics, or of what it was fed with.
 
@@ -138,7 +139,7 @@ class DeclaredFeed:
     sources: dict[str, float | str | tuple[list[float], list[float]] | Column]
     how: str = "hold"
 
-    def feed(self, machine: Fed) -> None:
+    def feed(self, machine: FeedTarget) -> None:
         """Feed a machine with it.  Raises ValueError."""
         for name, source in self.sources.items():
             try:

@@ -230,7 +230,7 @@ class _FedShaft:
 
 
 @dataclass
-class Pressed(Input):
+class TouchInput(Input):
     """A touch sensor."""
 
     sensor: TouchSensor | None = None
@@ -256,7 +256,7 @@ class Pressed(Input):
 
 
 @dataclass
-class AnyFace(Input):
+class FaceInput(Input):
     """A face of any part, which is set."""
 
     part: Part | None = None
@@ -312,11 +312,11 @@ def of_part(board: Board, part: Part) -> Iterator[Input]:
         pins = board.encoder_pins.get((a, b), device.encoder)
         found = [Shaft(board, f"{name}.angle_rad", "rad", -1e6, 1e6, device, pins)]
     elif isinstance(device, TouchSensor):
-        found = [Pressed(board, f"{name}.pressed", "", 0, 1, device)]
+        found = [TouchInput(board, f"{name}.pressed", "", 0, 1, device)]
     yield from found
     for face in part.faces:
         if part.is_set(face.name) and f"{name}.{face.name}" not in [each.name for each in found]:
-            yield AnyFace(board, f"{name}.{face.name}", face.unit, face.low, face.high, part)
+            yield FaceInput(board, f"{name}.{face.name}", face.unit, face.low, face.high, part)
 
 
 def inputs(board: Board) -> Iterator[Input]:

@@ -83,7 +83,7 @@ def read_channel(bench: VectorBench, given: Given) -> Out:
     adc = bench.board.adc["A"]
     registers = bench.board.blocks["AdcaRegs"].registers
     bench.convert([given["adc"]])
-    adc.dead = given["adc_dead"]
+    adc.stopped_by_fault = given["adc_dead"]
     registers["ADCINTFLG"].value = given["flag_before"]
     try:
         with LastAccess(bench, ("AdcaResultRegs", "ADCRESULT"), ("AdcaRegs", "ADCINTFLGCLR")) as last:
@@ -91,7 +91,7 @@ def read_channel(bench: VectorBench, given: Given) -> Out:
     except EndlessPoll:
         return {"fault": "hang"}
     finally:
-        adc.dead = False
+        adc.stopped_by_fault = False
     pending = last.word if last.name == "ADCINTFLGCLR" else registers["ADCINTFLGCLR"].read()
     return {
         "value": value,

@@ -17,7 +17,7 @@ from emulator.registers.cell import Cell
 from emulator.signals import SerialFrame
 from hil.faces import face_values
 from hil.feeds.inputs import inputs
-from hil.files import Growing, growing
+from hil.files import GrowingFile, growing
 from hil.instruments.levels import Levels, frame_levels, spi_levels
 from hil.instruments.trace_file import FROM_PC, LOOK_CYCLES, TO_PC, TraceWriter
 from hil.instruments.variables import variables
@@ -29,7 +29,7 @@ from hil.view.stage import stage_of
 VARIABLE_CYCLES: Final = CYCLES_PER_MS
 
 
-class Taker(Protocol):
+class EventSink(Protocol):
     """What takes events: a `hil.instruments.trace_file.TraceWriter`, or a `hil.page.replay.Replay`."""
 
     def event(self, cycles: int, channel: str, name: str, value: Any) -> None:
@@ -46,7 +46,7 @@ def about_of(machine: RunningBoard, about: Mapping[str, str]) -> dict[str, str]:
 @contextmanager
 def recorded(
     path: str | Path, machine: RunningBoard, channels: tuple[str, ...], about: Mapping[str, str] | None = None
-) -> Iterator[Growing]:
+) -> Iterator[GrowingFile]:
     """Record into a file while this lasts; `about` says what ran.
 
     What the file cannot take is an OSError at the end: the run goes on.
@@ -62,7 +62,7 @@ def recorded(
 class Recorder:
     """Listens to a board from now on, until `close`."""
 
-    def __init__(self, machine: RunningBoard, taker: Taker, channels: Iterable[str]) -> None:
+    def __init__(self, machine: RunningBoard, taker: EventSink, channels: Iterable[str]) -> None:
         self._machine = machine
         self._clock = machine.clock
         self._event = taker.event

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, Final, TextIO
 
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
-from hil.files import Growing, opened
+from hil.files import GrowingFile, opened
 from hil.instruments import scene
 
 VERSION: Final = 1
@@ -87,7 +87,7 @@ class TraceWriter:
     """Writes a trace: each event at once."""
 
     def __init__(
-        self, file: TextIO | Growing, channels: Iterable[str], about: Mapping[str, str] | None = None
+        self, file: TextIO | GrowingFile, channels: Iterable[str], about: Mapping[str, str] | None = None
     ) -> None:
         self._file = file
         header: dict[str, Any] = {"hil_trace": VERSION, "cycles_per_second": SYSCLK_HZ, "channels": list(channels)}

@@ -78,7 +78,7 @@ class LinearFit:
 
 
 @dataclass(frozen=True, slots=True)
-class Suspect:
+class OutlierRow:
     """A row that does not fit: the line of the file, what it says, and how far it is from the robust line."""
 
     line: int
@@ -95,7 +95,7 @@ class Calibration:
     distance_cm: Numbers
     raw: Numbers
     line: LinearFit
-    suspects: tuple[Suspect, ...]
+    suspects: tuple[OutlierRow, ...]
     #: The line without the suspects; None if there are none.
     without: LinearFit | None
 
@@ -131,7 +131,7 @@ class Calibration:
             "sonar": self.sonar,
             "line": line(self.line),
             "without_suspects": line(self.without),
-            "suspects": [{name: getattr(s, name) for name in Suspect.__slots__} for s in self.suspects],
+            "suspects": [{name: getattr(s, name) for name in OutlierRow.__slots__} for s in self.suspects],
             "residuals_cm": [round(float(r), 4) for r in self.residuals_cm],
             "sentence": self.sentence(),
         }
@@ -203,7 +203,7 @@ def _calibration(table: Table, sonar: str) -> Calibration:
     off, allowed = _off_the_robust_line(raw, distance)
     bad = np.abs(off) > allowed
     suspects = tuple(
-        Suspect(lines[i], float(distance[i]), float(raw[i]), float(off[i])) for i in np.flatnonzero(bad)
+        OutlierRow(lines[i], float(distance[i]), float(raw[i]), float(off[i])) for i in np.flatnonzero(bad)
     )  # fmt: skip
     rest_counts = len(set(distance[~bad])) > 1 and len(set(raw[~bad])) > 1
     without = _least_squares(raw[~bad], distance[~bad]) if suspects and rest_counts else None
@@ -242,7 +242,7 @@ def emulate(
     The firmware reads it: `Calibrate_US(sonar, 1, 0)`, then `Read_Distance(sonar)`.  `seed` None: ideal sonars.
     """
     rows: list[tuple[float, ...]] = []
-    robot = AtWall(seed, fixes)
+    robot = WallRig(seed, fixes)
     for distance in distances_cm:
         robot.stand(distance)
         for _ in range(readings):
@@ -258,7 +258,7 @@ def _read_all(firmware: Firmware) -> tuple[float, ...]:
     return tuple(float(us.Read_Distance(getattr(us.US_SENSOR, name))) for name in DEFAULT_MOUNTS)
 
 
-class AtWall:
+class WallRig:
     """One robot, with us.c linked to it, and walls before its sonars.  `seed` None: ideal sonars.
 
     Its sonars range from the first reading on; slope and offset are 1 and 0.

@@ -29,7 +29,7 @@ import numpy as np
 from emulator.image import Firmware
 from firmware_model.corrections import ALL, resolve
 from hil.client.plot import save
-from hil.procedures.calibrate import FRONT, AtWall, LinearFit, Numbers, calibrate, emulate, parse
+from hil.procedures.calibrate import FRONT, LinearFit, Numbers, WallRig, calibrate, emulate, parse
 
 #: The distances of annex A.3.2.
 DISTANCES_CM: Final = (20.0, 25.0, 40.0, 50.0)
@@ -42,7 +42,7 @@ RAW_PER_COUNT: Final = 12 / 2.3
 
 
 @dataclass(frozen=True, slots=True)
-class Errors:
+class FilterErrors:
     """Read minus real distance, in cm: mean, standard deviation, root of the mean square, largest."""
 
     mean_cm: float
@@ -60,11 +60,11 @@ class Filter:
     read_cm: Numbers
 
     @property
-    def errors(self) -> Errors:
+    def errors(self) -> FilterErrors:
         """Over all distances."""
         return errors(self.read_cm - self.distance_cm)
 
-    def at(self, distance_cm: float) -> Errors:
+    def at(self, distance_cm: float) -> FilterErrors:
         """At one distance."""
         there = self.distance_cm == distance_cm
         return errors(self.read_cm[there] - distance_cm)
@@ -75,9 +75,9 @@ class Filter:
         return {"filter": self.name, "all": asdict(self.errors), "by_distance_cm": by_distance}
 
 
-def errors(off_cm: Numbers) -> Errors:
+def errors(off_cm: Numbers) -> FilterErrors:
     """What a series of errors amounts to."""
-    return Errors(
+    return FilterErrors(
         float(np.mean(off_cm)), float(np.std(off_cm)), float(np.sqrt(np.mean(off_cm**2))),
         float(off_cm[np.argmax(np.abs(off_cm))]),
     )  # fmt: skip
@@ -133,7 +133,7 @@ def compare(
     found = []
     for n, (name, (read, fixes)) in enumerate(FILTERS.items()):
         rows = []
-        robot = AtWall(seed, fixes)
+        robot = WallRig(seed, fixes)
         for m, distance in enumerate(DISTANCES_CM):
             robot.stand(distance)
             rows += [(distance, line.slope_cm * robot.next(read) + line.offset_cm) for _ in range(readings)]

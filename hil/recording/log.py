@@ -32,7 +32,7 @@ from pathlib import Path
 from typing import IO, Final
 from zlib import crc32
 
-from hil.files import Growing, read_bytes
+from hil.files import GrowingFile, read_bytes
 
 MAGIC: Final = "hil-wire"
 VERSION: Final = 1
@@ -120,7 +120,7 @@ def format_time(time_ns: int) -> str:
 class LogWriter:
     """Writes a log line by line, so that what was recorded before a crash is there."""
 
-    def __init__(self, file: IO[str] | Growing, header: Mapping[str, str]) -> None:
+    def __init__(self, file: IO[str] | GrowingFile, header: Mapping[str, str]) -> None:
         self._file = file
         self._crc = 0
         self._line(f"{MAGIC} {VERSION}")

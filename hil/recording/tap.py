@@ -18,7 +18,7 @@ from typing import Final
 
 from hil.pacing import wait_readable
 from hil.recording.wire import WireListener
-from hil.serial_port import Deliver, SerialPort
+from hil.serial_port import Delivery, SerialPort
 from hil.serial_port.device_port import DevicePort
 from hil.session import NS_PER_CYCLE
 
@@ -33,7 +33,7 @@ _CHUNK: Final = 4096
 
 def open_robot(device: str) -> DevicePort:
     """The robot's port, for a tap: what is written leaves byte by byte.  Raises PortError."""
-    return DevicePort(device, keep=_ROOM, deliver=Deliver.BYTES)
+    return DevicePort(device, keep=_ROOM, deliver=Delivery.BYTES)
 
 
 class Tap:

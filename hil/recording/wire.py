@@ -13,7 +13,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Final, Protocol
 
-from hil.files import Growing, growing
+from hil.files import GrowingFile, growing
 from hil.machine import Setup
 from hil.recording.log import Direction, LogWriter, Record
 
@@ -36,7 +36,7 @@ class WireListener(Protocol):
 class WireLog:
     """A `WireListener` that writes a log, into `file`."""
 
-    def __init__(self, file: Growing, header: Mapping[str, str]) -> None:
+    def __init__(self, file: GrowingFile, header: Mapping[str, str]) -> None:
         self.file = file
         self._writer = LogWriter(file, header)
         self._gathered = bytearray()

@@ -23,7 +23,7 @@ VERSION: Final = 1
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class KnownFinding:
     """A finding as a baseline remembers it."""
 
     fingerprint: str
@@ -35,7 +35,7 @@ class Known:
     message: str
 
 
-def known(findings: Iterable[Finding]) -> list[Known]:
+def known(findings: Iterable[Finding]) -> list[KnownFinding]:
     """Each finding as a baseline remembers it, in the order given.
 
     The same statement twice in a function gives a second fingerprint, counted in the order of the lines.
@@ -50,7 +50,7 @@ def known(findings: Iterable[Finding]) -> list[Known]:
         text = "|".join((*key, str(seen[key])) if seen[key] > 1 else key)
         fingerprints[index] = hashlib.sha256(text.encode()).hexdigest()[:16]
     return [
-        Known(fingerprint, *key, message=finding.message)
+        KnownFinding(fingerprint, *key, message=finding.message)
         for fingerprint, key, finding in zip(fingerprints, bare, listed, strict=True)
     ]
 
@@ -70,7 +70,7 @@ def _line(finding: Finding) -> int:
 class Baseline:
     """The known findings of a project."""
 
-    entries: tuple[Known, ...] = ()
+    entries: tuple[KnownFinding, ...] = ()
 
     @classmethod
     def read(cls, path: Path) -> Baseline:
@@ -98,13 +98,13 @@ class Baseline:
     def __contains__(self, fingerprint: object) -> bool:
         return any(entry.fingerprint == fingerprint for entry in self.entries)
 
-    def absent(self, present: Sequence[Known]) -> tuple[Known, ...]:
+    def absent(self, present: Sequence[KnownFinding]) -> tuple[KnownFinding, ...]:
         """The known findings that are not among `present`."""
         there = {entry.fingerprint for entry in present}
         return tuple(entry for entry in self.entries if entry.fingerprint not in there)
 
 
-def _entry(item: Any) -> Known:
+def _entry(item: Any) -> KnownFinding:
     if not isinstance(item, dict) or not all(isinstance(value, str) for value in item.values()):
         raise ValueError("a finding is not an object of texts")
-    return Known(**item)
+    return KnownFinding(**item)

@@ -108,7 +108,7 @@ def _numbers(numbers: tuple[int, ...]) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Subject:
+class FilledMemory:
     """The memory that a finding names, whose value was changed: an object, a cell outside one, words at address 0."""
 
     rule: str
@@ -116,23 +116,23 @@ class Subject:
     declaration: str
 
     @classmethod
-    def of(cls, finding: Finding) -> Subject:
+    def of(cls, finding: Finding) -> FilledMemory:
         """The subject of a finding."""
         return cls(finding.rule, finding.object, finding.declaration)
 
 
 @dataclass(frozen=True, slots=True)
-class Proof:
+class TwoFillProof:
     """One scenario under two fills, and again with only one object at a time filled by the second."""
 
     fill_a: str
     fill_b: str
     whole: RunDifferences
-    parts: Mapping[Subject, RunDifferences]
+    parts: Mapping[FilledMemory, RunDifferences]
 
     def reach_of(self, finding: Finding) -> RunDifferences | None:
         """The outputs that a finding's object affects; None if it was not examined."""
-        return self.parts.get(Subject.of(finding))
+        return self.parts.get(FilledMemory.of(finding))
 
 
 def compare(a: RunOutputs, b: RunOutputs) -> RunDifferences:

@@ -14,7 +14,7 @@ from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
 from emulator.rules import Rule, Severity
 from hil.files import replacing
-from hil.reports.differences import OutputDifference, Proof, RunDifferences
+from hil.reports.differences import OutputDifference, RunDifferences, TwoFillProof
 from hil.reports.excerpt import from_here, readable, relative_path
 from hil.reports.model import TARGET, Report, ReportEntry, versions
 
@@ -99,7 +99,7 @@ def _rule(rule: Rule) -> dict[str, Any]:
     return {"family": rule.family, "severity": rule.severity.value, "how": rule.how, "title": rule.title}
 
 
-def _proof(proof: Proof) -> dict[str, Any]:
+def _proof(proof: TwoFillProof) -> dict[str, Any]:
     return {"fills": [proof.fill_a, proof.fill_b], "whole": _reach(proof.whole)}
 
 

@@ -14,12 +14,12 @@ from emulator.c28x.findings import Finding
 from emulator.rules import RULES, Rule, Severity
 from hil.machine import Circle, PathPoint, Setup, Wall
 from hil.reports.accepted import acceptance, idle
-from hil.reports.baseline import Baseline, Known, known
-from hil.reports.differences import Proof, RunDifferences
+from hil.reports.baseline import Baseline, KnownFinding, known
+from hil.reports.differences import RunDifferences, TwoFillProof
 from hil.reports.policy import Policy
 
 if TYPE_CHECKING:
-    from hil.faults import Fired
+    from hil.faults import FaultOutcome
 
 #: The chip whose run this is; stands in every report.
 TARGET: Final = "TMS320F28377S"
@@ -63,10 +63,10 @@ class Run:
     #: Code ran that was not calibrated: its computation times may be so many times longer or shorter on the chip.
     uncalibrated_factor: float | None = None
     #: What came of each fault that was declared.
-    faults: tuple[Fired, ...] = ()
+    faults: tuple[FaultOutcome, ...] = ()
 
     @property
-    def silent(self) -> tuple[Fired, ...]:
+    def silent(self) -> tuple[FaultOutcome, ...]:
         """The faults that never fired."""
         return tuple(fault for fault in self.faults if not fault.count)
 
@@ -104,7 +104,7 @@ class ReportEntry:
     rule: Rule
     severity: Severity
     #: The finding as a baseline remembers it: fingerprint and statement.
-    known: Known
+    known: KnownFinding
     #: "new" or "unchanged" against a baseline; empty without one.
     state: str = ""
     #: What the object reaches by the two-fill proof; None: not examined.
@@ -138,14 +138,14 @@ class Report:
     #: What the files that were checked allow and nothing asked for.
     idle: tuple[UserDeclaration, ...] = ()
     #: Known findings that did not appear.
-    absent: tuple[Known, ...] = ()
-    proof: Proof | None = None
+    absent: tuple[KnownFinding, ...] = ()
+    proof: TwoFillProof | None = None
     drive: DrivenTrack | None = None
 
     @classmethod
     def of(
         cls, findings: Iterable[Finding], *, run: Run, policy: Policy | None = None, baseline: Baseline | None = None,
-        proof: Proof | None = None, drive: DrivenTrack | None = None, by: Sequence[Sequence[str]] = (),
+        proof: TwoFillProof | None = None, drive: DrivenTrack | None = None, by: Sequence[Sequence[str]] = (),
         checked: Iterable[str] = (),
     ) -> Report:  # fmt: skip
         """A report of `findings` in their order.

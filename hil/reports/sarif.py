@@ -18,7 +18,7 @@ from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
 from emulator.rules import Rule
 from hil.files import replacing
-from hil.reports.baseline import Known
+from hil.reports.baseline import KnownFinding
 from hil.reports.excerpt import excerpt, function_of, places_in, readable, relative_path, source_line
 from hil.reports.model import TARGET, Report, ReportEntry, rule_of, versions
 
@@ -128,7 +128,7 @@ def _shown_by(entry: ReportEntry) -> list[str]:
     return [f"shown by {entry.shown_by}"] if entry.by else []
 
 
-def _absent(known: Known, index: dict[str, int]) -> dict[str, Any]:
+def _absent(known: KnownFinding, index: dict[str, int]) -> dict[str, Any]:
     """A known finding that did not appear."""
     return {
         "ruleId": known.rule,

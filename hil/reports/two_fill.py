@@ -21,7 +21,7 @@ from emulator.c28x.runtime import parse_fill
 from emulator.c28x.tree import Variable
 from emulator.image import Firmware
 from hil.bench import Bench
-from hil.reports.differences import Proof, RunDifferences, Subject, compare
+from hil.reports.differences import FilledMemory, RunDifferences, TwoFillProof, compare
 from hil.reports.outputs import RunOutputs, record
 from hil.scenarios.scenario import Scenario
 
@@ -40,7 +40,7 @@ Change: TypeAlias = Callable[[Bench, str], None]
 def prove(
     scenario: Scenario, findings: Iterable[Finding], *, against: str = OTHER_FILL,
     progress: Callable[[float], None] = lambda fraction: None,
-) -> Proof:  # fmt: skip
+) -> TwoFillProof:  # fmt: skip
     """Run `scenario` under its own fill and under `against`, and once for each of `findings` that a fill can touch.
 
     Raises ValueError for an unknown fill and for one that is the scenario's own.
@@ -58,11 +58,11 @@ def prove(
     bench.close()
     first = outputs(scenario)
     whole = replace(compare(first, outputs(scenario.with_fill(against))), tried=(against,))
-    parts: dict[Subject, RunDifferences] = {}
+    parts: dict[FilledMemory, RunDifferences] = {}
     for subject, change in examined.items():
         progress(len(parts) / len(examined))
         parts[subject] = _reach(scenario, first, change, [fill for fill in (against, *FURTHER_FILLS) if fill != own])
-    return Proof(own, against, whole, parts)
+    return TwoFillProof(own, against, whole, parts)
 
 
 def _reach(scenario: Scenario, first: RunOutputs, change: Change, fills: list[str]) -> RunDifferences:
@@ -90,10 +90,10 @@ def outputs(scenario: Scenario, change: Change = lambda bench, fill: None, fill:
         bench.close()
 
 
-def _changes(findings: Iterable[Finding], variables: Sequence[Variable]) -> Iterator[tuple[Subject, Change]]:
+def _changes(findings: Iterable[Finding], variables: Sequence[Variable]) -> Iterator[tuple[FilledMemory, Change]]:
     """For each finding that a fill can touch: what gives its memory, and no other, what a fill says."""
     for finding in findings:
-        subject = Subject.of(finding)
+        subject = FilledMemory.of(finding)
         if finding.rule == "null-dereference":
             yield subject, _at_zero
             continue

@@ -51,7 +51,7 @@ MOTOR_SUPPLY_V: Final = 7.2
 
 
 @dataclass(frozen=True, slots=True)
-class _Turning:
+class _SetYawRate:
     """The rotation of the gyro when a test sets it, and not a world."""
 
     yaw_rate_rad_s: float
@@ -61,7 +61,7 @@ class _Turning:
 
 
 @dataclass(frozen=True, slots=True)
-class _Wall:
+class _SetRange:
     """The range of a sonar when a test sets it, and not a world."""
 
     range_m: float
@@ -159,18 +159,18 @@ class RobotBoard(Board):
             self.lidar = lidar.solder(self)
 
     def _turn(self, yaw_rate_rad_s: float) -> None:
-        self.gyro.set_rate_source(_Turning(yaw_rate_rad_s))
+        self.gyro.set_rate_source(_SetYawRate(yaw_rate_rad_s))
 
     def _turned(self) -> float | None:
         source = self.gyro.rate_source
-        return source.yaw_rate_rad_s if isinstance(source, _Turning) else None
+        return source.yaw_rate_rad_s if isinstance(source, _SetYawRate) else None
 
     def _see(self, sonar: str, range_m: float) -> None:
-        self.sonars.sensors[sonar].set_range_source(_Wall(range_m))
+        self.sonars.sensors[sonar].set_range_source(_SetRange(range_m))
 
     def _seen(self, sonar: str) -> float | None:
         source = self.sonars.sensors[sonar].range_source
-        return source.range_m if isinstance(source, _Wall) else None
+        return source.range_m if isinstance(source, _SetRange) else None
 
     def _motor(self, side: str) -> NxtMotor:
         params = NxtMotorParams()

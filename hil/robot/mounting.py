@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hil.robot.board import RobotBoard
-from hil.robot.options.in_world import Motion, Sight, sonar_mounts
+from hil.robot.options.in_world import AccelerometerMotion, LidarView, sonar_mounts
 from hil.world.maps import WorldMap
 from hil.world.world import World
 
@@ -20,7 +20,7 @@ def mounted(board: RobotBoard, world_map: WorldMap, seed: int | None) -> World:
     if seed is not None:
         board.sonars.air.set_cross_source(world.cross_source)
     if board.accelerometer is not None:
-        board.accelerometer.set_motion_source(Motion(world))
+        board.accelerometer.set_motion_source(AccelerometerMotion(world))
     if board.lidar is not None:
-        board.lidar.set_distance_source(Sight(world))
+        board.lidar.set_distance_source(LidarView(world))
     return world

@@ -33,7 +33,7 @@ _STEP_CYCLES: Final = SYSCLK_HZ // 20
 
 
 @dataclass(frozen=True, slots=True)
-class Started:
+class TaskStartUp:
     """A task's start-up: CPU time up to its first wait, and when that was (after power-up)."""
 
     task: str
@@ -121,10 +121,10 @@ class RunningFirmware:
         """The tasks that run code which was not calibrated, because it is the user's."""
         return self.machine.of_own_c(self.observer.names())
 
-    def start_ups(self) -> Sequence[Started]:
+    def start_ups(self) -> Sequence[TaskStartUp]:
         """What start-up took, task by task, as they came to their first wait."""
         seen = [
-            Started(name, task.start_up * NS_PER_CYCLE / 1000, task.first_wait_at * NS_PER_CYCLE / 1e6)
+            TaskStartUp(name, task.start_up * NS_PER_CYCLE / 1000, task.first_wait_at * NS_PER_CYCLE / 1e6)
             for name, task in self.observer.tasks.items()
             if task.first_wait_at is not None
         ]

@@ -24,7 +24,7 @@ KEPT_DISTANCES: Final = 16
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class CpuSpan:
     """A span in which one thread has the CPU, in cycles; `gate` is what a task holds meanwhile."""
 
     who: str
@@ -40,7 +40,7 @@ class Activation:
     task: str
     ready: int
     end: int
-    stretches: tuple[Stretch, ...]
+    stretches: tuple[CpuSpan, ...]
     releases: tuple[tuple[int, str], ...]
 
 
@@ -91,7 +91,7 @@ class ObservedTask:
 
 
 @dataclass(slots=True)
-class SeenAbove:
+class ObservedInterrupt:
     """An interrupt or a Swi: the longest, and how they come."""
 
     computation: int = 0
@@ -103,7 +103,7 @@ class Observer:
 
     def __init__(self) -> None:
         self.tasks: dict[str, ObservedTask] = {}
-        self.above: dict[str, SeenAbove] = {}
+        self.above: dict[str, ObservedInterrupt] = {}
         #: Names of gates in place of the kernel's.
         self.gate_names: dict[str, str] = {}
         self._running = ""
@@ -112,7 +112,7 @@ class Observer:
         self._owner: dict[str, str] = {}
         self._waiting: dict[str, list[str]] = {}
         self._since = 0
-        self._stretches: list[Stretch] = []
+        self._stretches: list[CpuSpan] = []
         self._ends: list[int] = []
         self._releases: list[tuple[int, str]] = []
         self._counting = False
@@ -156,7 +156,7 @@ class Observer:
             for held in seen.held:
                 seen.held[held] += used
                 gate = held
-        self._stretches.append(Stretch(who, begin, cycles, gate))
+        self._stretches.append(CpuSpan(who, begin, cycles, gate))
         self._ends.append(cycles)
 
     def _seen(self, name: str) -> ObservedTask:
@@ -247,7 +247,7 @@ class Observer:
         self._account(cycles)
         self._stack.append((name, 0))
         if self._counting:
-            self.above.setdefault(name, SeenAbove()).arrivals.add(cycles)
+            self.above.setdefault(name, ObservedInterrupt()).arrivals.add(cycles)
 
     def _end_above(self, cycles: int) -> None:
         self._account(cycles)

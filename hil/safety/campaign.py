@@ -64,7 +64,7 @@ _ROOM_M: Final = 0.3
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class Requirement:
     """A requirement while a fault lasts: from `after_s` after its begin, a robot in `mode` stands and sends `number`.
 
     `after_s` is the period of the task that detects it, one of TaskNAVIGATION and TaskSERVO (75 ms), and the wheels'
@@ -77,16 +77,16 @@ class Held:
 
 
 #: Kind of a fault -> its requirement.  1: no distance, 4: gyro silent, 7: link silent (`single_faults.SEEN`).
-HELD: Final[Mapping[str, Held]] = {
-    "adc-dead": Held("mission", 0.7, 1),
-    "adc-input-shorted": Held("mission", 0.7, 1),
-    "gyro-miso-stuck": Held("mission", 0.4, 4),
-    "gyro-select-lost": Held("mission", 0.4, 4),
-    "serial-break": Held("tele", 3.2, 7),
-    "serial-stall": Held("tele", 3.2, 7),
-    "serial-byte-lost": Held("tele", 3.2, 7),
-    "serial-bit-flipped": Held("tele", 3.2, 7),
-    "radio-loss": Held("tele", 3.2, 7),
+HELD: Final[Mapping[str, Requirement]] = {
+    "adc-dead": Requirement("mission", 0.7, 1),
+    "adc-input-shorted": Requirement("mission", 0.7, 1),
+    "gyro-miso-stuck": Requirement("mission", 0.4, 4),
+    "gyro-select-lost": Requirement("mission", 0.4, 4),
+    "serial-break": Requirement("tele", 3.2, 7),
+    "serial-stall": Requirement("tele", 3.2, 7),
+    "serial-byte-lost": Requirement("tele", 3.2, 7),
+    "serial-bit-flipped": Requirement("tele", 3.2, 7),
+    "radio-loss": Requirement("tele", 3.2, 7),
 }
 #: Faults that can stop frames or orders.
 _OF_LINE: Final = ("serial-", "radio-", "oscillator-drift")
@@ -95,7 +95,7 @@ _OF_SONAR: Final = ("adc-",)
 
 
 @dataclass(frozen=True, slots=True)
-class Failed:
+class FailedRun:
     """A run that broke a requirement: its number, what was seen, and the text of the shortest scenario."""
 
     number: int
@@ -111,7 +111,7 @@ class Campaign:
     """
 
     runs: int
-    failed: tuple[Failed, ...]
+    failed: tuple[FailedRun, ...]
     findings: tuple[tuple[Finding, tuple[str, ...]], ...]
 
     @property
@@ -239,7 +239,7 @@ def _toward(fault: Table) -> bool:
     return bool(fault.get("direction", "to-chip") == "to-chip")
 
 
-def _frame(fault: Table, held: Held) -> str:
+def _frame(fault: Table, held: Requirement) -> str:
     """A pattern for the frames that report a fault.  "No distance" is at the place of the distance that is missing."""
     if held.number != 1 or fault["kind"] == "adc-dead":
         return f"^#ODO (-?[0-9]+,){{3}}-{10 * held.number},"
@@ -321,7 +321,7 @@ def _less(table: Table) -> Iterator[Table]:
 
 
 #: The outcome of a run: its number, its failure if it failed, its findings.
-_Ran = tuple[int, Failed | None, tuple[Finding, ...]]
+_Ran = tuple[int, FailedRun | None, tuple[Finding, ...]]
 
 
 def _run(seed: int, number: int, faithful: bool) -> _Ran:
@@ -330,12 +330,12 @@ def _run(seed: int, number: int, faithful: bool) -> _Ran:
     if not wrong:
         return number, None, findings
     table = shortest(table)
-    return number, Failed(number, broken(table), text_of(table)), findings
+    return number, FailedRun(number, broken(table), text_of(table)), findings
 
 
 def campaign(
     runs: int, *, seed: int = 1, jobs: int = 1, faithful: bool = False,
-    told: Callable[[Failed | None], object] = lambda failed: None,
+    told: Callable[[FailedRun | None], object] = lambda failed: None,
 ) -> Campaign:  # fmt: skip
     """Run `runs` runs, `jobs` at a time; after Ctrl-C return those that have ended.  `told` is called as each ends."""
     ended: list[_Ran] = []

@@ -114,7 +114,7 @@ class Expectation:
         return f"{self.least:g} to {self.most:g}"
 
 
-class Watching:
+class ExpectationWatch:
     """Looks at a bench while it runs, and says at the end what came true.  Make it when start-up is over.
 
     It looks and moves nothing: a run is the same with it.
@@ -137,12 +137,12 @@ class Watching:
         bench.world.bumper_changed.connect(self._bump)
         if any(each.kind == "deadline" for each in expectations):
             bench.measure_tasks()
-        self._hits = _Hits(bench) if any(each.of == "seen_hits" for each in expectations) else None
-        self._stalls = _Stalls(bench) if any(each.of == "stalled_s" for each in expectations) else None
+        self._hits = _HitCounter(bench) if any(each.of == "seen_hits" for each in expectations) else None
+        self._stalls = _StallCounter(bench) if any(each.of == "stalled_s" for each in expectations) else None
         for index, each in enumerate(expectations):
             if each.kind in ("quantity", "state") and each.during[0] < inf:
                 self._looks[index] = []
-                bench.clock.schedule(self._start + round(each.during[0] * SYSCLK_HZ), _Look(self, index))
+                bench.clock.schedule(self._start + round(each.during[0] * SYSCLK_HZ), _SampledCheck(self, index))
 
     def look(self, index: int) -> None:
         """Look at an expectation now, and again if its time is not over."""
@@ -150,7 +150,7 @@ class Watching:
         now_s = (clock.now - self._start) / SYSCLK_HZ
         self._looks[index].append((now_s, self._value(each)))
         if now_s + LOOK_S <= each.during[1]:
-            clock.after(round(LOOK_S * SYSCLK_HZ), _Look(self, index))
+            clock.after(round(LOOK_S * SYSCLK_HZ), _SampledCheck(self, index))
 
     def _byte(self, byte: int, cycles: int) -> None:
         self._decoded += len(list(self._decoder.feed(bytes((byte,)))))
@@ -284,10 +284,10 @@ class Watching:
         return hypot(believed.x_m - (c * dx + s * dy), believed.y_m - (c * dy - s * dx))
 
 
-class _Look:
+class _SampledCheck:
     """An event that looks at one expectation."""
 
-    def __init__(self, watching: Watching, index: int) -> None:
+    def __init__(self, watching: ExpectationWatch, index: int) -> None:
         self._watching = watching
         self._index = index
 
@@ -295,7 +295,7 @@ class _Look:
         self._watching.look(self._index)
 
 
-class _Hits:
+class _HitCounter:
     """Counts what a mission drove forward into although the front sonar had it in time."""
 
     def __init__(self, bench: Bench) -> None:
@@ -322,7 +322,7 @@ class _Hits:
         bench.clock.after(round(_HIT_LOOK_S * SYSCLK_HZ), self)
 
 
-class _Stalls:
+class _StallCounter:
     """Measures how long a motor is driven, by more than friction needs, while its wheel stands."""
 
     def __init__(self, bench: Bench) -> None:

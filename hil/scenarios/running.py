@@ -18,7 +18,7 @@ from hil.reports.excerpt import relative_path
 from hil.reports.json_report import findings_of
 from hil.reports.model import report_of
 from hil.reports.policy import Policy
-from hil.scenarios.expectation import Check, Watching
+from hil.scenarios.expectation import Check, ExpectationWatch
 from hil.scenarios.scenario import Scenario, load_scenario
 from hil.scenarios.script import ScriptFailed
 from hil.workers import workers
@@ -133,7 +133,7 @@ def _leg(scenario: Scenario, progress: Callable[[float], None], plot: str = "", 
         failed: list[Check] = []
         try:
             bench.boot()
-            watching = Watching(bench, scenario.expectations)
+            watching = ExpectationWatch(bench, scenario.expectations)
             scenario.drive(bench, progress=progress)
         except FirmwareStopped as reason:
             stopped = f"{reason} at {seconds(bench.clock.now):.6f} s"

@@ -23,7 +23,7 @@ from hil.machine import FirmwareStopped, Machine, Setup
 from hil.reports.policy import Policy
 from hil.robot.options.names import OPTIONS
 from hil.scenarios import lines, script
-from hil.scenarios.expectation import Expectation, Watching
+from hil.scenarios.expectation import Expectation, ExpectationWatch
 from hil.scenarios.keys import Problem, check
 from hil.world.maps import START_CLEARANCE_M, WorldMap, load_map
 
@@ -40,7 +40,7 @@ DEFAULT_SECONDS: Final = 10.0
 
 
 @dataclass(frozen=True, slots=True)
-class Ground:
+class GroundOptions:
     """What a scenario says of the world instead of its map: None is as the map says."""
 
     start: tuple[float, float, float] | None = None
@@ -78,7 +78,7 @@ class Scenario:
     name: str = "mission"
     #: Orders that are given when something has happened: what (`hil.faults.when`), and the order.
     when: tuple[tuple[str, str], ...] = ()
-    ground: Ground = Ground()
+    ground: GroundOptions = GroundOptions()
     #: Path of the Python file that drives it too.
     script: str = ""
     expectations: tuple[Expectation, ...] = ()
@@ -137,12 +137,12 @@ class Scenario:
             return f"{reason} at {seconds(bench.clock.now):.6f} s"
         return ""
 
-    def watched(self, bench: Machine) -> Watching:
+    def watched(self, bench: Machine) -> ExpectationWatch:
         """Begin to look at a bench that has booted: for who drives it himself."""
         from hil.bench import Bench
 
         assert isinstance(bench, Bench)
-        return Watching(bench, self.expectations)
+        return ExpectationWatch(bench, self.expectations)
 
     def drive(self, bench: Bench, *, progress: Callable[[float], None] = lambda fraction: None) -> None:
         """Give a bench that has booted its orders for the scenario's time.  Raises FirmwareStopped."""
@@ -272,7 +272,7 @@ def _when(entry: Mapping[str, str], index: int) -> tuple[str, str]:
     return entry["when"], entry["send"]
 
 
-def _ground(table: Mapping[str, Any]) -> Ground:
+def _ground(table: Mapping[str, Any]) -> GroundOptions:
     start, floor = table.get("start"), table.get("floor", {})
     pose = None
     if start is not None:
@@ -280,7 +280,7 @@ def _ground(table: Mapping[str, Any]) -> Ground:
     slip = None
     if "slip_left" in floor or "slip_right" in floor:
         slip = (float(floor.get("slip_left", 0.0)), float(floor.get("slip_right", 0.0)))
-    return Ground(pose, floor.get("grip"), slip)
+    return GroundOptions(pose, floor.get("grip"), slip)
 
 
 def _check_setup(scenario: Scenario) -> None:
@@ -301,5 +301,5 @@ def _check_setup(scenario: Scenario) -> None:
         raise Problem(("defects",), "faithful_fails is missing: what does not come true without their corrections")
     if scenario.faithful_fails and not scenario.setup.fixes:
         raise Problem(("faithful_fails",), "it needs fixes: without them the run is the faithful one already")
-    if scenario.ground != Ground():
+    if scenario.ground != GroundOptions():
         scenario.world_map()

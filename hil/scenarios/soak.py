@@ -44,7 +44,7 @@ _FRAME_BEGINS: Final = ord("#")
 
 
 @dataclass
-class Soaked:
+class SoakResult:
     """What came of it.  Times are virtual seconds."""
 
     seed: int
@@ -85,8 +85,8 @@ class Soaked:
 
 def soak(
     most_s: float, *, seed: int = 1, fixes: tuple[str, ...] = ("all",), world: str = WORLD, xbee: bool = True,
-    told: Callable[[Soaked], object] = lambda soaked: None,
-) -> Soaked:  # fmt: skip
+    told: Callable[[SoakResult], object] = lambda soaked: None,
+) -> SoakResult:  # fmt: skip
     """Let a robot drive for so much virtual time, or until Ctrl-C.  `told` hears after each round how it stands.
 
     The same arguments give the same result, to the byte.  Raises ValueError for a setup that there is not; what this
@@ -96,17 +96,17 @@ def soak(
 
 
 class _Soak:
-    def __init__(self, setup: Setup, most_s: float, tell: Callable[[Soaked], object]) -> None:
+    def __init__(self, setup: Setup, most_s: float, tell: Callable[[SoakResult], object]) -> None:
         self._setup = setup
         self._most_s = most_s
         self._tell = tell
         self._over = False
         self._next_count_s = EVERY_S
         self._rng = Random(f"{setup.seed}:soak")
-        self._told = Soaked(setup.seed, setup.fixes)
+        self._told = SoakResult(setup.seed, setup.fixes)
         self._uart, self._trace = hashlib.sha256(), hashlib.sha256()
 
-    def run(self) -> Soaked:
+    def run(self) -> SoakResult:
         """Until the time is over."""
         told, setup = self._told, self._setup
         try:

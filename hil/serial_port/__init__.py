@@ -12,10 +12,19 @@ import os
 import re
 
 from hil.serial_port.base import SerialPort
-from hil.serial_port.frames import DEFAULT_KEEP, Counters, Deliver, Outbound
+from hil.serial_port.frames import DEFAULT_KEEP, Counters, Delivery, OutboundQueue
 from hil.serial_url import PortError
 
-__all__ = ["DEFAULT_KEEP", "Counters", "Deliver", "Outbound", "PortError", "SerialPort", "check_choice", "open_port"]
+__all__ = [
+    "DEFAULT_KEEP",
+    "Counters",
+    "Delivery",
+    "OutboundQueue",
+    "PortError",
+    "SerialPort",
+    "check_choice",
+    "open_port",
+]
 
 _LISTEN = re.compile(r"(?P<scheme>tcp|socket|rfc2217)://(?P<host>\[[^\]]*\]|[^:/]*):(?P<port>\d{1,5})/?")
 
@@ -38,7 +47,7 @@ def open_port(
     listen: str | None = None,
     device: str | None = None,
     keep: int = DEFAULT_KEEP,
-    deliver: Deliver = Deliver.FRAMES,
+    deliver: Delivery = Delivery.FRAMES,
 ) -> SerialPort:
     """Open the port that a command line asked for; a pseudo-terminal if it asked for none.
 

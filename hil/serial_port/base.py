@@ -10,7 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
-from hil.serial_port.frames import DEFAULT_KEEP, Counters, Deliver, Outbound
+from hil.serial_port.frames import DEFAULT_KEEP, Counters, Delivery, OutboundQueue
 
 
 class SerialPort(ABC):
@@ -19,9 +19,9 @@ class SerialPort(ABC):
     #: What a PC program opens (a device name or a pyserial URL).
     address: str
 
-    def __init__(self, *, keep: int = DEFAULT_KEEP, deliver: Deliver = Deliver.FRAMES) -> None:
+    def __init__(self, *, keep: int = DEFAULT_KEEP, deliver: Delivery = Delivery.FRAMES) -> None:
         self.counters = Counters()
-        self.outbound = Outbound(self.counters, keep=keep, deliver=deliver)
+        self.outbound = OutboundQueue(self.counters, keep=keep, deliver=deliver)
         #: Bytes in transit: taken from the buffer, not yet accepted by the system.
         self._transit = b""
 

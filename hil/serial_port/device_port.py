@@ -15,7 +15,7 @@ from typing import Final
 import serial
 
 from hil.serial_port.base import SerialPort
-from hil.serial_port.frames import DEFAULT_KEEP, Deliver
+from hil.serial_port.frames import DEFAULT_KEEP, Delivery
 from hil.serial_url import gone, open_url
 
 #: A frame is at most 48 bytes ("#ODO " and six 16-bit integers): one may wait in the driver.
@@ -25,7 +25,7 @@ MOST_IN_DRIVER: Final = 48
 class DevicePort(SerialPort):
     """A serial device of this computer, opened with pyserial and never waited for."""
 
-    def __init__(self, device: str, *, keep: int = DEFAULT_KEEP, deliver: Deliver = Deliver.FRAMES) -> None:
+    def __init__(self, device: str, *, keep: int = DEFAULT_KEEP, deliver: Delivery = Delivery.FRAMES) -> None:
         """Open `device`.  Raises PortError if that is not possible."""
         super().__init__(keep=keep, deliver=deliver)
         self._serial = open_url(device, read_timeout_s=0, write_timeout_s=0)

@@ -2,10 +2,10 @@
 
 A frame is ``#...\\r`` (the robot sends ``#ODO x,y,theta,dF,dR,dL\\n\\r``).  Two ways of handing it over:
 
-* `Deliver.FRAMES` (default): a frame becomes visible whole, at the end of its last byte's stop bit.  The line's
+* `Delivery.FRAMES` (default): a frame becomes visible whole, at the end of its last byte's stop bit.  The line's
   timing holds at frame grain, and a reader that looks at any moment never sees a number cut in half.  The thesis
   console takes a frame cut inside its last field for a complete one (five commas) and draws a wrong point.
-* `Deliver.BYTES`: each byte becomes visible at the end of its own stop bit, as on the wire, with that consequence.
+* `Delivery.BYTES`: each byte becomes visible at the end of its own stop bit, as on the wire, with that consequence.
 
 Nothing is withheld for ever: bytes outside a frame leave after a pause on the line or when there are too many.
 What the port has taken is in transit and never dropped, so what arrives is always whole frames in order.
@@ -32,7 +32,7 @@ PAUSE_CYCLES: Final = 5 * CYCLES_PER_MS
 DEFAULT_KEEP: Final = 24
 
 
-class Deliver(Enum):
+class Delivery(Enum):
     """When a byte becomes visible to the PC: with its frame, or by itself."""
 
     FRAMES = "frames"
@@ -73,10 +73,10 @@ def split_units(data: bytes) -> list[bytes]:
     return units
 
 
-class Outbound:
+class OutboundQueue:
     """Bytes of the robot on their way out: at most `keep` finished frames wait, the oldest give way."""
 
-    def __init__(self, counters: Counters, *, keep: int = DEFAULT_KEEP, deliver: Deliver = Deliver.FRAMES) -> None:
+    def __init__(self, counters: Counters, *, keep: int = DEFAULT_KEEP, deliver: Delivery = Delivery.FRAMES) -> None:
         if not 1 <= keep <= 64:
             raise ValueError(f"frames to keep: {keep}, must be 1..64")
         self.keep = keep
@@ -97,7 +97,7 @@ class Outbound:
         """Whether `take` would return something."""
         if self._waiting:
             return True
-        return self.deliver is Deliver.BYTES and not self._open_unwanted and self._open_taken < len(self._open)
+        return self.deliver is Delivery.BYTES and not self._open_unwanted and self._open_taken < len(self._open)
 
     def push(self, byte: int, end_cycles: int) -> None:
         """A byte of the robot whose stop bit ended at `end_cycles`."""

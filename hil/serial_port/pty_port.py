@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Final
 
 from hil.serial_port.base import SerialPort
-from hil.serial_port.frames import DEFAULT_KEEP, Deliver, split_units
+from hil.serial_port.frames import DEFAULT_KEEP, Delivery, split_units
 from hil.serial_port.link import PortLink
 from hil.serial_url import PortError
 
@@ -40,7 +40,7 @@ class PtyPort(SerialPort):
         link: str | Path | None = None,
         *,
         keep: int = DEFAULT_KEEP,
-        deliver: Deliver = Deliver.FRAMES,
+        deliver: Delivery = Delivery.FRAMES,
         link_records: Path | None = None,
     ) -> None:
         super().__init__(keep=keep, deliver=deliver)

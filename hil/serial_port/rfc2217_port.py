@@ -16,7 +16,7 @@ from typing import Any, Final, cast
 import serial
 from serial.rfc2217 import PortManager
 
-from hil.serial_port.frames import DEFAULT_KEEP, Deliver
+from hil.serial_port.frames import DEFAULT_KEEP, Delivery
 from hil.serial_port.tcp_port import TcpPort
 from hil.serial_url import BAUD
 
@@ -56,7 +56,7 @@ class Rfc2217Port(TcpPort):
 
     scheme = "rfc2217"
 
-    def __init__(self, host: str, port: int, *, keep: int = DEFAULT_KEEP, deliver: Deliver = Deliver.FRAMES) -> None:
+    def __init__(self, host: str, port: int, *, keep: int = DEFAULT_KEEP, deliver: Delivery = Delivery.FRAMES) -> None:
         super().__init__(host, port, keep=keep, deliver=deliver)
         self._manager: PortManager | None = None
         #: Bytes of the protocol that wait to be sent; they go before the next frame, never inside one.

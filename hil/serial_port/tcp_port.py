@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from hil.serial_port.base import SerialPort
-from hil.serial_port.frames import DEFAULT_KEEP, Deliver
+from hil.serial_port.frames import DEFAULT_KEEP, Delivery
 from hil.serial_url import PortError
 
 #: CHOICE: about 4 s of a 9600 baud line, in each direction; the kernel rounds it up.
@@ -26,7 +26,7 @@ class TcpPort(SerialPort):
 
     scheme = "socket"
 
-    def __init__(self, host: str, port: int, *, keep: int = DEFAULT_KEEP, deliver: Deliver = Deliver.FRAMES) -> None:
+    def __init__(self, host: str, port: int, *, keep: int = DEFAULT_KEEP, deliver: Delivery = Delivery.FRAMES) -> None:
         """Listen on `host`:`port` (port 0: any free one).  Raises PortError if that is not possible."""
         super().__init__(keep=keep, deliver=deliver)
         family = socket.AF_INET6 if ":" in host else socket.AF_INET

@@ -9,7 +9,7 @@ from emulator.signal import Signal
 from hil.board import Board
 
 
-class OnBoard:
+class BoardTarget:
     """A test's board as a `hil.faults.FaultTarget` and a `hil.feeds.feeding.Fed`."""
 
     start_up_cycles = 0

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from emulator.c28x.findings import Findings
     from emulator.image import Firmware
     from hil.board import Board
-    from hil.faults import Mounted
+    from hil.faults import MountedFault
     from hil.feeds import Source
     from hil.testing.case import Case
     from hil.testing.outside import Outside
@@ -239,12 +239,12 @@ def hil_feed(request: pytest.FixtureRequest, hil_board: Board) -> Callable[..., 
     A number, arrays, a function of the time in s, a generator of `(time_s, value)`, a file; "physics" gives it back.
     """
     from hil.feeds import feed as begin
-    from hil.testing.faults import OnBoard
+    from hil.testing.faults import BoardTarget
 
     machine = (
         request.getfixturevalue("hil_bench")
         if "hil_bench" in request.fixturenames
-        else OnBoard(hil_board, lambda: request.getfixturevalue("hil_firmware"))
+        else BoardTarget(hil_board, lambda: request.getfixturevalue("hil_firmware"))
     )
 
     def feed(name: str, source: Source, *, how: str = "hold", unit: str = "") -> None:
@@ -255,22 +255,22 @@ def hil_feed(request: pytest.FixtureRequest, hil_board: Board) -> Callable[..., 
 
 
 @pytest.fixture
-def hil_fault(request: pytest.FixtureRequest, hil_board: Board) -> Iterator[Callable[..., Mounted]]:
+def hil_fault(request: pytest.FixtureRequest, hil_board: Board) -> Iterator[Callable[..., MountedFault]]:
     """`fault("gyro-reset", at=0.5)`: something breaks, timed from now; a fault that never fired fails the test.
 
     What it gives tells when it fired and who met it: `report()`; `remove()` mends it.
     """
     from hil.faults import Fault, mount, parse
-    from hil.testing.faults import OnBoard
+    from hil.testing.faults import BoardTarget
 
-    mounted: list[Mounted] = []
+    mounted: list[MountedFault] = []
     machine = (
         request.getfixturevalue("hil_bench")
         if "hil_bench" in request.fixturenames
-        else OnBoard(hil_board, lambda: request.getfixturevalue("hil_firmware"))
+        else BoardTarget(hil_board, lambda: request.getfixturevalue("hil_firmware"))
     )
 
-    def fault(kind: str, **parameters: Any) -> Mounted:
+    def fault(kind: str, **parameters: Any) -> MountedFault:
         with in_one_line():
             # `for` is a word of Python: `for_s`, as in a table.
             declared = Fault.from_table({"kind": kind, **parameters}) if ":" not in kind else parse(kind)

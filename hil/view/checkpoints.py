@@ -197,7 +197,7 @@ class RewindableRun:
         return self.bench.task_statistics()
 
 
-class Moments:
+class CheckpointList:
     """The moments to return to, in order of time.  "ready" stays; the oldest without a name is dropped first."""
 
     def __init__(self, ready_cycles: int = 0, most: int = 60) -> None:

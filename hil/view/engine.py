@@ -25,7 +25,7 @@ from hil.view.machine_thread import MachineThread
 from hil.view.showing import Mark
 from hil.view.snapshot import Snapshot
 from hil.view.stepping import Step
-from hil.view.taps import Taps
+from hil.view.taps import RegisterTaps
 
 T = TypeVar("T")
 
@@ -201,6 +201,6 @@ class Engine:
         return self._machine.error
 
     @property
-    def taps(self) -> Taps:
+    def taps(self) -> RegisterTaps:
         """The taps of the present machine; only for submitted work."""
         return self._machine.taps

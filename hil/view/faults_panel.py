@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
-from hil.faults import FAULTS, FaultParameter, Fired, parse
+from hil.faults import FAULTS, FaultOutcome, FaultParameter, parse
 from hil.faults.effect import Phase
 from hil.view.engine import Engine
 from hil.view.snapshot import Snapshot
@@ -97,7 +97,7 @@ class FaultRow:
                 .props("no-caps dense outline").mark(f"mend-{index}")
             )  # fmt: skip
 
-    def show(self, fired: Fired, phase: Phase) -> None:
+    def show(self, fired: FaultOutcome, phase: Phase) -> None:
         """Show how often it fired, and what it met, so far."""
         text = f"{phase.value}; {str(fired).removeprefix(f'{self.fault}: ')}"
         if text != self._text:

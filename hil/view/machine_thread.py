@@ -23,14 +23,14 @@ from hil.machine import FirmwareStopped, Machine, Setup
 from hil.pacing import Pacer
 from hil.serial_port import PortError, SerialPort
 from hil.session import Session
-from hil.view.checkpoints import Moments, RecordedInput, RewindableRun
+from hil.view.checkpoints import CheckpointList, RecordedInput, RewindableRun
 from hil.view.commands import Commands
 from hil.view.line import LINE_ENDS, EngineLine
 from hil.view.probes import Probes
-from hil.view.showing import Showing
+from hil.view.showing import PublishedState
 from hil.view.snapshot import Mode
 from hil.view.stepping import Step, StepEnd, Stepper
-from hil.view.taps import Taps
+from hil.view.taps import RegisterTaps
 
 #: CHOICE: a moment to go back to is noted by itself this often.
 MOMENT_CYCLES: Final = 10 * SYSCLK_HZ
@@ -58,8 +58,8 @@ class MachineThread:
     ) -> None:
         self.pace = pace
         self.record_writers = record_writers
-        self.showing = Showing(pace)
-        self.moments = Moments()
+        self.showing = PublishedState(pace)
+        self.moments = CheckpointList()
         self.probes = Probes()
         self.line = EngineLine(
             self._send_at_rest,
@@ -75,7 +75,7 @@ class MachineThread:
         #: Why the firmware, or the port, does not go on; empty while it does.
         self.stopped = ""
         self.run: RewindableRun
-        self.taps: Taps
+        self.taps: RegisterTaps
         self._setup = setup
         self._read = read
         self._commands = commands
@@ -148,7 +148,7 @@ class MachineThread:
     def _take(self, run: RewindableRun) -> None:
         """Take a machine that is not powered up yet, and attach all observers."""
         self.run = run
-        self.taps = Taps(run.bench)
+        self.taps = RegisterTaps(run.bench)
         self.taps.set(recording=self.record_writers)
         self._stepper = Stepper(run.bench, self.taps, self._hold, self._rest)
         self.line.log.clear()

@@ -16,7 +16,7 @@ _END: Final = re.compile(r";|\. |\.$")
 
 
 @dataclass(frozen=True, slots=True)
-class Named:
+class NamedValues:
     """The values `low` to `high` of a field are called `text`."""
 
     low: int
@@ -25,7 +25,7 @@ class Named:
 
 
 @lru_cache(maxsize=4096)
-def named(description: str) -> tuple[Named, ...]:
+def named(description: str) -> tuple[NamedValues, ...]:
     """The values that a description names; none if it names none."""
     found = list(_NAMED.finditer(description))
     while found and found[0][1] == ", ":  # an enumeration begins with its first value
@@ -39,7 +39,7 @@ def named(description: str) -> tuple[Named, ...]:
         low, high = int(match[2]), int(match[4] or match[2])
         if match[3] in (" to ", "-"):
             said = f"{low}{match[3]}{high} {said}"
-        values.append(Named(low, high, said))
+        values.append(NamedValues(low, high, said))
     return tuple(values)
 
 

@@ -24,7 +24,7 @@ from hil.view.engine import Engine
 from hil.view.meanings import meaning
 from hil.view.rows import Rows, TableCell, TableRow
 from hil.view.snapshot import Snapshot
-from hil.view.taps import LastWriter, Taps
+from hil.view.taps import LastWriter, RegisterTaps
 
 EVERY: Final = 5
 #: CHOICE: registers that are shown of a search; a person types on rather than reads more.
@@ -87,7 +87,7 @@ def paths_of(run: RewindableRun, block: str, words: str) -> list[str]:
 
 
 def look(
-    run: RewindableRun, taps: Taps, paths: Iterable[str], chosen: str, *, only_set: bool = False
+    run: RewindableRun, taps: RegisterTaps, paths: Iterable[str], chosen: str, *, only_set: bool = False
 ) -> RegistersSnapshot:
     """Rows of registers, `only_set` of those that are not as after reset, and the fields of the chosen one."""
     registers = [register_at(run, path) for path in paths]

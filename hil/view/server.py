@@ -142,7 +142,7 @@ def _serve(
     from nicegui import app as nicegui_app
     from nicegui import core, ui
 
-    from hil.view.crowd import Crowd
+    from hil.view.page_limit import PageLimit
 
     class Server(uvicorn.Server):
         """The HTTP server.  It installs no signal handlers; the caller does."""
@@ -162,7 +162,7 @@ def _serve(
     app = FastAPI(openapi_url=None)
     ui.run_with(
         app,
-        root=Crowd(build, RECONNECT_S),
+        root=PageLimit(build, RECONNECT_S),
         title="c2000-hil",
         dark=None,
         language="en-US",

@@ -37,7 +37,7 @@ class Mark:
     text: str
 
 
-class Showing:
+class PublishedState:
     """The latest snapshot, paths and marks.  The machine's thread sets them, any thread may read them."""
 
     def __init__(self, pace: float | None) -> None:

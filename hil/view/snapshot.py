@@ -16,7 +16,7 @@ from hil.session import HOLD_BACK_BYTES
 from hil.view.stepping import StepEnd
 
 if TYPE_CHECKING:
-    from hil.faults import Fired
+    from hil.faults import FaultOutcome
     from hil.faults.effect import Phase
 
 
@@ -51,7 +51,7 @@ class Snapshot:
     ahead: int = 0
     findings: int = 0
     #: What came of each fault so far, in the order in which they were mounted.
-    faults: tuple[tuple[Fired, Phase], ...] = ()
+    faults: tuple[tuple[FaultOutcome, Phase], ...] = ()
     #: Bytes that wait for the line.
     pending_to_robot: int = 0
 

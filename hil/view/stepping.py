@@ -3,7 +3,7 @@
 | step | where it stops | exact |
 |---|---|---|
 | statement | before the next statement of the firmware, in whatever task runs then | yes |
-| access | before the register is read or written | yes: `taps.Taps` |
+| access | before the register is read or written | yes: `taps.RegisterTaps` |
 | switch | after the scheduler has chosen another task | at the CPU's next charge |
 | frame | after the last byte of a frame has left | at the CPU's next charge |
 | finding | where something is found for the first time, in the middle of its statement | yes |
@@ -28,7 +28,7 @@ from emulator.c28x.sites import Calls, Place
 from emulator.clock import CYCLES_PER_US
 from emulator.registers.cell import Cell
 from hil.running import RunningBoard
-from hil.view.taps import Taps
+from hil.view.taps import RegisterTaps
 
 MOST_REGISTERS: Final = 6
 
@@ -63,7 +63,7 @@ class Stepper:
     """Steps of one machine.  `hold(where)` waits until the person goes on; `rest(where)` has the slice end."""
 
     def __init__(
-        self, bench: RunningBoard, taps: Taps, hold: Callable[[StepEnd], None], rest: Callable[[StepEnd], None]
+        self, bench: RunningBoard, taps: RegisterTaps, hold: Callable[[StepEnd], None], rest: Callable[[StepEnd], None]
     ) -> None:
         self._bench = bench
         self._taps = taps

@@ -28,7 +28,7 @@ class LastWriter:
     word: int
 
 
-class Taps:
+class RegisterTaps:
     """All registers of a chip.  `writers` is kept while `recording`; `step` is told every access while it is set."""
 
     def __init__(self, bench: RunningBoard) -> None:

@@ -99,7 +99,7 @@ async def _pages(rounds: int) -> str:
 
     On a server of their own: of those who talk nonsense some have asked for pages.
     """
-    from hil.view.crowd import MOST_PAGES
+    from hil.view.page_limit import MOST_PAGES
 
     with contextlib.chdir(REPOSITORY):
         view = await asyncio.to_thread(View, "--world", "box", "--no-open")

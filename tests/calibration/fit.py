@@ -17,14 +17,14 @@ import numpy as np
 import numpy.typing as npt
 
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
-from hil.cli.tasks import PUBLISHED, Published
+from hil.cli.tasks import PUBLISHED, ThesisTimes
 from tests.calibration.robot import CODE, Constants, measure
 
 #: A time of each target, in microseconds.
 Times = npt.NDArray[np.float64]
 
 
-def _both(task: Published) -> float:
+def _both(task: ThesisTimes) -> float:
     """Geometric mean of the two figures."""
     assert task.figure37_min_us is not None
     assert task.figure37_max_us is not None

@@ -172,14 +172,14 @@ def test_a_spoilt_frame_is_sent_again() -> None:
     sender, listener = CanPart(), CanPart()
     clock, bus = bus_of(sender, listener)
     # Bits 1 to 5 of identifier 0 are its zeros behind the start of frame (0): bit 5 is the stuff bit, recessive.
-    bus.spoil(frames=1, bit=5)
-    bus.spoil(frames=1, bit=2)
+    bus.disturb(frames=1, bit=5)
+    bus.disturb(frames=1, bit=2)
     sender.send(CanFrame(0, b"z"))
     clock.advance_to(1_000_000)
     assert sender.errors == [CanError.BIT1, CanError.BIT0]
     assert listener.frames == [CanFrame(0, b"z")]
     with pytest.raises(ValueError, match="spoil bit 0"):
-        bus.spoil(bit=0)
+        bus.disturb(bit=0)
 
 
 def test_the_level_of_the_bus_is_the_frame_bit_by_bit() -> None:

@@ -10,7 +10,7 @@ from emulator.c28x.build.calls import call, call_value, sizeof
 from emulator.c28x.build.constants import character, constant_value, floating, fold, integer, string, why_no_constant
 from emulator.c28x.build.conversions import condition, convert, promoted, same_type
 from emulator.c28x.build.depth import shallow, shallow_place
-from emulator.c28x.build.effects import arguments, operands, settled, unsequenced, writes_itself
+from emulator.c28x.build.effects import arguments, evaluated_once, operands, unsequenced, writes_itself
 from emulator.c28x.build.initialisers import Braces, Item, array_of, is_constant, length_given, values
 from emulator.c28x.build.operators import (
     BINARY,
@@ -54,7 +54,7 @@ from emulator.c28x.build.statements import (
     do_while,
     evaluate,
     for_range,
-    held,
+    in_temporary,
     initialise,
     literal,
     loop,
@@ -97,12 +97,13 @@ __all__ = [
     "do_while",
     "element",
     "evaluate",
+    "evaluated_once",
     "file_scope",
     "floating",
     "fold",
     "for_range",
     "function_value",
-    "held",
+    "in_temporary",
     "initialise",
     "integer",
     "is_constant",
@@ -121,7 +122,6 @@ __all__ = [
     "return_",
     "row",
     "same_type",
-    "settled",
     "shallow",
     "shallow_place",
     "sizeof",

@@ -26,7 +26,7 @@ def shallow(b: Builder, value: Expr) -> Expr:
         raise SourceError.at(value.where, "a start value at file scope is a constant: this has too many operators")
     if not b.deep or not b.keeps or not isinstance(value.ctype, _SCALARS) or not deeper(value, DEPTH):
         return value
-    return b.kept(value)
+    return b.saved(value)
 
 
 def shallow_place(b: Builder, place: Place) -> Place:

@@ -79,7 +79,7 @@ class _Changeable:
             return
         if _constant(value):
             return
-        if _acts(value):
+        if _has_effects(value):
             self.acting.add(number)
         for part in parts(value):
             if isinstance(part, LValue) and isinstance(part.root, Variable):
@@ -124,22 +124,22 @@ def unchanged(b: Builder, value: Operand, effects: Sequence[Stmt]) -> Operand:
 
 
 def _unchanged_value(b: Builder, value: Expr, effects: Sequence[Stmt]) -> Expr:
-    return b.kept(value) if disturbs(effects, value) else value
+    return b.saved(value) if disturbs(effects, value) else value
 
 
-def settled(b: Builder, place: Place) -> Place:
+def evaluated_once(b: Builder, place: Place) -> Place:
     """A place that can be read and written, its parts evaluated once: parts with effects go to temporaries."""
     match place:
-        case LValue(root=root, indices=indices) if _acts(root) or any(_acts(index.expr) for index in indices):
-            kept = b.kept(root) if isinstance(root, Expr) and not _constant(root) else root
-            fixed = [replace(i, expr=i.expr if _constant(i.expr) else b.kept(i.expr)) for i in indices]
-            return replace(place, root=kept, indices=fixed)
-        case RegisterAt(block=block) if _acts(block):
-            return replace(place, block=b.kept(block))
+        case LValue(root=root, indices=indices) if _has_effects(root) or any(_has_effects(i.expr) for i in indices):
+            saved = b.saved(root) if isinstance(root, Expr) and not _constant(root) else root
+            fixed = [replace(i, expr=i.expr if _constant(i.expr) else b.saved(i.expr)) for i in indices]
+            return replace(place, root=saved, indices=fixed)
+        case RegisterAt(block=block) if _has_effects(block):
+            return replace(place, block=b.saved(block))
     return place
 
 
-def _acts(e: Variable | Expr) -> bool:
+def _has_effects(e: Variable | Expr) -> bool:
     """Whether evaluating `e` twice differs from evaluating it once."""
     return any(isinstance(part, Call | CallPointer | RegisterLoad) for part in parts(e))
 
@@ -156,7 +156,7 @@ def disturbs(effects: Sequence[Stmt], e: Expr) -> bool:
     """Whether `effects` could change the value of `e`, or whether `e` could see them."""
     if _constant(e):
         return False
-    if _acts(e):
+    if _has_effects(e):
         return True
     written = {place.root for place in _written(effects) if isinstance(place.root, Variable)}
     wild = _wild(effects)

@@ -71,27 +71,27 @@ class _Cursor:
 
 
 @dataclass(frozen=True)
-class _At:
+class _Offsets:
     """Where a part of the whole object begins: the number of its first scalar and of its first word."""
 
     leaf: int = 0
     word: int = 0
 
-    def part(self, ctype: CType, number: int) -> tuple[CType, _At, Member | None]:
+    def part(self, ctype: CType, number: int) -> tuple[CType, _Offsets, Member | None]:
         """The type of part `number`, where it begins, and its member (None: not a member)."""
         if isinstance(ctype, ArrayType):
             element = ctype.element
-            return element, _At(self.leaf + number * element.leaves, self.word + number * element.words), None
+            return element, _Offsets(self.leaf + number * element.leaves, self.word + number * element.words), None
         assert isinstance(ctype, StructType)
         m = ctype.members[number]
-        return m.ctype, _At(self.leaf + m.leaf, self.word + m.offset), m
+        return m.ctype, _Offsets(self.leaf + m.leaf, self.word + m.offset), m
 
 
 @dataclass(frozen=True)
 class _Scalar:
     """A scalar with a given value, and where it lies."""
 
-    at: _At
+    at: _Offsets
     member: Member | None
     value: Expr
 
@@ -124,7 +124,7 @@ def values(
     """
     if not isinstance(ctype, ArrayType | StructType):
         return [_scalar(b, ctype, given)]
-    found = _whole(b, ctype, given, _At())
+    found = _whole(b, ctype, given, _Offsets())
     if found is None:
         raise SourceError.at(given.where, f"a {ctype} is initialised by a list in braces")
     if is_word_backed(ctype):
@@ -144,7 +144,7 @@ def _scalar(b: Builder, ctype: CType, given: Item | Braces) -> Expr:
     return convert(b, given.build(ctype), ctype)
 
 
-def _whole(b: Builder, ctype: ArrayType | StructType, given: Item | Braces, at: _At) -> list[_Scalar] | None:
+def _whole(b: Builder, ctype: ArrayType | StructType, given: Item | Braces, at: _Offsets) -> list[_Scalar] | None:
     """The scalars of an aggregate that one item initialises: a list, a string, a structure; None: it does not."""
     if isinstance(given, Braces):
         if given.ctype is not None and given.ctype != ctype:
@@ -178,7 +178,7 @@ def _is_characters(ctype: ArrayType) -> bool:
     return isinstance(ctype.element, IntType) and ctype.element.bits == 16
 
 
-def _characters(ctype: ArrayType, value: String, at: _At) -> list[_Scalar]:
+def _characters(ctype: ArrayType, value: String, at: _Offsets) -> list[_Scalar]:
     """The characters of a string, then zeros up to the length of the array."""
     if len(value.text) > ctype.length:
         raise SourceError.at(value.where, f"a text of {len(value.text)} characters does not fit into a {ctype}")
@@ -189,10 +189,10 @@ def _characters(ctype: ArrayType, value: String, at: _At) -> list[_Scalar]:
     if ctype.leaves != ctype.words:
         return given
     zero = Const(ctype.element, 0, where=value.where)
-    return given + [_Scalar(_At(at.leaf + i, at.word + i), None, zero) for i in range(len(text), ctype.length)]
+    return given + [_Scalar(_Offsets(at.leaf + i, at.word + i), None, zero) for i in range(len(text), ctype.length)]
 
 
-def _copied(ctype: CType, source: LValue, at: _At) -> list[_Scalar]:
+def _copied(ctype: CType, source: LValue, at: _Offsets) -> list[_Scalar]:
     """The scalars of another object."""
     if not isinstance(ctype, ArrayType | StructType):
         return [_Scalar(at, None, Load(ctype, source, where=source.where))]
@@ -204,7 +204,7 @@ def _copied(ctype: CType, source: LValue, at: _At) -> list[_Scalar]:
     return found
 
 
-def _list(b: Builder, ctype: CType, given: Braces, at: _At) -> list[_Scalar]:
+def _list(b: Builder, ctype: CType, given: Braces, at: _Offsets) -> list[_Scalar]:
     """An aggregate from its list."""
     cursor = _Cursor(list(given.items))
     result: list[_Scalar] = []
@@ -242,7 +242,7 @@ def _number(ctype: CType, designator: str | int, where: Where) -> int:
     raise SourceError.at(where, f"this designator does not fit a {ctype}")
 
 
-def _fill(b: Builder, ctype: CType, cursor: _Cursor, at: _At, result: list[_Scalar], *, top: bool) -> None:
+def _fill(b: Builder, ctype: CType, cursor: _Cursor, at: _Offsets, result: list[_Scalar], *, top: bool) -> None:
     """Fill an aggregate from the items at the cursor: from its own list (`top`), or from an outer list."""
     number = 0
     while (item := cursor.peek()) is not None:
@@ -256,7 +256,7 @@ def _fill(b: Builder, ctype: CType, cursor: _Cursor, at: _At, result: list[_Scal
         number += 1
 
 
-def _next(b: Builder, ctype: CType, number: int, cursor: _Cursor, at: _At, result: list[_Scalar]) -> None:
+def _next(b: Builder, ctype: CType, number: int, cursor: _Cursor, at: _Offsets, result: list[_Scalar]) -> None:
     """Fill part `number` of an aggregate from the item at the cursor."""
     item = cursor.items[cursor.at]
     part, inner, member = at.part(ctype, number)
@@ -337,8 +337,8 @@ def _words(
             masks = [0xFFFF] * len(parts)
         for i, (part, mask) in enumerate(zip(parts, masks, strict=True)):
             before = words[word + i]
-            kept = int(before.value) & ~mask if isinstance(before, Const) else 0
-            words[word + i] = Const(UINT, kept | part & mask, where=value.where)
+            saved = int(before.value) & ~mask if isinstance(before, Const) else 0
+            words[word + i] = Const(UINT, saved | part & mask, where=value.where)
     return words
 
 

@@ -9,7 +9,7 @@ from typing import Final
 from emulator.c28x.build.constants import fold
 from emulator.c28x.build.conversions import ADDRESSES, computed_together, condition, convert, promoted, single
 from emulator.c28x.build.depth import shallow
-from emulator.c28x.build.effects import arguments, settled
+from emulator.c28x.build.effects import arguments, evaluated_once
 from emulator.c28x.build.places import Place, complete, value_of
 from emulator.c28x.build.scope import DEEP_NESTING, Builder
 from emulator.c28x.build.statements import assign, evaluate
@@ -212,17 +212,17 @@ def _common(b: Builder, a: Expr, c: Expr, where: Where) -> CType:
 
 def combined(b: Builder, op: str, place: Place, value: Expr, where: Where) -> None:
     """`place op= value` as a statement."""
-    place = complete(settled(b, place))
+    place = complete(evaluated_once(b, place))
     result = binary(b, op, value_of(b, place), value, where)
     assign(b, place, result, where)
 
 
 def step(b: Builder, op: str, place: Place, where: Where, *, before: bool) -> Expr:
     """`++x`, `x++`, `--x` or `x--` as a value; `before`: the value after the step."""
-    place = complete(settled(b, place))
+    place = complete(evaluated_once(b, place))
     old = value_of(b, place)
     if not before:
-        old = b.kept(old)
+        old = b.saved(old)
     new = binary(b, op, old, Const(INT, 1, where=where), where)
     if before:
         return assigned(b, place, new, where)
@@ -239,7 +239,7 @@ def assigned(b: Builder, place: Place, value: Expr, where: Where) -> Expr:
         assign(b, place, converted, where)
         return value_of(b, place)
     if not isinstance(converted, Const) and not isinstance(place.ctype, StructType):
-        converted = b.kept(converted)
+        converted = b.saved(converted)
     assign(b, place, converted, where)
     if isinstance(place, LValue) and place.bits is not None and isinstance(converted, Const):
         assert isinstance(place.ctype, IntType)

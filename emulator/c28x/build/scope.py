@@ -149,7 +149,7 @@ class Builder:
         variable = Variable(declared, ctype, "temporary", in_memory=isinstance(ctype, StructType), alias=name)
         return LValue(ctype, variable, where=where, text=name)
 
-    def kept(self, value: Expr) -> Expr:
+    def saved(self, value: Expr) -> Expr:
         """The present value of `value`, stored in a temporary: later effects do not change it."""
         place = replace(self.temporary(value, value.where), text=source_text(value))
         return Load(place.ctype, place, where=value.where)

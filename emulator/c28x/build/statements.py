@@ -97,7 +97,7 @@ def begin(b: Builder, variable: Variable, given: Item | Braces, where: Where) ->
         assign(b, seen_by_words(whole, member, value.where, text), value, value.where)
 
 
-def held(b: Builder, value: Expr, where: Where) -> LValue:
+def in_temporary(b: Builder, value: Expr, where: Where) -> LValue:
     """A structure that a function returned, in a temporary: its members can be read, its address cannot be taken."""
     if not isinstance(value.ctype, StructType) or not value.ctype.word_backed:
         return b.temporary(value, where)

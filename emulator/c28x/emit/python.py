@@ -141,7 +141,7 @@ class PythonWriter:
         #: Nobody else sees the effects of the present statement.
         self.passing = False
         #: The value of `_p.at` at this point; 0: not known.
-        self.stands = 0
+        self.stored_place = 0
         self.fresh = 0
         self.around: list[_Breakable] = []
 
@@ -202,17 +202,17 @@ class PythonWriter:
                 self.counted.append(where)
             texts.append(f"{self.names.counters}[{counter}] += 1")
         if self.steps and isinstance(what, Stmt):
-            self.stands = self.statement_at(where)
-            texts += [f"_p.at = {self.stands}", "if _p.hold: _p.hold(locals())"]
+            self.stored_place = self.statement_at(where)
+            texts += [f"_p.at = {self.stored_place}", "if _p.hold: _p.hold(locals())"]
         if texts:
             self.items.append(Begin(self.depth, where.line, tuple(texts)))
 
-    def stand(self) -> int:
+    def place_to_store(self) -> int:
         """The number to store in `_p.at` before others see what comes next; 0 if it is already there."""
         number = self.here()
-        if number == self.stands:
+        if number == self.stored_place:
             return 0
-        self.stands = number
+        self.stored_place = number
         return number
 
     def flush(self) -> None:
@@ -223,9 +223,9 @@ class PythonWriter:
 
     def charge(self, cost: int) -> None:
         self.uses_clock = True
-        at = self.stand()
+        at = self.place_to_store()
         if at and self.passing:
-            self.stands = 0
+            self.stored_place = 0
         self.items.append(Charge(self.depth, self.where.line, self.scaled(cost), at, self.passing))
 
     def scaled(self, cost: int) -> int:
@@ -354,7 +354,7 @@ class PythonWriter:
     def branch(self, body: list[Stmt], cost: int = 0) -> None:
         """Write an inner block, whose end may continue behind the statement."""
         self.cost = cost
-        where, stands = self.where, self.stands
+        where, stored_place = self.where, self.stored_place
         self.depth += 1
         self.block(body)
         if not leaves(body):
@@ -362,8 +362,8 @@ class PythonWriter:
         self.cost = 0
         self.depth -= 1
         self.where = where
-        if self.stands != stands:
-            self.stands = 0
+        if self.stored_place != stored_place:
+            self.stored_place = 0
 
     def switch(self, s: Switch) -> None:
         subject = self.value(s.subject)
@@ -426,7 +426,7 @@ class PythonWriter:
         flag = len(self.items)
         self.put("while True:")
         self.depth += 1
-        stands = self.stands
+        stored_place = self.stored_place
         for i, (_, body) in enumerate(s.cases):
             self.put(f"if {entered} <= {i}:")
             self.branch(body)
@@ -434,11 +434,11 @@ class PythonWriter:
                 self.depth += 1
                 self.put("break")
                 self.depth -= 1
-            self.stands = 0
+            self.stored_place = 0
         self.put("break")
         self.depth -= 1
         self.around.pop()
-        self.stands = stands if not s.cases else 0
+        self.stored_place = stored_place if not s.cases else 0
         for name in sorted(around.used):
             self.items.insert(flag, EmittedLine(self.depth, s.where.line, f"{name} = False"))
             self.put(f"if {name}:")
@@ -502,7 +502,7 @@ class PythonWriter:
         if not endless and s.first:
             self.cost = s.cycles
             self.flush()
-        self.put_patience(s)
+        self.put_loop_limit(s)
         self.put(f"while {self.condition(s.test)}:" if s.first else "while True:")
         self.turns(s, s.body)
         self.where = s.where
@@ -513,9 +513,9 @@ class PythonWriter:
             self.put(f"if not {self.condition(s.test)}: break")
         self.depth -= 1
         self.around.pop()
-        self.stands = 0
+        self.stored_place = 0
 
-    def put_patience(self, loop: While | For) -> None:
+    def put_loop_limit(self, loop: While | For) -> None:
         """Write the time limit of a loop that nobody else can end."""
         if loop.endless is not None:
             self.uses_clock = True
@@ -525,7 +525,7 @@ class PythonWriter:
         """Write the body of a loop; the caller writes the end of its turn."""
         self.around.append(_Breakable(loop))
         self.depth += 1
-        self.stands = 0
+        self.stored_place = 0
         if loop.endless is not None:
             self.put(f"if _k.now > _e{self.depth - 1}_: _c_endless({self.number(loop.endless)})")
         self.block(body)
@@ -536,7 +536,7 @@ class PythonWriter:
         self.uses_clock = True
         cycles = self.scaled(s.cycles)
         idles = isinstance(s.test, Const) and s.test.value != 0
-        number = self.stands = self.place(s.where, s.endless.site, "idle" if idles else "poll")
+        number = self.stored_place = self.place(s.where, s.endless.site, "idle" if idles else "poll")
         self.put(f"_p.at = {number}")
         test = self.condition(s.test)
         self.cost = 0
@@ -581,7 +581,7 @@ class PythonWriter:
         self.cost = 0
         self.depth -= 1
         self.around.pop()
-        self.stands = 0
+        self.stored_place = 0
         # After the loop, the C variable holds the first value for which the test failed.
         if s.trips is not None:
             final = str(s.trips[-1] + s.step) if s.trips else start
@@ -599,17 +599,17 @@ class PythonWriter:
         self.cost += self.costs.cycles(s.start) + self.costs.cycles(s.stop)
         self.flush()
         self.put(f"{self.counter(s)} = {start}")
-        if self.told(s.counter):
+        if self.is_watched(s.counter):
             self.put(self.touch(s.counter, str(s.variable.words), write=True))
         test = self.condition(s.test)
-        self.put_patience(s)
+        self.put_loop_limit(s)
         self.put(f"while {test}:")
         self.turns(s, s.body)
         self.where = s.where
         self.end_of_turn(s)
         self.depth -= 1
         self.around.pop()
-        self.stands = 0
+        self.stored_place = 0
 
     def counter(self, s: For) -> str:
         """The text of the variable of a counting loop."""
@@ -627,7 +627,7 @@ class PythonWriter:
             text = f"{data} = _t if {fits} else _c_overflow(_t, {number})"
         else:
             text = f"{data} = {data} + {s.step} & {ctype.high}"
-        if self.told(root):
+        if self.is_watched(root):
             word = str(s.variable.words)
             text = f"{self.touch(root, word, write=False)}; {self.touch(root, word, write=True)}; {text}"
         self.put(text)
@@ -644,7 +644,7 @@ class PythonWriter:
             self.flush()
             if in_place:
                 self.put(in_place)
-                called = f"else: {called}" if self.stands else f"else: _p.at = {self.here()}; {called}"
+                called = f"else: {called}" if self.stored_place else f"else: _p.at = {self.here()}; {called}"
             self.put(called)
             return
         value = self.value(s.value)
@@ -688,32 +688,34 @@ class PythonWriter:
         if not target.indices:
             if visible:
                 self.flush()
-            if self.told(root):
+            if self.is_watched(root):
                 # The value is computed first, so that its reads are reported to the watcher before this write.
                 self.put(f"_v = {value}")
                 self.put(self.touch(root, str(target.words), write=True))
                 value = "_v"
             self.put(f"{data}[{target.leaf}] = {value}")
             return
-        way = self.way(target)
+        access = self.element_access(target)
         if visible or len(target.indices) > 1:
             self.flush()
-        if not way.names:
-            self.put(f"{data}[{way.leaf}] = {value}")
+        if not access.names:
+            self.put(f"{data}[{access.leaf}] = {value}")
             return
-        told = self.touch(root, way.told or way.words, write=True) + "; " if self.told(root) else ""
+        notification = (
+            self.touch(root, access.watched_word or access.words, write=True) + "; " if self.is_watched(root) else ""
+        )
         self.put(f"_v = {value}")
-        if not way.tests:
-            self.put(f"{told}{data}[{way.leaf}] = _v")
+        if not access.tests:
+            self.put(f"{notification}{data}[{access.leaf}] = _v")
             return
-        self.put(f"if {way.tests}: {told}{data}[{way.leaf}] = _v")
+        self.put(f"if {access.tests}: {notification}{data}[{access.leaf}] = _v")
         assert target.outside is not None
         number = self.number(target.outside)
         if target.outside.kind == "index":
             base = self.location(root, str(target.words))
-            self.put(f"else: _c_oob_store({number}, {way.names[0]}, {target.indices[0].words}, {base}, _v)")
+            self.put(f"else: _c_oob_store({number}, {access.names[0]}, {target.indices[0].words}, {base}, _v)")
         else:
-            names = "".join(f"{name}, " for name in way.names)
+            names = "".join(f"{name}, " for name in access.names)
             self.put(f"else: _c_oob_deep_store({number}, {data}, ({names}), {self.location(root, '0')}, _v)")
 
     def copy_struct(self, s: CopyStruct) -> None:
@@ -1000,7 +1002,7 @@ class PythonWriter:
         return f"_p_{object_name(variable) if variable.kind == 'global' else local_name(variable)}"
 
     def base(self, root: Variable | Expr) -> str:
-        """The pointer at the start of the way to an object."""
+        """The pointer through which an object is reached."""
         return self.value(root) if isinstance(root, Expr) else self.pointer_name(root)
 
     def location(self, variable: Variable, words: str) -> str:
@@ -1009,8 +1011,8 @@ class PythonWriter:
             return f"{self.pointer_name(variable)}.addr + {words}"
         return f"_fp + {variable.frame_offset} + {words}"
 
-    def told(self, variable: Variable) -> bool:
-        """Whether the watcher is told of accesses: to an object of the file, or to a local with a pointer to it."""
+    def is_watched(self, variable: Variable) -> bool:
+        """Whether the watcher hears of accesses: to an object of the file, or to a local with a pointer to it."""
         return self.watch and (variable.kind == "global" or (variable.in_memory and variable.escapes))
 
     def touch(self, variable: Variable, words: str, *, write: bool) -> str:
@@ -1029,21 +1031,21 @@ class PythonWriter:
         if isinstance(lvalue.ctype, StructType):
             return f"{self.data(root)}[{lvalue.leaf}:{lvalue.leaf + lvalue.ctype.leaves}]"
         data = self.data(root)
-        way = self.way(lvalue)
-        text = self.tested(f"{data}[{way.leaf}]", lvalue, root, way.words)
-        if self.told(root):
-            text = f"({self.touch(root, way.told or way.words, write=False)} or {text})"
-        if not way.tests:
+        access = self.element_access(lvalue)
+        text = self.tested(f"{data}[{access.leaf}]", lvalue, root, access.words)
+        if self.is_watched(root):
+            text = f"({self.touch(root, access.watched_word or access.words, write=False)} or {text})"
+        if not access.tests:
             return text
         assert lvalue.outside is not None
         number = self.number(lvalue.outside)
         if lvalue.outside.kind == "index":
             base = self.location(root, str(lvalue.words))
-            outside = f"_c_oob_load({number}, {way.names[0]}, {lvalue.indices[0].words}, {base})"
+            outside = f"_c_oob_load({number}, {access.names[0]}, {lvalue.indices[0].words}, {base})"
         else:
-            names = "".join(f"{name}, " for name in way.names)
+            names = "".join(f"{name}, " for name in access.names)
             outside = f"_c_oob_deep_load({number}, {data}, ({names}), {self.location(root, '0')})"
-        return f"({text} if {way.tests} else {outside})"
+        return f"({text} if {access.tests} else {outside})"
 
     def load_pointed(self, lvalue: LValue) -> str:
         """The text of a read through a pointer, or of a bit-field."""
@@ -1074,24 +1076,24 @@ class PythonWriter:
             return f"({text} if {text} is not None else _c_uninit({number}{where}))"
         return f"(_u if (_u := {text}) is not None else _c_uninit({number}{where}))"
 
-    def way(self, lvalue: LValue) -> _Way:
-        """The way to an element of an object in memory.  Each subscript is evaluated once."""
+    def element_access(self, lvalue: LValue) -> _ElementAccess:
+        """How an element of an object in memory is accessed.  Each subscript is evaluated once."""
         root = lvalue.root
         assert isinstance(root, Variable)
         if not lvalue.indices:
-            return _Way(str(lvalue.leaf), str(lvalue.words))
+            return _ElementAccess(str(lvalue.leaf), str(lvalue.words))
         texts = [self.value(index.expr) for index in lvalue.indices]
         outside = lvalue.outside is not None
-        if not outside and not self.told(root):
-            return _Way(_leaf(texts, lvalue), _words([f"({text})" for text in texts], lvalue))
+        if not outside and not self.is_watched(root):
+            return _ElementAccess(_leaf(texts, lvalue), _words([f"({text})" for text in texts], lvalue))
         names: list[str] = []
         for _ in texts:
             self.fresh += 1
             names.append("_i" if len(texts) == 1 else f"_i{self.fresh}")
-        way = _Way(_leaf(names, lvalue), _words(names, lvalue), tuple(names))
+        access = _ElementAccess(_leaf(names, lvalue), _words(names, lvalue), tuple(names))
         if not outside:
-            way.told = _words([f"({n} := {t})" for n, t in zip(names, texts, strict=True)], lvalue)
-            return way
+            access.watched_word = _words([f"({n} := {t})" for n, t in zip(names, texts, strict=True)], lvalue)
+            return access
         assert lvalue.outside is not None
         site = lvalue.outside.site
         limits = [site.bound] if lvalue.outside.kind == "index" else [limit for limit, _ in site.dimensions]
@@ -1100,8 +1102,8 @@ class PythonWriter:
             low = bounds_of(index.expr)[0]
             tests.append(f"{'0 <= ' if low < 0 else ''}({name} := {text}) < {limit}")
         # `&`, not `and`: all subscripts are evaluated, whatever the first test gives.
-        way.tests = tests[0] if len(tests) == 1 else " & ".join(f"({test})" for test in tests)
-        return way
+        access.tests = tests[0] if len(tests) == 1 else " & ".join(f"({test})" for test in tests)
+        return access
 
     def offset_words(self, lvalue: LValue) -> str:
         """The text of the distance of an lvalue from its root, in words."""
@@ -1178,18 +1180,18 @@ class PythonWriter:
 
 
 @dataclass(slots=True)
-class _Way:
-    """The way to an element, as text.
+class _ElementAccess:
+    """The access to an element, as text.
 
     `leaf` is the number of its scalar, `words` its word, `names` the names of its subscripts.  `tests` assigns these
-    names and checks the bounds.  Without tests, `told`, the word that a watcher is told, assigns the names.
+    names and checks the bounds.  Without tests, `watched_word`, the word for a watcher, assigns the names.
     """
 
     leaf: str
     words: str
     names: tuple[str, ...] = ()
     tests: str = ""
-    told: str = ""
+    watched_word: str = ""
 
 
 def _leaf(subscripts: list[str], lvalue: LValue) -> str:

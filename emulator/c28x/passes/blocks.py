@@ -21,8 +21,8 @@ _COPIES: Final = ("memcpy", "memmove", "strcpy", "strncpy")
 _MAGNITUDES: Final = ("abs", "labs", "llabs")
 
 
-def check_blocks(e: Call, say: Callable[[str, str, str], None]) -> None:
-    """Report arguments of a call that do not fit the function: `say(rule, message, object)`."""
+def check_blocks(e: Call, report: Callable[[str, str, str], None]) -> None:
+    """Report arguments of a call that do not fit the function: `report(rule, message, object)`."""
     name, arguments = e.function.name, e.arguments
     if not e.function.extern or not arguments:
         return
@@ -32,17 +32,17 @@ def check_blocks(e: Call, say: Callable[[str, str, str], None]) -> None:
                 operand.ctype, FloatType
             ):  # fmt: skip
                 text = source_text(operand)
-                say("float-magnitude", f"{text} becomes {to} for {name}, which cuts its fraction", text)
+                report("float-magnitude", f"{text} becomes {to} for {name}, which cuts its fraction", text)
         return
     if name in _COPIES and arguments[0] == arguments[1] and not calls(arguments[0]):
         text = source_text(arguments[0])
-        say("self-assignment", f"{name} copies {text} to itself", text)
+        report("self-assignment", f"{name} copies {text} to itself", text)
         return
     if name in _TEXTS:
         block, most = (bare(arguments[i]) for i in _TEXTS[name])
         if isinstance(most, Const) and most.text == "sizeof pointer":
             text = source_text(block)
-            say("sizeof-pointer", f"{name} of {text} takes {most.value} characters, the size of a pointer", text)
+            report("sizeof-pointer", f"{name} of {text} takes {most.value} characters, the size of a pointer", text)
         return
     length = bare(arguments[-1])
     if name not in _BLOCKS or not isinstance(length, Const):
@@ -50,14 +50,14 @@ def check_blocks(e: Call, say: Callable[[str, str, str], None]) -> None:
     blocks = [bare(argument) for argument in arguments[: _BLOCKS[name]]]
     if length.text == "sizeof pointer" and not any(_of_pointers(block) for block in blocks):
         text = source_text(blocks[0])
-        say("sizeof-pointer", f"{name} of {text} takes {length.value} words, the size of a pointer", text)
+        report("sizeof-pointer", f"{name} of {text} takes {length.value} words, the size of a pointer", text)
         return
     for block in blocks:
-        left = _left(block)
+        left = _words_to_end(block)
         if left is not None and length.value > left:
             text = source_text(block)
             message = f"{name} takes {length.value} words at {text}, a member with {left} words from there"
-            say("memcpy-outside", message, text)
+            report("memcpy-outside", message, text)
 
 
 def _of_pointers(e: Expr) -> bool:
@@ -65,7 +65,7 @@ def _of_pointers(e: Expr) -> bool:
     return not isinstance(e.ctype, PointerType) or isinstance(e.ctype.target, PointerType)
 
 
-def _left(e: Expr) -> int | None:
+def _words_to_end(e: Expr) -> int | None:
     """The words from the target of an argument to the end of the array member that contains it; None: not known."""
     match e:
         case AddressOf(lvalue=LValue(ctype=ArrayType() as member, root=root, words=words, indices=indices)):

@@ -45,7 +45,7 @@ def _block(function: Function, body: list[Stmt], copies: _Copies, report: Static
         inner = blocks(s)
         for block in inner:
             _block(function, block, list(copies) if isinstance(s, If) else [], report)
-        copies = [] if inner or not isinstance(s, Assign | Declare | Evaluate) else _behind(s, copies)
+        copies = [] if inner or not isinstance(s, Assign | Declare | Evaluate) else _copies_after(s, copies)
 
 
 def _are_copies(e: Binary, copies: _Copies) -> bool:
@@ -56,7 +56,7 @@ def _are_copies(e: Binary, copies: _Copies) -> bool:
     return any(both in ((a, b), (b, a)) for a, b in copies)
 
 
-def _behind(s: Assign | Declare | Evaluate, copies: _Copies) -> _Copies:
+def _copies_after(s: Assign | Declare | Evaluate, copies: _Copies) -> _Copies:
     """The copies that are valid after a statement."""
     called = any(isinstance(part, OBSERVABLE) for root in roots(s) for part in parts(root))
     written: Variable | Expr | None = None

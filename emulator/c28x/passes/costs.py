@@ -98,7 +98,7 @@ class Costs:
                 block = POINTER + self.cycles(target.block) if isinstance(target, RegisterAt) else 0
                 return REGISTER + field + block + self.cycles(value)
             case Assign(target=LValue() as target, value=value):
-                return self.cycles(value) + STORE + self.way(target) + (REGISTER_FIELD if target.bits else 0)
+                return self.cycles(value) + STORE + self.access_cycles(target) + (REGISTER_FIELD if target.bits else 0)
             case CopyStruct(target=target, source=source):
                 return self._address(target) + self._address(source) + STORE * target.ctype.words
             case Declare(value=list() as values):
@@ -128,7 +128,11 @@ class Costs:
         match e:
             case Load(lvalue=lvalue):
                 plain = isinstance(lvalue.root, Variable) and lvalue.root.plain
-                return (LOAD if plain else LOAD_MEMORY) + self.way(lvalue) + (REGISTER_FIELD if lvalue.bits else 0)
+                return (
+                    (LOAD if plain else LOAD_MEMORY)
+                    + self.access_cycles(lvalue)
+                    + (REGISTER_FIELD if lvalue.bits else 0)
+                )
             case RegisterLoad(register=register):
                 block = POINTER + self.cycles(register.block) if isinstance(register, RegisterAt) else 0
                 return block + REGISTER + (REGISTER_FIELD if register.field is not None else 0)
@@ -175,7 +179,7 @@ class Costs:
                 return self.condition(operand)
         return COMPARE + self.cycles(e)
 
-    def way(self, lvalue: LValue) -> int:
+    def access_cycles(self, lvalue: LValue) -> int:
         """The cycles of reaching an object: its subscripts, its pointer."""
         indices = sum(self.cycles(index.expr) for index in lvalue.indices)
         if isinstance(lvalue.root, Variable):

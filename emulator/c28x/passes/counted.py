@@ -32,7 +32,7 @@ def known_locals(function: Function, *, counted: bool) -> dict[Variable, tuple[i
 
     `counted`: the numbers of turns of loops are used as well.
     """
-    steps = Counted(function).steps if counted else {}
+    steps = LoopSteps(function).steps if counted else {}
     given: dict[Variable, list[int]] = {}
     ways: dict[Variable, set[bool]] = {}
     unknown: set[Variable] = set()
@@ -49,7 +49,7 @@ def known_locals(function: Function, *, counted: bool) -> dict[Variable, tuple[i
                 ways.setdefault(variable, set()).add(step > 0)
             case _:
                 written = assigned(s)
-                up = _goes_up(s)
+                up = _is_increment(s)
                 if written is not None and up is not None:
                     ways.setdefault(written, set()).add(up)
                 elif written is not None:
@@ -74,7 +74,7 @@ def known_locals(function: Function, *, counted: bool) -> dict[Variable, tuple[i
     return found
 
 
-class Counted:
+class LoopSteps:
     """How far steps in loops move the locals of a function.
 
     A step in loops counts once for each turn of these loops, outwards to the loop before which the local is set to a
@@ -101,7 +101,7 @@ class Counted:
                     target=LValue(root=Variable() as variable, indices=[]), value=Const()
                 ):
                     begun |= {variable}
-                case Assign(target=LValue(root=Variable() as variable), value=value) if _goes_up(s) is not None:
+                case Assign(target=LValue(root=Variable() as variable), value=value) if _is_increment(s) is not None:
                     step = bare(value)
                     assert isinstance(step, Binary)
                     assert isinstance(step.right, Const)
@@ -156,7 +156,7 @@ def _assigns(body: list[Stmt], variable: Variable) -> bool:
     return any(assigned(s) is variable for s in statements(body))
 
 
-def _goes_up(s: Stmt) -> bool | None:
+def _is_increment(s: Stmt) -> bool | None:
     """True if a statement adds a positive constant to a local, False if it subtracts one; None: neither."""
     match s:
         case Assign(target=LValue(root=Variable() as root), value=value):
@@ -168,7 +168,7 @@ def _goes_up(s: Stmt) -> bool | None:
     return None
 
 
-class Ends:
+class CounterEndValues:
     """The values of loop counters after their loops, until a statement changes them."""
 
     def __init__(self, body: list[Stmt]) -> None:

@@ -23,28 +23,28 @@ _SPECIFICATION: Final = re.compile(
 )
 
 
-def check_format(e: Call, say: Callable[[str, str, str], None]) -> None:
-    """Report arguments of a call that do not fit its format: `say(rule, message, object)`."""
+def check_format(e: Call, report: Callable[[str, str, str], None]) -> None:
+    """Report arguments of a call that do not fit its format: `report(rule, message, object)`."""
     place = _FORMATS.get(e.function.name)
     if place is None or not e.function.ctype.variadic or place >= len(e.arguments):
         return
     form = bare(e.arguments[place])
     if not isinstance(form, String):
         return
-    wanted = _wanted(form.text)
+    wanted = _conversions(form.text)
     if wanted is None:
         return
     for (conversion, what, fits), given in zip(wanted, e.extra, strict=False):
         if not fits(given.ctype):
             text = source_text(given)
-            say("varargs-type", f"{conversion} reads {what}, and {text} is of type {given.ctype}", text)
+            report("varargs-type", f"{conversion} reads {what}, and {text} is of type {given.ctype}", text)
             return  # the later arguments are shifted
     if len(wanted) > len(e.extra):
         conversion = wanted[len(e.extra)][0]
-        say("varargs-missing", f"nothing is passed for {conversion} of {form.text!r}", form.text)
+        report("varargs-missing", f"nothing is passed for {conversion} of {form.text!r}", form.text)
     elif len(wanted) < len(e.extra):
         text = source_text(e.extra[len(wanted)])
-        say("varargs-surplus", f"{text} is passed, and {form.text!r} does not print it", text)
+        report("varargs-surplus", f"{text} is passed, and {form.text!r} does not print it", text)
 
 
 def _int(ctype: CType) -> bool:
@@ -67,7 +67,7 @@ def _pointer(ctype: CType) -> bool:
     return _address(ctype) or _long(ctype)
 
 
-def _wanted(text: str) -> list[tuple[str, str, Callable[[CType], bool]]] | None:
+def _conversions(text: str) -> list[tuple[str, str, Callable[[CType], bool]]] | None:
     """(text, what it reads, test of a type) of each conversion; None if one is not known."""
     found: list[tuple[str, str, Callable[[CType], bool]]] = []
     for one in _SPECIFICATION.finditer(text):

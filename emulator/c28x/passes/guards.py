@@ -182,15 +182,15 @@ class Guards:
                     self.leaves_for_all(target.root, value)
                     if not target.indices:
                         self.limited_later(target.root, value)
-                    self.way(target)
+                    self.check_access(target)
                 else:
                     self.value(value)
                     self.quantity(target, value)
                     if isinstance(target, RegisterAt):
                         self.register(target)
             case CopyStruct(target=target, source=source):
-                self.way(target)
-                self.way(source)
+                self.check_access(target)
+                self.check_access(source)
                 # A structure that a caller passes is reported where the caller copies it.
                 kind = "parameter" if isinstance(source.root, Variable) and source.root.kind == "parameter" else ""
                 s.guard = Guard("pointer", self.site(INT, target.text or "structure", at=target.where, kind=kind))
@@ -335,7 +335,7 @@ class Guards:
         """Decide for the parts of an expression."""
         for inner in children(e):
             if isinstance(inner, LValue):
-                self.way(inner, address=isinstance(e, AddressOf))
+                self.check_access(inner, address=isinstance(e, AddressOf))
             elif isinstance(inner, RegisterAt):
                 self.register(inner)
             else:
@@ -542,7 +542,7 @@ class Guards:
         if id(e) in self.stamps:
             e.guard = Guard("past", self.site(target, source_text(operand), at=e.where))
             return
-        if e.explicit and not is_character(target) and loses_top(operand, target):
+        if e.explicit and not is_character(target) and loses_high_bits(operand, target):
             e.guard = Guard("narrowed", self.site(target, source_text(operand), at=e.where, kind="cast"))
         if not target.signed or e.explicit:
             return
@@ -584,7 +584,7 @@ class Guards:
     # Objects
 
     def load(self, lvalue: LValue) -> None:
-        self.way(lvalue)
+        self.check_access(lvalue)
         root = lvalue.root
         if isinstance(root, Variable) and lvalue.unwritten is not None:
             if root.kind == "temporary":  # it has no name in the source
@@ -594,7 +594,7 @@ class Guards:
             site = self.object(lvalue, root, text=text, caseless=lvalue.unwritten.complete)
             lvalue.fresh = Guard("unwritten", site)
 
-    def way(self, lvalue: LValue, *, address: bool = False) -> None:
+    def check_access(self, lvalue: LValue, *, address: bool = False) -> None:
         """Check the subscripts and the pointer of an access.  An `address` may be right behind an array."""
         for index in lvalue.indices:
             self.subscript(index.expr)
@@ -723,7 +723,7 @@ def zero(e: Expr) -> bool:
     return isinstance(e, Const) and e.value == 0
 
 
-def loses_top(e: Expr, target: IntType) -> bool:
+def loses_high_bits(e: Expr, target: IntType) -> bool:
     """Whether a cast cuts a number that was meant to fit: a product, or a product or a long after scaling down.
 
     Casts of sums and differences intend a result modulo 65536; shifts of unsigned values split words.

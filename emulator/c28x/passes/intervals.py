@@ -36,7 +36,7 @@ RING: Final = ("+", "-", "*")
 LONGEST: Final = 64
 
 
-def leave_bounds(body: list[Stmt], ranges: Ranges | None = None) -> None:
+def annotate_bounds(body: list[Stmt], ranges: Ranges | None = None) -> None:
     """Store the bounds of all expressions of `body` on them; `ranges`: known bounds of counting locals."""
     known = ranges or {}
     for s in body:
@@ -46,7 +46,7 @@ def leave_bounds(body: list[Stmt], ranges: Ranges | None = None) -> None:
             _count(s, known)
         else:
             for inner in blocks(s):
-                leave_bounds(inner, known)
+                annotate_bounds(inner, known)
 
 
 def bounds_of(e: Expr) -> Interval:
@@ -75,14 +75,14 @@ def _count(s: For, ranges: Ranges) -> None:
     if s.plain:
         (low, high), (stop_low, stop_high) = bounds_of(s.start), bounds_of(s.stop)
         within = (low, max(low, stop_high - 1)) if s.step > 0 else (min(high, stop_low + 1), high)
-        leave_bounds(s.body, {**ranges, root: within})
+        annotate_bounds(s.body, {**ranges, root: within})
         return
     common = usual(root.ctype, s.stop.ctype)
     variable = Convert(common, Load(root.ctype, s.variable, where=s.where), where=s.where)
     stop = Convert(common, s.stop, where=s.stop.where)
     s.test = Compare(INT, "<" if s.step > 0 else ">", variable, stop, where=s.where)
     _bound(s.test, ranges)
-    leave_bounds(s.body, ranges)
+    annotate_bounds(s.body, ranges)
 
 
 def _runs_alone(s: For, root: Variable) -> bool:

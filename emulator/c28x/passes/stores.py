@@ -47,7 +47,7 @@ def check_stores(function: Function, report: StaticReport) -> None:
                     _falls(function, body[:-1], following, report)
                     if not end.said:
                         only = len(falling) == 1 and ended > LEAST_ENDED
-                        _unsaid(function, body[:-1], following, report, only=only)
+                        _check_fall_through(function, body[:-1], following, report, only=only)
     for body in _bodies(function.body):
         for i, s in enumerate(body):
             if isinstance(s, Assign) and isinstance(s.target, LValue) and _seen_by_others(s.target):
@@ -84,7 +84,7 @@ def _falls(function: Function, body: list[Stmt], following: list[Stmt], report: 
             report.report(function, s.where, "case-falls", message, object=text)
 
 
-def _unsaid(
+def _check_fall_through(
     function: Function, body: list[Stmt], following: list[Stmt], report: StaticReport, *, only: bool
 ) -> None:  # fmt: skip
     """Report a case that falls through without a comment, into a case that is not its continuation.

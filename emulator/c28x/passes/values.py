@@ -10,7 +10,7 @@ from typing import Any
 from emulator.c28x.arithmetic import COMPARE
 from emulator.c28x.ctypes import NOBODY, UCHAR, Double64, FloatType, IntType, PointerType
 from emulator.c28x.passes.blocks import check_blocks
-from emulator.c28x.passes.counted import Ends, known_locals, turning
+from emulator.c28x.passes.counted import CounterEndValues, known_locals, turning
 from emulator.c28x.passes.formats import check_format
 from emulator.c28x.passes.intervals import Ranges, interval
 from emulator.c28x.passes.report import StaticReport
@@ -59,7 +59,7 @@ class ConstantChecks:
         self.to = report
         self.where = where
 
-    def say(self, rule: str, message: str, object: str = "", value: int | float | None = None) -> None:
+    def report_here(self, rule: str, message: str, object: str = "", value: int | float | None = None) -> None:
         """Report at the present statement."""
         self.to.report(self.function, self.where, rule, message, object=object, value=value)
 
@@ -71,7 +71,7 @@ class ConstantChecks:
             ) if value != e.value and not _as_pattern(written, to) and not isinstance(written.ctype, Double64):
                 # Macros compute counts of cycles in double: their fraction is meant to be lost.
                 text = source_text(written)
-                self.say("assignment-loses", f"{text} does not fit a {to}: it becomes {e.value}", text, value)
+                self.report_here("assignment-loses", f"{text} does not fit a {to}: it becomes {e.value}", text, value)
 
     def folded(self, e: Const) -> None:
         """Report what was lost when a constant was folded."""
@@ -87,13 +87,15 @@ class ConstantChecks:
                 if quotient is not None:
                     self.integer_division(quotient)
             case Binary(op="*" | "/", left=left, right=Const(value=8) as right) if _size(left) and not _size(right):
-                self.say("octet", f"{source_text(e.source)}: sizeof counts words of 16 bits here, not octets", "sizeof")
+                self.report_here(
+                    "octet", f"{source_text(e.source)}: sizeof counts words of 16 bits here, not octets", "sizeof"
+                )
             case Binary(op="/", left=left, right=right) if _of_pointer(left, right):
                 message = "the size of a pointer divided by the size of its target is not the number of elements"
-                self.say("sizeof-pointer", f"{source_text(e.source)}: {message}", source_text(e.source))
+                self.report_here("sizeof-pointer", f"{source_text(e.source)}: {message}", source_text(e.source))
             case Binary(op="/", left=Const(value=int(a))) as quotient if a and e.value == 0:
                 text = source_text(quotient)
-                self.say("integer-division-in-float", f"{text} is 0 in integers", text)
+                self.report_here("integer-division-in-float", f"{text} is 0 in integers", text)
             case Binary(left=Const() as left, right=Const() as right):
                 return [left, right]
             case Convert(operand=Const() as operand) | Unary(operand=Const() as operand):
@@ -103,7 +105,7 @@ class ConstantChecks:
     def integer_division(self, e: Binary) -> None:
         text = source_text(e)
         message = f"{text} divides integers, and is converted to float only afterwards"
-        self.say("integer-division-in-float", message, text)
+        self.report_here("integer-division-in-float", message, text)
 
 
 class ValueChecks(ConstantChecks):
@@ -120,7 +122,7 @@ class ValueChecks(ConstantChecks):
         #: The counters of loops around each statement: a test of one of them may be a choice of the build.
         self.turning = turning(function.body, frozenset())
         #: The values of counters after their loops.
-        self.ends = Ends(function.body)
+        self.ends = CounterEndValues(function.body)
         self.doubtful = maybe_negative(function)
         #: Identities of results that are cast to their own type: a wrap is intended.
         self.meant: set[int] = set()
@@ -146,7 +148,7 @@ class ValueChecks(ConstantChecks):
                 case For(variable=LValue(root=Variable(ctype=IntType() as ctype)), stop=stop, step=step):
                     bounds = self.bounds(stop)
                     if bounds is not None and (bounds[0] > ctype.high if step > 0 else bounds[1] < ctype.low):
-                        self.say(
+                        self.report_here(
                             "constant-condition",
                             f"the loop never ends: a {ctype} never reaches {source_text(stop)}", source_text(stop),
                         )  # fmt: skip
@@ -155,7 +157,7 @@ class ValueChecks(ConstantChecks):
                     self.outside(root, bare(given))
             match s:
                 case If(then=then, otherwise=otherwise):
-                    self.kept |= _kept(then, otherwise) | _kept(otherwise, then)
+                    self.kept |= _assigned_in_both(then, otherwise) | _assigned_in_both(otherwise, then)
             match s:
                 case Assign(target=LValue() as target, value=Load(lvalue=source)) if (
                     target == source and id(s) not in self.kept
@@ -182,7 +184,7 @@ class ValueChecks(ConstantChecks):
         if value.value > high and not flags:
             name = variable.declaration.name
             message = f"{name} is set to {source_text(value)}, no constant of its enumeration ({low} to {high})"
-            self.say("no-case", message, variable.declaration.path, value.value)
+            self.report_here("no-case", message, variable.declaration.path, value.value)
 
     def assigned_to_itself(self, target: LValue) -> None:
         """Report `x = x`.  Allowed: a parameter, to mark it as unused; a volatile object (or `*p`), to read it.
@@ -192,7 +194,7 @@ class ValueChecks(ConstantChecks):
         root = target.root
         parameter = isinstance(root, Variable) and root.kind == "parameter" and root.declaration.name not in self.shared
         if not parameter and not volatile(target) and not target.text.startswith("*") and not calls(target):
-            self.say("self-assignment", f"{target.text} is assigned to itself", target.text)
+            self.report_here("self-assignment", f"{target.text} is assigned to itself", target.text)
 
     # Conditions
 
@@ -201,7 +203,7 @@ class ValueChecks(ConstantChecks):
         assert isinstance(counter.ctype, IntType)
         name, end = counter.declaration.name, counter.ctype.wrap(-1)
         message = f"{name} is compared with 0, but the test that ends the loop counts once more: then {name} is {end}"
-        self.say("constant-condition", message, counter.declaration.path)
+        self.report_here("constant-condition", message, counter.declaration.path)
 
     def condition(self, test: Expr) -> None:
         """Check a controlling expression.  (`compare` checks comparisons, wherever they are.)"""
@@ -218,7 +220,7 @@ class ValueChecks(ConstantChecks):
                 if low == high or low > 0 or high < 0:
                     always = "true" if low > 0 or high < 0 else "false"
                     text = source_text(test)
-                    self.say("constant-condition", f"{text} is always {always}: it is {low} to {high}", text)
+                    self.report_here("constant-condition", f"{text} is always {always}: it is {low} to {high}", text)
 
     def bounds(self, e: Expr) -> tuple[float, float] | None:
         """Bounds of an arithmetic expression; None if nothing is known."""
@@ -247,7 +249,7 @@ class ValueChecks(ConstantChecks):
         of = e.left if not isinstance(bare(e.left), Const) else e.right
         low, high = self.bounds(of) or (0, 0)
         why = f"{source_text(of)} is {low:g} to {high:g} ({bare(of).ctype})"
-        self.say("constant-condition", f"{text} is always {always}: {why}", text)
+        self.report_here("constant-condition", f"{text} is always {always}: {why}", text)
 
     def logic(self, e: Logic) -> None:
         """Check joined comparisons of one value with constants: try the values at the constants, and between them."""
@@ -280,7 +282,7 @@ class ValueChecks(ConstantChecks):
         outcomes = {join(COMPARE[op](p, value) for op, value in tests) for p in points}
         if len(outcomes) == 1:
             text = source_text(e)
-            self.say("constant-condition", f"{text} is always {'true' if outcomes.pop() else 'false'}", text)
+            self.report_here("constant-condition", f"{text} is always {'true' if outcomes.pop() else 'false'}", text)
 
     # Expressions
 
@@ -294,7 +296,7 @@ class ValueChecks(ConstantChecks):
                 if value > ctype.high and ctype.high not in (a, b) and id(e) not in self.meant:
                     text, wrapped = source_text(e), ctype.wrap(value)
                     message = f"{text} is {value}, which {ctype.bits} unsigned bits do not hold: it becomes {wrapped}"
-                    self.say("unsigned-wrap", message, text, value)
+                    self.report_here("unsigned-wrap", message, text, value)
 
     def expression(self, e: Expr) -> None:
         self.constant_wrap(e)
@@ -308,17 +310,17 @@ class ValueChecks(ConstantChecks):
                     if op in ("==", "!=") and bare(side).ctype == UCHAR and _negative_source(other):
                         text = source_text(e)
                         message = f"{text}: an unsigned char is never negative; the constant counts as 65535"
-                        self.say("sign-compare", message, text)
+                        self.report_here("sign-compare", message, text)
                 zero = any(isinstance(side, Const) and side.value == 0 for side in (left, right))
                 if op in ("==", "!=") and isinstance(left.ctype, FloatType) and not zero:
                     text = source_text(e)
-                    self.say("float-equality", f"{text} compares floats for equality: rounding decides", text)
+                    self.report_here("float-equality", f"{text} compares floats for equality: rounding decides", text)
             case Call(arguments=arguments) | CallPointer(arguments=arguments):
                 for argument in arguments:
                     self.given(argument)
                 if isinstance(e, Call):
-                    check_format(e, self.say)
-                    check_blocks(e, self.say)
+                    check_format(e, self.report_here)
+                    check_blocks(e, self.report_here)
             case Const():
                 self.folded(e)
             case Convert(ctype=FloatType(), operand=Binary(op="/", right=Const(value=int(b))) as quotient):
@@ -326,10 +328,10 @@ class ValueChecks(ConstantChecks):
                     self.integer_division(quotient)
             case Binary(op="&" | "|" | "^", right=right) if _compared_mask(right):
                 text = source_text(e)
-                self.say("mixed-logic", f"{text}: the comparison comes first and gives 0 or 1", text)
+                self.report_here("mixed-logic", f"{text}: the comparison comes first and gives 0 or 1", text)
             case Binary(op="*" | "/", left=left, right=Const(value=8) as right) if _size(left) and not _size(right):
                 text = source_text(e)
-                self.say("octet", f"{text}: sizeof counts words of 16 bits here, not octets", text)
+                self.report_here("octet", f"{text}: sizeof counts words of 16 bits here, not octets", text)
 
     def signs(self, e: Compare) -> None:
         """Report a signed value that may be negative and is compared as unsigned."""
@@ -344,7 +346,7 @@ class ValueChecks(ConstantChecks):
                 ) if interval(operand, self.ranges)[0] < 0 and negative(operand, self.doubtful):
                     text = source_text(operand)
                     message = f"{text} may be negative and is compared as {to}: it then counts as large"
-                    self.say("sign-compare", message, text)
+                    self.report_here("sign-compare", message, text)
 
 
 def file_scope(variable: Variable, values: list[Any], report: StaticReport) -> None:
@@ -373,7 +375,7 @@ def _as_pattern(e: Const, to: IntType) -> bool:
     return e.value == -1 or (bits and (not e.ctype.signed or (isinstance(e.source, Unary) and e.source.op == "~")))
 
 
-def _kept(branch: list[Stmt], other: list[Stmt]) -> set[int]:
+def _assigned_in_both(branch: list[Stmt], other: list[Stmt]) -> set[int]:
     """Identities of the assignments in a branch whose targets the other branch assigns too."""
     targets = [s.target for s in other if isinstance(s, Assign)]
     return {id(s) for s in branch if isinstance(s, Assign) and s.target in targets}

@@ -27,13 +27,13 @@ from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.posters import Posters
 from emulator.sysbios.watch.races import Races
 from emulator.sysbios.watch.releases import Releases
-from emulator.sysbios.watch.spots import StatementSpots
 from emulator.sysbios.watch.standstill import Standstill
+from emulator.sysbios.watch.starvation import STARVED_CYCLES, StarvationWatch
+from emulator.sysbios.watch.statements import StatementLocator
 from emulator.sysbios.watch.threads import Enable, Enables, ThreadWatch
-from emulator.sysbios.watch.transactions import Select, TappedBlock, Transactions
+from emulator.sysbios.watch.timeouts import TimeoutWatch
+from emulator.sysbios.watch.transactions import SelectWire, Transactions, WatchedBlock
 from emulator.sysbios.watch.transmission import Transmission
-from emulator.sysbios.watch.waiting import STARVED_CYCLES, Patience
-from emulator.sysbios.watch.waits import Waits
 
 __all__ = ["KernelWatch"]
 
@@ -50,7 +50,7 @@ class Vectors(Protocol):
         """A routine has ended."""
 
 
-class Tapped(Protocol):
+class WatchedRegister(Protocol):
     """A register that reports its writes to listeners (`emulator.registers.cell.Cell`)."""
 
     def tap(self, listener: Callable[[Any, str, int, int], None]) -> object:
@@ -58,7 +58,7 @@ class Tapped(Protocol):
 
 
 class Transfer(Protocol):
-    """A DMA transfer that is under way (`emulator.peripherals.dma_doubts.TransferDoubts`)."""
+    """A DMA transfer that is under way (`emulator.peripherals.dma_checks.TransferChecks`)."""
 
     def touched(self, base: int, *, write: bool) -> None:
         """The CPU reads or writes the object at `base` during the transfer."""
@@ -77,24 +77,26 @@ class KernelWatch:
     ) -> None:  # fmt: skip
         findings = kernel.core.findings
         self.transfers = transfers
-        calls, spots, names = Calls(kernel), StatementSpots(findings), HandleNames(linked)
+        calls, locator, names = Calls(kernel), StatementLocator(findings), HandleNames(linked)
         self.threads = threads = ThreadWatch(kernel)
         _order(calls, threads)
         self.races = Races(
-            threads, spots, names, findings, linked.runtime.memory, linked.program.modules.values()
+            threads, locator, names, findings, linked.runtime.memory, linked.program.modules.values()
         )  # fmt: skip
-        self.transmission = Transmission(threads, spots, findings)
-        self.transactions = Transactions(threads, spots, names, findings)
-        self.gates = Gates(threads, spots, names, findings, calls)
-        self.waits = Waits(threads, spots, names, findings, self.gates, calls, linked)
-        self.inversion = Inversion(threads, spots, names, findings, self.gates, calls)
-        self.standstill = Standstill(threads, spots, names, findings, self.gates, Posters(kernel, linked, names), calls)
-        self.releases = Releases(threads, spots, names, findings, calls)
-        self.lost_posts = LostPosts(spots, names, findings, calls, linked)
-        self.lost_events = LostEvents(threads, spots, findings, linked.program.modules.values())
+        self.transmission = Transmission(threads, locator, findings)
+        self.transactions = Transactions(threads, locator, names, findings)
+        self.gates = Gates(threads, locator, names, findings, calls)
+        self.waits = TimeoutWatch(threads, locator, names, findings, self.gates, calls, linked)
+        self.inversion = Inversion(threads, locator, names, findings, self.gates, calls)
+        self.standstill = Standstill(
+            threads, locator, names, findings, self.gates, Posters(kernel, linked, names), calls
+        )
+        self.releases = Releases(threads, locator, names, findings, calls)
+        self.lost_posts = LostPosts(locator, names, findings, calls, linked)
+        self.lost_events = LostEvents(threads, locator, findings, linked.program.modules.values())
         #: Register -> the interrupts that a write to it can bring, each with a test of the word that is written.
-        self._started: dict[Tapped, list[tuple[int, Callable[[int], bool]]]] = {}
-        self.patience = Patience(threads, spots, findings, self.releases, calls, starved_cycles)
+        self._started: dict[WatchedRegister, list[tuple[int, Callable[[int], bool]]]] = {}
+        self.starvation = StarvationWatch(threads, locator, findings, self.releases, calls, starved_cycles)
         runtime = linked.runtime
 
         def printed(count: int, buf: Pointer | None, *_arguments: Any) -> None:
@@ -112,14 +114,14 @@ class KernelWatch:
             if taken and message is not None:
                 runtime.touch_block(message, mailbox.size, True)
 
-        calls.before("Mailbox_post", tell=posted)
-        calls.after("Mailbox_pend", tell=taken)
-        calls.after("System_sprintf", tell=printed)
-        calls.after("System_snprintf", tell=printed_at_most)
+        calls.before("Mailbox_post", callback=posted)
+        calls.after("Mailbox_pend", callback=taken)
+        calls.after("System_sprintf", callback=printed)
+        calls.after("System_snprintf", callback=printed_at_most)
         calls.install(linked)
         linked.watch_with(self._watcher(kernel))
         # In this order: `threads` first, `gates` before `inversion`.
-        for listener in (threads, self.gates, self.inversion, self.standstill, self.patience, self.transactions):
+        for listener in (threads, self.gates, self.inversion, self.standstill, self.starvation, self.transactions):
             listener.listen(kernel.core.trace)
         kernel.ending.connect(self.finish)
 
@@ -152,7 +154,7 @@ class KernelWatch:
         """Report what shows at the end of a run: unused gates, and tasks that still wait or wait for ever."""
         self.gates.finish()
         self.standstill.finish()
-        self.patience.finish()
+        self.starvation.finish()
 
     # Peripherals
 
@@ -166,7 +168,7 @@ class KernelWatch:
         """Register the enable bits of a peripheral's interrupt `number`.  A driver can clear them to hold it off."""
         self.threads.enables[number] = enables
 
-    def starts(self, number: int, register: Tapped, begins: Callable[[int], bool]) -> None:
+    def starts(self, number: int, register: WatchedRegister, begins: Callable[[int], bool]) -> None:
         """Writing a word that `begins` accepts to `register` starts an operation that ends in interrupt `number`.
 
         What the writer did before the write is therefore ordered before the interrupt routine.
@@ -180,7 +182,7 @@ class KernelWatch:
         self.threads.begun.setdefault(number, []).append(register)
 
     def _starting(
-        self, register: Tapped, started: list[tuple[int, Callable[[int], bool]]]
+        self, register: WatchedRegister, started: list[tuple[int, Callable[[int], bool]]]
     ) -> Callable[[Any, str, int, int], None]:  # fmt: skip
         """The listener for writes to a register of `starts`."""
         threads, kernel, table = self.threads, self.threads.kernel, self.threads.kernel.hwis.table
@@ -208,19 +210,19 @@ class KernelWatch:
 
         return begun
 
-    def adc(self, regs: TappedBlock, results: TappedBlock) -> None:
+    def adc(self, regs: WatchedBlock, results: WatchedBlock) -> None:
         """Watch the transactions of an ADC."""
         self.transactions.watch_adc(regs, results)
 
-    def spi(self, regs: TappedBlock) -> None:
+    def spi(self, regs: WatchedBlock) -> None:
         """Watch the transactions of an SPI master."""
         self.transactions.watch_spi(regs)
 
-    def select(self, regs: TappedBlock, chip_select: Select) -> None:
+    def select(self, regs: WatchedBlock, chip_select: SelectWire) -> None:
         """Watch the transfers to one slave of an SPI master."""
         self.transactions.watch_select(regs.name, chip_select)
 
-    def sci(self, regs: TappedBlock, character_cycles: Callable[[], int]) -> None:
+    def sci(self, regs: WatchedBlock, character_cycles: Callable[[], int]) -> None:
         """Watch what an SCI sends and from which buffer.  `character_cycles()` is the time of one character."""
         register = f"{regs.name}.SCITXBUF"
         self.transactions.watch_sci(regs, lambda: self.transmission.sent(register, character_cycles()))
@@ -259,11 +261,13 @@ def _order(calls: Calls, threads: ThreadWatch) -> None:
         if bits:
             acquire(event)
 
-    calls.before("Event_post", "Mailbox_post", "Mailbox_pend", tell=released)
-    calls.after("Mailbox_post", "Mailbox_pend", tell=passed)
-    calls.after("Event_pend", tell=matched)
-    calls.before("Semaphore_post", "Swi_post", "Swi_or", "Swi_inc", "Swi_andn", "Swi_dec", "Clock_start", tell=released)
-    calls.before("Hwi_enableInterrupt", tell=enabled)
-    calls.after("Hwi_disableInterrupt", tell=disabled)
-    calls.after("Hwi_create", "Swi_create", "Clock_create", tell=made)
-    calls.after("Semaphore_pend", tell=pended)
+    calls.before("Event_post", "Mailbox_post", "Mailbox_pend", callback=released)
+    calls.after("Mailbox_post", "Mailbox_pend", callback=passed)
+    calls.after("Event_pend", callback=matched)
+    calls.before(
+        "Semaphore_post", "Swi_post", "Swi_or", "Swi_inc", "Swi_andn", "Swi_dec", "Clock_start", callback=released
+    )
+    calls.before("Hwi_enableInterrupt", callback=enabled)
+    calls.after("Hwi_disableInterrupt", callback=disabled)
+    calls.after("Hwi_create", "Swi_create", "Clock_create", callback=made)
+    calls.after("Semaphore_pend", callback=pended)

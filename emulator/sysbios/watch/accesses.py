@@ -13,32 +13,35 @@ from __future__ import annotations
 
 from typing import Final
 
-from emulator.sysbios.watch.spots import Spot
+from emulator.sysbios.watch.statements import StatementNumber
 from emulator.sysbios.watch.threads import Protection, Thread, VectorClock, excluded
 
 
 class LatestAccess:
     """The latest access with one thread, one direction (read or write) and one protection."""
 
-    __slots__ = ("clock", "protection", "spot", "thread", "time", "write")
+    __slots__ = ("clock", "protection", "statement", "thread", "time", "write")
 
-    def __init__(self, thread: Thread, write: bool, protection: Protection, clock: int, spot: Spot, time: int) -> None:
+    def __init__(
+        self, thread: Thread, write: bool, protection: Protection, clock: int, statement: StatementNumber, time: int
+    ) -> None:
         self.thread = thread
         self.write = write
         self.protection = protection
         self.clock = clock
-        self.spot = spot
+        self.statement = statement
         self.time = time
 
 
 NONE: Final[tuple[LatestAccess, ...]] = ()
 
 
-class SharedObject:
+class SharedCell:
     """A scalar, or another part that only one thread may use at a time."""
 
     __slots__ = (
-        "accesses", "changed", "handed", "hands_over", "last", "owner", "reader", "reader_spot", "writers", "writes",
+        "accesses", "changed", "handed", "hands_over", "last", "owner", "reader", "reader_statement", "writers",
+        "writes",
     )  # fmt: skip
 
     def __init__(self, owner: Thread, hands_over: bool = False) -> None:
@@ -52,10 +55,10 @@ class SharedObject:
         self.writes: list[LatestAccess] = []
         self.writers: set[Thread] = set()
         #: Thread -> the statement by which it last read and wrote the cell in one step, per protection.
-        self.changed: dict[Thread, dict[Protection, Spot]] = {}
+        self.changed: dict[Thread, dict[Protection, StatementNumber]] = {}
         #: The last reader and its statement.  The last writer, with its clock and its vector clock at the write.
         self.reader: Thread | None = None
-        self.reader_spot: Spot = 0
+        self.reader_statement: StatementNumber = 0
         self.handed: tuple[Thread, int, VectorClock] | None = None
 
     def conflicts(self, thread: Thread, protection: Protection) -> tuple[LatestAccess, ...]:
@@ -80,22 +83,22 @@ class SharedObject:
             and not excluded(other.thread, other.protection, thread, protection)
         )  # fmt: skip
 
-    def cut(self, low: Thread, high: LatestAccess) -> Spot | None:
+    def cut(self, low: Thread, high: LatestAccess) -> StatementNumber | None:
         """The statement by which `low` read and wrote the cell, if `high` can interrupt it and write too; else None."""
-        for protection, spot in self.changed.get(low, {}).items():
+        for protection, statement in self.changed.get(low, {}).items():
             if high.thread in self.writers and not excluded(low, protection, high.thread, high.protection):
-                return spot
+                return statement
         return None
 
-    def keep(self, thread: Thread, write: bool, protection: Protection, spot: Spot, time: int) -> None:
+    def keep(self, thread: Thread, write: bool, protection: Protection, statement: StatementNumber, time: int) -> None:
         """Remember an access to a cell that several threads use."""
         known = self.last
         if known is None or known.thread is not thread or known.write != write or known.protection is not protection:
             key = (thread, write, protection)
             known = self.accesses.get(key)
             if known is None:
-                known = self.accesses[key] = LatestAccess(thread, write, protection, thread.clock, spot, time)
+                known = self.accesses[key] = LatestAccess(thread, write, protection, thread.clock, statement, time)
                 if write:
                     self.writes.append(known)
             self.last = known
-        known.clock, known.spot, known.time = thread.clock, spot, time
+        known.clock, known.statement, known.time = thread.clock, statement, time

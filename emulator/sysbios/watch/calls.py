@@ -28,15 +28,15 @@ class Calls:
         self._before: dict[str, list[Before]] = {}
         self._after: dict[str, list[After]] = {}
 
-    def before(self, *names: str, tell: Before) -> None:
-        """Call `tell(*arguments)` before each call of these functions."""
+    def before(self, *names: str, callback: Before) -> None:
+        """Call `callback(*arguments)` before each call of these functions."""
         for name in names:
-            self._before.setdefault(name, []).append(tell)
+            self._before.setdefault(name, []).append(callback)
 
-    def after(self, *names: str, tell: After) -> None:
-        """Call `tell(result, *arguments)` after each call of these functions."""
+    def after(self, *names: str, callback: After) -> None:
+        """Call `callback(result, *arguments)` after each call of these functions."""
         for name in names:
-            self._after.setdefault(name, []).append(tell)
+            self._after.setdefault(name, []).append(callback)
 
     def install(self, linked: Linked) -> None:
         """Put the listeners into an image."""
@@ -58,11 +58,11 @@ class Calls:
                 return function(*arguments)
             if checked is not None:
                 arguments = checked(name, arguments)
-            for tell in before:
-                tell(*arguments)
+            for callback in before:
+                callback(*arguments)
             result = function(*arguments)
-            for tell in after:
-                tell(result, *arguments)
+            for callback in after:
+                callback(result, *arguments)
             return result
 
         return call

@@ -18,7 +18,7 @@ from emulator.sysbios.core import HWI, SWI
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gate_exits import ENTER, exits
 from emulator.sysbios.watch.names import HandleNames
-from emulator.sysbios.watch.spots import Call, Spot, StatementSpots
+from emulator.sysbios.watch.statements import Call, StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import Gate, Thread, ThreadWatch
 from emulator.trace import Trace
 
@@ -32,7 +32,7 @@ class GateEntry:
 
     gate: Gate
     key: int
-    spot: Spot
+    statement: StatementNumber
     #: The running call of the C function that entered it.
     call: Call | None
 
@@ -42,7 +42,7 @@ class Edge:
     """A thread entered one gate while it held another."""
 
     thread: Thread
-    spot: Spot
+    statement: StatementNumber
     #: All gates that were held then.
     held: frozenset[Gate]
 
@@ -51,29 +51,29 @@ class Gates:
     """Listens to the calls that enter and leave gates, and to the calls that make a task wait."""
 
     def __init__(
-        self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings, calls: Calls
+        self, threads: ThreadWatch, locator: StatementLocator, names: HandleNames, findings: Findings, calls: Calls
     ) -> None:
         self._threads = threads
-        self._spots = spots
+        self._locator = locator
         self._names = names
         self._findings = findings
         self._clock = findings.clock
-        self._created: dict[Gate, Spot] = {}
+        self._created: dict[Gate, StatementNumber] = {}
         self._used: set[Gate] = set()
         self._entries: dict[Thread, list[GateEntry]] = {}
-        self._entering_now: dict[Thread, tuple[Gate, Spot]] = {}
-        self._waits: dict[Thread, tuple[Gate, Spot]] = {}
+        self._entering_now: dict[Thread, tuple[Gate, StatementNumber]] = {}
+        self._waits: dict[Thread, tuple[Gate, StatementNumber]] = {}
         self._since: dict[Thread, int] = {}
         self._order: dict[Gate, dict[Gate, list[Edge]]] = {}
-        calls.after("GateMutexPri_create", "GateMutex_create", tell=self._create)
-        calls.before(*ENTER, tell=self._entering)
-        calls.after(*ENTER, tell=self._entered)
-        calls.before("GateMutexPri_leave", "GateMutex_leave", tell=self._leaving)
-        calls.before("Semaphore_pend", tell=self._pending)
-        calls.before("Event_pend", tell=self._pending_event)
-        calls.before("Mailbox_pend", tell=partial(self._pending_mailbox, "Mailbox_pend"))
-        calls.before("Mailbox_post", tell=partial(self._pending_mailbox, "Mailbox_post"))
-        calls.before("Task_sleep", tell=self._sleeping)
+        calls.after("GateMutexPri_create", "GateMutex_create", callback=self._create)
+        calls.before(*ENTER, callback=self._entering)
+        calls.after(*ENTER, callback=self._entered)
+        calls.before("GateMutexPri_leave", "GateMutex_leave", callback=self._leaving)
+        calls.before("Semaphore_pend", callback=self._pending)
+        calls.before("Event_pend", callback=self._pending_event)
+        calls.before("Mailbox_pend", callback=partial(self._pending_mailbox, "Mailbox_pend"))
+        calls.before("Mailbox_post", callback=partial(self._pending_mailbox, "Mailbox_post"))
+        calls.before("Task_sleep", callback=self._sleeping)
 
     def listen(self, trace: Trace) -> None:
         """Listen to tasks that wait for a gate, and to tasks that block."""
@@ -107,7 +107,7 @@ class Gates:
         """The tasks that wait for a gate, each with the cycle at which its wait began."""
         return [(thread, self._since[thread]) for thread, (wanted, _) in self._waits.items() if wanted is gate]
 
-    def spot(self, thread: Thread) -> Spot:
+    def statement(self, thread: Thread) -> StatementNumber:
         """The statement at which a task waits for a gate."""
         wait = self._waits.get(thread)
         return wait[1] if wait is not None else 0
@@ -119,8 +119,8 @@ class Gates:
     def finish(self) -> None:
         """Report what shows only at the end of a run."""
         entered = {path for function in ENTER for path in self._names.passed(function)}
-        for gate, spot in list(self._created.items()):
-            place = self._spots.place(spot)
+        for gate, statement in list(self._created.items()):
+            place = self._locator.place(statement)
             if gate in self._used or place is None:
                 del self._created[gate]
                 continue
@@ -150,31 +150,31 @@ class Gates:
     # Listeners
 
     def _create(self, gate: Gate, *_arguments: Any) -> None:
-        self._created[gate] = self._spots.here()
+        self._created[gate] = self._locator.here()
 
     def _entering(self, gate: Gate) -> None:
         self._used.add(gate)
         thread = self._threads.current
         if self._in_interrupt(f"{type(gate).__name__}_enter", gate) or not thread.is_task:
             return
-        spot = self._spots.here()
-        self._entering_now[thread] = (gate, spot)
+        statement = self._locator.here()
+        self._entering_now[thread] = (gate, statement)
         held = self._threads.gates(thread)
         if gate in held:
             entry = self.entry(thread, gate)
-            if entry is not None and (entry.spot, entry.call) == (spot, self._spots.call()):
+            if entry is not None and (entry.statement, entry.call) == (statement, self._locator.call()):
                 self._entered_again(thread, gate)
             self._forgotten(thread, "enters it again", only=gate)
             return
         for other in held:
-            self._ordered(other, gate, Edge(thread, spot, held))
+            self._ordered(other, gate, Edge(thread, statement, held))
 
     def _entered(self, key: int, gate: Gate) -> None:
         thread = self._threads.current
         self._waits.pop(thread, None)
         if not thread.is_task:
             return
-        entry = GateEntry(gate, key, self._spots.here(), self._spots.call())
+        entry = GateEntry(gate, key, self._locator.here(), self._locator.call())
         self._entries.setdefault(thread, []).append(entry)
         thread.entered.append(gate)
 
@@ -197,7 +197,7 @@ class Gates:
             effect = "stays taken for ever" if key else "is free although the outer enter still needs it"
             self._findings.report(
                 "gate-key", f"{name} is left by {thread} with key {key}, but its enter gave {entry.key}: the gate "
-                f"{effect}", object=name, value=key, details=(f"entered in {self._spots.text(entry.spot)}",),
+                f"{effect}", object=name, value=key, details=(f"entered in {self._locator.text(entry.statement)}",),
             )  # fmt: skip
             if key and not entry.key:
                 thread.entered.append(gate)
@@ -236,14 +236,14 @@ class Gates:
             gate = entry.gate
             if entry.key or gate.free or gate.owner is not thread.what or (only is not None and gate is not only):
                 continue
-            place = self._spots.place(entry.spot)
-            if place is None or (entry.call is not None and self._spots.running(entry.call)):
+            place = self._locator.place(entry.statement)
+            if place is None or (entry.call is not None and self._locator.running(entry.call)):
                 continue
             name = self._names.of(gate)
             self._findings.report_at(
                 place, "gate-not-left", f"{name} is entered by {thread} in {place.function}, which returns without "
                 f"leaving it: {thread.name} {when} while it holds it", object=name, how="dynamic",
-                details=(f"{when} in {self._spots.text(self._spots.here())}",),
+                details=(f"{when} in {self._locator.text(self._locator.here())}",),
             )  # fmt: skip
 
     def _entered_again(self, thread: Thread, gate: Gate) -> None:
@@ -268,7 +268,7 @@ class Gates:
             self._findings.report(
                 "gate-order", f"{edge.thread} enters {b} while it holds {a}, and {others} in the opposite order: a "
                 "deadlock is possible", object=b,
-                details=tuple(f"{e.thread} in {self._spots.text(e.spot)}" for e in path),
+                details=tuple(f"{e.thread} in {self._locator.text(e.statement)}" for e in path),
             )  # fmt: skip
 
     def _path(self, start: Gate, end: Gate, taken: list[Edge]) -> list[Edge] | None:
@@ -303,8 +303,8 @@ class Gates:
             chain.append(other)
         told = []
         for member in chain:
-            gate, spot = self._waits[member]
-            told.append(f"{member} waits for {self._names.of(gate)} in {self._spots.text(spot)}")
+            gate, statement = self._waits[member]
+            told.append(f"{member} waits for {self._names.of(gate)} in {self._locator.text(statement)}")
         gates = " and ".join(self._names.of(self._waits[t][0]) for t in chain)
         self._findings.report(
             "deadlock", f"{' and '.join(map(str, chain))} wait for each other, for {gates}: none of them runs again",

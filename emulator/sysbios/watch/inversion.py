@@ -22,7 +22,7 @@ from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gate_exits import ENTER
 from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.names import HandleNames
-from emulator.sysbios.watch.spots import Spot, StatementSpots
+from emulator.sysbios.watch.statements import StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import Gate, Thread, ThreadWatch
 from emulator.trace import Trace
 
@@ -34,7 +34,7 @@ class BlockedTask:
     holder: Thread
     usage: list[int]
     since: int
-    taken: Spot
+    taken: StatementNumber
     #: The threads that must run before the wait can end.
     helpers: set[Thread] = field(default_factory=set)
     #: Where one of them blocked during the wait.
@@ -49,27 +49,27 @@ class Inversion:
     def __init__(
         self,
         threads: ThreadWatch,
-        spots: StatementSpots,
+        locator: StatementLocator,
         names: HandleNames,
         findings: Findings,
         gates: Gates,
         calls: Calls,
     ) -> None:
         self._threads = threads
-        self._spots = spots
+        self._locator = locator
         self._names = names
         self._findings = findings
         self._clock = findings.clock
         self._gates = gates
         self._waits: dict[Thread, tuple[Any, BlockedTask]] = {}
         #: Semaphores that were created with 1 and posted only by their taker.
-        self._mutexes: dict[Semaphore, tuple[Thread | None, Spot]] = {}
-        calls.after(*ENTER, tell=self._entered)
-        calls.after("GateMutexPri_leave", "GateMutex_leave", tell=self._left)
-        calls.after("Semaphore_create", tell=self._create)
-        calls.before("Semaphore_post", tell=self._post)
-        calls.before("Semaphore_pend", tell=self._pend)
-        calls.after("Semaphore_pend", tell=self._pended)
+        self._mutexes: dict[Semaphore, tuple[Thread | None, StatementNumber]] = {}
+        calls.after(*ENTER, callback=self._entered)
+        calls.after("GateMutexPri_leave", "GateMutex_leave", callback=self._on_leave)
+        calls.after("Semaphore_create", callback=self._create)
+        calls.before("Semaphore_post", callback=self._post)
+        calls.before("Semaphore_pend", callback=self._pend)
+        calls.after("Semaphore_pend", callback=self._pended)
 
     def listen(self, trace: Trace) -> None:
         """Listen to tasks that wait for a gate, and to tasks that block; call it after `Gates.listen`."""
@@ -83,7 +83,7 @@ class Inversion:
             return
         holder = self._threads.of(gate.owner)
         entry = self._gates.entry(holder, gate)
-        self._wait(thread, gate, holder, entry.spot if entry is not None else 0)
+        self._wait(thread, gate, holder, entry.statement if entry is not None else 0)
 
     def _blocks(self, _cycles: int, _kind: str, name: str) -> None:
         if self._waits:
@@ -95,7 +95,7 @@ class Inversion:
         if self._waits:
             self._judge(self._threads.current, self._names.of(gate))
 
-    def _left(self, _result: None, gate: Gate, key: int) -> None:
+    def _on_leave(self, _result: None, gate: Gate, key: int) -> None:
         for waited, wait in self._waits.values():
             if waited is gate and gate.owner is not None:
                 wait.helpers.add(self._threads.of(gate.owner))
@@ -113,21 +113,21 @@ class Inversion:
                 self._mutexes[semaphore] = (None, 0)
 
     def _pend(self, semaphore: Semaphore, timeout: int) -> None:
-        holder, spot = self._mutexes.get(semaphore, (None, 0))
+        holder, statement = self._mutexes.get(semaphore, (None, 0))
         thread = self._threads.current
         if holder is not None and timeout and not semaphore.count and thread.is_task and holder is not thread:
-            self._wait(thread, semaphore, holder, spot)
+            self._wait(thread, semaphore, holder, statement)
 
     def _pended(self, taken: int, semaphore: Semaphore, timeout: int) -> None:
         thread = self._threads.current
         if self._waits:
             self._judge(thread, self._names.of(semaphore))
         if taken and semaphore in self._mutexes:
-            self._mutexes[semaphore] = (thread, self._spots.here())
+            self._mutexes[semaphore] = (thread, self._locator.here())
 
     # Waits
 
-    def _wait(self, thread: Thread, what: Any, holder: Thread, taken: Spot) -> None:
+    def _wait(self, thread: Thread, what: Any, holder: Thread, taken: StatementNumber) -> None:
         wait = BlockedTask(holder, self._threads.usage(), self._clock.now, taken, {holder})
         self._waits[thread] = what, wait
         if isinstance(holder.what, Task) and holder.what.mode == BLOCKED:
@@ -147,8 +147,8 @@ class Inversion:
             wait.chained = self._names.of(found[0])
             wait.helpers |= found[1].helpers
         elif isinstance(helper.what, Task):
-            spot = self._spots.of(helper.what, self._threads.kernel.tasks.current)
-            wait.blocked = self._spots.text(spot)
+            statement = self._locator.of(helper.what, self._threads.kernel.tasks.current)
+            wait.blocked = self._locator.text(statement)
 
     def _judge(self, thread: Thread, name: str) -> None:
         """The wait is over.  Report it if tasks of priorities in between had the CPU meanwhile."""
@@ -179,5 +179,5 @@ class Inversion:
         self._findings.report(
             rule, f"{thread} waited {waited:.1f} us for {name}, held by {wait.holder}, while {middle} ran for "
             f"{us(cycles):.1f} us: {why}", object=name, value=waited,
-            details=(f"{holder} took it in {self._spots.text(wait.taken)}",),
+            details=(f"{holder} took it in {self._locator.text(wait.taken)}",),
         )  # fmt: skip

@@ -16,7 +16,7 @@ from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Assign, Const, LValue, Variable
 from emulator.c28x.tree_queries import statements
 from emulator.clock import us
-from emulator.sysbios.watch.spots import Spot, StatementSpots
+from emulator.sysbios.watch.statements import StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import Routine, ThreadWatch
 
 #: Timer interrupts, which come periodically.  A program clears such a flag to wait for the next one.
@@ -34,16 +34,16 @@ class Flag:
     started: int = -1
     set: int = -1
     #: The statement that cleared it after that.
-    cleared: Spot = 0
+    cleared: StatementNumber = 0
 
 
 class LostEvents:
     """Listens to every access of an object, and to the operations that `main` starts."""
 
     def __init__(
-        self, threads: ThreadWatch, spots: StatementSpots, findings: Findings, modules: Collection[Module]
+        self, threads: ThreadWatch, locator: StatementLocator, findings: Findings, modules: Collection[Module]
     ) -> None:  # fmt: skip
-        self._threads, self._spots, self._findings, self._modules = threads, spots, findings, modules
+        self._threads, self._locator, self._findings, self._modules = threads, locator, findings, modules
         self._clock = findings.clock
         #: Interrupt -> when the operation that ends in it was started last.
         self._started: dict[int, int] = {}
@@ -73,16 +73,16 @@ class LostEvents:
                 started = self._started.get(what.number, -1)
                 flag.number, flag.started, flag.set, flag.cleared = what.number, started, self._clock.now, 0
         elif write:
-            if flag.set > flag.started > max(flag.seen, self._since) and self._clears(obj, self._spots.here()):
-                flag.cleared = self._spots.here()
+            if flag.set > flag.started > max(flag.seen, self._since) and self._clears(obj, self._locator.here()):
+                flag.cleared = self._locator.here()
             flag.set = -1
         else:
             if flag.cleared and self._started.get(flag.number) == flag.started:
-                self._tell(obj, flag)
+                self._report(obj, flag)
             flag.seen, flag.set, flag.cleared = self._clock.now, -1, 0
 
-    def _clears(self, obj: Object, spot: Spot = 0) -> bool:
-        """Whether some statement sets an object to 0; with `spot`, whether that statement does."""
+    def _clears(self, obj: Object, statement: StatementNumber = 0) -> bool:
+        """Whether some statement sets an object to 0; with `statement`, whether that statement does."""
         if self._clearing is None:
             self._clearing = {}
             for f in (f for module in self._modules for f in module.functions):
@@ -94,13 +94,13 @@ class LostEvents:
                             at = s.where.file, s.where.line
                             self._clearing.setdefault(root.declaration.path, set()).add(at)
         clearing = self._clearing.get(obj.declaration.path, set())
-        if not spot:
+        if not statement:
             return bool(clearing)
-        place = self._spots.place(spot)
+        place = self._locator.place(statement)
         return place is not None and place[:2] in clearing
 
-    def _tell(self, obj: Object, flag: Flag) -> None:
-        place = self._spots.place(flag.cleared)
+    def _report(self, obj: Object, flag: Flag) -> None:
+        place = self._locator.place(flag.cleared)
         if place is not None:
             path = obj.declaration.path
             after = us(self._clock.now - flag.started)

@@ -16,8 +16,8 @@ from emulator.c28x.tree_queries import blocks, parts, roots, statements
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.names import HandleNames
-from emulator.sysbios.watch.spots import Call as RunningCall
-from emulator.sysbios.watch.spots import Spot, StatementSpots
+from emulator.sysbios.watch.statements import Call as RunningCall
+from emulator.sysbios.watch.statements import StatementLocator, StatementNumber
 
 #: The bit of the mode that makes a semaphore binary.
 _BINARY: Final = 1
@@ -29,30 +29,30 @@ class LostPosts:
     """Listens to posts."""
 
     def __init__(
-        self, spots: StatementSpots, names: HandleNames, findings: Findings, calls: Calls, linked: Linked
+        self, locator: StatementLocator, names: HandleNames, findings: Findings, calls: Calls, linked: Linked
     ) -> None:
-        self._spots, self._names, self._findings, self._linked = spots, names, findings, linked
+        self._locator, self._names, self._findings, self._linked = locator, names, findings, linked
         #: Semaphore -> the statement and call that posted it last, and how many posts that one has lost.
-        self._last: dict[Semaphore, tuple[Spot, RunningCall | None, int]] = {}
-        self._told: set[Semaphore] = set()
-        calls.before("Semaphore_post", tell=self._posting)
+        self._last: dict[Semaphore, tuple[StatementNumber, RunningCall | None, int]] = {}
+        self._reported: set[Semaphore] = set()
+        calls.before("Semaphore_post", callback=self._posting)
 
     def _posting(self, semaphore: Semaphore) -> None:
         if not semaphore.mode & _BINARY:
             return
-        spot, call = self._spots.here(), self._spots.call()
+        statement, call = self._locator.here(), self._locator.call()
         before = self._last.get(semaphore)
-        lost = before[2] if before is not None and before[0] == spot and before[1] is call else 0
-        lost += bool(semaphore.count) and before is not None and before[0] == spot and before[1] is call
-        self._last[semaphore] = spot, call, lost
-        if lost >= _LOST and semaphore not in self._told:
-            self._told.add(semaphore)
-            self._tell(semaphore, spot)
+        lost = before[2] if before is not None and before[0] == statement and before[1] is call else 0
+        lost += bool(semaphore.count) and before is not None and before[0] == statement and before[1] is call
+        self._last[semaphore] = statement, call, lost
+        if lost >= _LOST and semaphore not in self._reported:
+            self._reported.add(semaphore)
+            self._report(semaphore, statement)
 
-    def _tell(self, semaphore: Semaphore, spot: Spot) -> None:
+    def _report(self, semaphore: Semaphore, statement: StatementNumber) -> None:
         objects = self._names.objects(semaphore)
         loops = [drains for path, drains in self._pends() if path in objects]
-        place = self._spots.place(spot)
+        place = self._locator.place(statement)
         if loops and not any(loops) and place is not None:
             name = self._names.of(semaphore)
             self._findings.report_at(

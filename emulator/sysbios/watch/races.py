@@ -23,10 +23,10 @@ from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.memory import Memory, Object
 from emulator.c28x.symbols import Module
 from emulator.clock import us
-from emulator.sysbios.watch.accesses import LatestAccess, SharedObject
+from emulator.sysbios.watch.accesses import LatestAccess, SharedCell
 from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.pairs import HandOver, Pair, continued, handed_over, pairs, turned_by_both
-from emulator.sysbios.watch.spots import Function, Spot, StatementSpots
+from emulator.sysbios.watch.statements import Function, StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import HWI_LEVEL, Gate, Routine, Thread, ThreadWatch, at_clock, excluded, joined
 
 _RANK: Final = {"race-word": 1, "unmasked-long": 1, "race-long": 2, "race": 3}
@@ -35,7 +35,7 @@ _LOCALS_KEPT: Final = 256
 _DETAILS: Final = 8
 
 
-class Shared:
+class SharedObject:
     """An object that several threads may use: its cells by word offset, and how its uses were protected."""
 
     __slots__ = (
@@ -46,7 +46,7 @@ class Shared:
     def __init__(self, obj: Object) -> None:
         ctype = obj.declaration.ctype
         self.object = obj
-        self.cells: dict[int, SharedObject] = {}
+        self.cells: dict[int, SharedCell] = {}
         #: Words per element of an array of structures, each of which is judged alone; 0 for all other objects.
         self.per_element = _stride(ctype)
         self.conflicting: dict[int, set[int]] = {}
@@ -64,10 +64,10 @@ class Shared:
         self.hands_over = not isinstance(ctype, ArrayType)
         #: Gate -> the functions that use the object while they hold it, each with a statement; the threads that use
         #: the object under any gate.
-        self.under: dict[Gate, dict[Function, Spot]] = {}
+        self.under: dict[Gate, dict[Function, StatementNumber]] = {}
         self.users: set[Thread] = set()
         #: Uses under gates that are known already.
-        self.known: set[tuple[Spot, Thread, frozenset[Gate]]] = set()
+        self.known: set[tuple[StatementNumber, Thread, frozenset[Gate]]] = set()
         self.written = False
 
     def may_hand_over(self, offset: int) -> bool:
@@ -89,7 +89,7 @@ class Races:
     """Checks every access of an object that several threads can reach."""
 
     def __init__(
-        self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings, memory: Memory,
+        self, threads: ThreadWatch, locator: StatementLocator, names: HandleNames, findings: Findings, memory: Memory,
         modules: Collection[Module],
     ) -> None:  # fmt: skip
         self._modules = modules
@@ -101,16 +101,16 @@ class Races:
         #: Early hand-over -> the words that `main` still uses while the routine may use them too.
         self._late: dict[HandOver, set[tuple[Object, int]]] = {}
         self._threads = threads
-        self._spots = spots
+        self._locator = locator
         self._names = names
         self._findings = findings
         self._memory = memory
         self._clock = findings.clock
         self._position = findings.position
-        self._objects: dict[Object, Shared] = {}
+        self._objects: dict[Object, SharedObject] = {}
         #: Without the kernel: the number of the latest run of a routine, and the objects that it has written.
-        self._written: tuple[int, set[Shared]] = (0, set())
-        self._locals: dict[Object, Shared] = {}
+        self._written: tuple[int, set[SharedObject]] = (0, set())
+        self._locals: dict[Object, SharedObject] = {}
 
     def touch(self, obj: Object, offset: int, write: bool) -> None:
         """The running thread reads or writes the scalar at word `offset`."""
@@ -121,12 +121,12 @@ class Races:
         shared = self._objects.get(obj) or self._shared(obj)
         cell = shared.cells.get(offset)
         if cell is None:
-            cell = shared.cells[offset] = SharedObject(thread, shared.may_hand_over(offset))
+            cell = shared.cells[offset] = SharedCell(thread, shared.may_hand_over(offset))
         if cell.owner is not thread:
             cell.owner = None
             self._shared_touch(shared, cell, offset, write, thread)
         if shared.pairs is not None and not write and thread is threads.main:
-            self._taken_together(shared, offset)
+            self._read_together(shared, offset)
         if cell.owner is not thread:
             return
         if write:
@@ -139,27 +139,27 @@ class Races:
                 cell.handed = (thread, thread.clock, thread.vc)
                 thread.clock += 1
         if thread.entered:
-            self._gates(shared, threads.gates(thread), thread, self._spots.here())
+            self._gates(shared, threads.gates(thread), thread, self._locator.here())
 
-    def _shared_touch(self, shared: Shared, cell: SharedObject, offset: int, write: bool, thread: Thread) -> None:
+    def _shared_touch(self, shared: SharedObject, cell: SharedCell, offset: int, write: bool, thread: Thread) -> None:
         """As `touch`, for a scalar that several threads use."""
         position = self._position
-        spot = position.at or position.innermost()
+        statement = position.at or position.innermost()
         protection = self._threads.protection()
         conflicts = cell.conflicts(thread, protection)
         if write and self._threads.routines:
             self._joint(shared, offset)
             conflicts += cell.unfinished(thread, protection)
         if conflicts:
-            access = LatestAccess(thread, write, protection, thread.clock, spot, self._clock.now)
+            access = LatestAccess(thread, write, protection, thread.clock, statement, self._clock.now)
             for other in conflicts:
                 self._conflict(shared, cell, offset, other, access)
-        cell.keep(thread, write, protection, spot, self._clock.now)
+        cell.keep(thread, write, protection, statement, self._clock.now)
         if write:
-            if cell.reader is thread and (cell.reader_spot == spot or self._spots.takes(spot)):
-                cell.changed.setdefault(thread, {})[protection] = spot
+            if cell.reader is thread and (cell.reader_statement == statement or self._locator.takes(statement)):
+                cell.changed.setdefault(thread, {})[protection] = statement
                 if shared.rank < _RANK["race"] and thread is self._threads.main:
-                    self._turned_by(self._turned.get(shared.object.declaration.path, ()), shared, spot)
+                    self._turned_by(self._turned.get(shared.object.declaration.path, ()), shared, statement)
             shared.written = True
             cell.writers.add(thread)
             if cell.hands_over and not shared.object.ended:
@@ -170,11 +170,11 @@ class Races:
             if handed is not None and not thread.knows(handed[0], handed[1]):
                 writer, clock, vc = handed
                 thread.vc = joined(thread.vc, at_clock(vc, writer.index, clock))
-            cell.reader, cell.reader_spot = thread, spot
+            cell.reader, cell.reader_statement = thread, statement
         if protection.gates:
-            self._gates(shared, protection.gates, thread, spot)
+            self._gates(shared, protection.gates, thread, statement)
 
-    def _turned_by(self, routines: Collection[str], shared: Shared, spot: Spot) -> None:
+    def _turned_by(self, routines: Collection[str], shared: SharedObject, statement: StatementNumber) -> None:
         """`main` moves an index of a ring buffer.  The source shows that a routine moves it too, when the ring is full.
 
         The run need not have shown that.  Report a race if nothing holds such a routine off.
@@ -184,29 +184,29 @@ class Races:
             if not isinstance(routine.what, Routine) or routine.what.name not in routines:
                 continue
             if not excluded(threads.main, threads.protection(), routine, routine.protection):
-                self._by_text(shared, spot, self._sentence(shared, "race", True, threads.main, routine, None))
+                self._by_text(shared, statement, self._sentence(shared, "race", True, threads.main, routine, None))
                 return
 
-    def _by_text(self, shared: Shared, spot: Spot, message: str) -> None:
+    def _by_text(self, shared: SharedObject, statement: StatementNumber, message: str) -> None:
         """Report a race of which the run has shown `main`'s access, and the source the routine's."""
         shared.rank = _RANK["race"]
-        place = self._spots.place(spot)
+        place = self._locator.place(statement)
         assert place is not None
         self._findings.report_at(
             place, "race", message, object=shared.object.declaration.path, declaration=str(shared.object.declaration),
             how="dynamic",
         )  # fmt: skip
 
-    def _taken_together(self, shared: Shared, offset: int) -> None:
+    def _read_together(self, shared: SharedObject, offset: int) -> None:
         """`main` reads a word of a pair that the source shows: a routine sets several words, `main` uses them together.
 
         Report a race if `main` has read two of them while nothing held the routine off.
         """
         threads = self._threads
         assert shared.pairs is not None
-        spot = self._spots.here()
+        statement = self._locator.here()
         for pair in shared.pairs if shared.rank < _RANK["race"] else ():
-            if offset not in pair.words or self._spots.function(spot) != pair.reader:
+            if offset not in pair.words or self._locator.function(statement) != pair.reader:
                 continue
             for routine in threads.all:
                 if not isinstance(routine.what, Routine) or routine.what.name not in pair.routines:
@@ -217,14 +217,14 @@ class Races:
                     continue
                 read.add(offset)
                 if len(read) > 1:
-                    self._by_text(shared, spot, self._sentence(shared, "race", False, threads.main, routine, None))
+                    self._by_text(shared, statement, self._sentence(shared, "race", False, threads.main, routine, None))
                     return
 
-    def _shared(self, obj: Object) -> Shared:
+    def _shared(self, obj: Object) -> SharedObject:
         known = self._locals.get(obj)
         if known is not None:
             return known
-        shared = Shared(obj)
+        shared = SharedObject(obj)
         if self._threads.routines:
             if self._pairs is None:  # Read late, because most images do not need it.
                 self._pairs, self._continued = pairs(self._modules), continued(self._modules)
@@ -242,7 +242,7 @@ class Races:
     # Conflicts
 
     def _conflict(
-        self, shared: Shared, cell: SharedObject, offset: int, other: LatestAccess, access: LatestAccess
+        self, shared: SharedObject, cell: SharedCell, offset: int, other: LatestAccess, access: LatestAccess
     ) -> None:
         p, q = other.protection.gates, access.protection.gates
         if p and q:
@@ -274,7 +274,7 @@ class Races:
             leaf = shared.object.leaf(offset)
             rule = "race-word" if leaf is None or leaf[1].words == 1 else "race-long"
             if bare:
-                goes_on = rule == "race-word" and self._goes_on(shared, lower, higher)
+                goes_on = rule == "race-word" and self._check_continued(shared, lower, higher)
                 if rule == "race-word" and not goes_on:
                     return  # a flag, counter or index: programs without a kernel rightly do it so
                 rule = "race" if goes_on else "unmasked-long"
@@ -285,11 +285,11 @@ class Races:
         if bare and access.thread is not low:
             # Report it at the statement that must hold the interrupt off.
             access, other = other, access
-        at = (access.spot if cut is None else cut) if bare else 0
+        at = (access.statement if cut is None else cut) if bare else 0
         if not bare and p and not q:
-            at = access.spot
+            at = access.statement
         elif not bare and q and not p:
-            access, other, at = other, access, other.spot  # reported where the gate is missing
+            access, other, at = other, access, other.statement  # reported where the gate is missing
         said = self._sentence(shared, rule, lost, low, high, access)
         if goes_on:
             said += ": it goes on with this object and with others, which are set one by one"
@@ -297,15 +297,15 @@ class Races:
             said += f", because {early} is handed over before that"
         self._report(shared, rule, said, other, at)
 
-    def _goes_on(self, shared: Shared, lower: LatestAccess, higher: LatestAccess) -> bool:
+    def _check_continued(self, shared: SharedObject, lower: LatestAccess, higher: LatestAccess) -> bool:
         """Whether `main` sets a count or index that a routine changes and depends on together with other objects."""
         what = higher.thread.what
         if not lower.write or lower.thread is not self._threads.main or not isinstance(what, Routine):
             return False
-        _, function = self._spots.function(lower.spot)
+        _, function = self._locator.function(lower.statement)
         return (what.name, function) in self._continued.get(shared.object.declaration.path, ())
 
-    def _early(self, shared: Shared, offset: int, lower: LatestAccess, higher: LatestAccess) -> str:
+    def _early(self, shared: SharedObject, offset: int, lower: LatestAccess, higher: LatestAccess) -> str:
         """The flag that `main` has handed over too early, if it uses several words after that; else an empty text."""
         what = higher.thread.what
         if lower.thread is self._threads.main and isinstance(what, Routine):
@@ -317,7 +317,7 @@ class Races:
                         return one.flag
         return ""
 
-    def _joint(self, shared: Shared, offset: int) -> None:
+    def _joint(self, shared: SharedObject, offset: int) -> None:
         """A run of a routine writes a word.  All words of one object that a run writes belong together."""
         threads = self._threads
         if threads.current is not threads.main and shared.hands_over:
@@ -340,7 +340,7 @@ class Races:
                 shared.joint |= words
 
     @staticmethod
-    def _several(shared: Shared, offset: int) -> bool:
+    def _several(shared: SharedObject, offset: int) -> bool:
         """Whether several threads use, and some write, another scalar of the same structure too."""
         if not shared.hands_over and not shared.per_element:
             return False
@@ -350,7 +350,7 @@ class Races:
         return any(cell.owner is None and cell.writers for cell in cells)
 
     def _sentence(
-        self, shared: Shared, rule: str, lost: bool, low: Thread, high: Thread, access: LatestAccess | None
+        self, shared: SharedObject, rule: str, lost: bool, low: Thread, high: Thread, access: LatestAccess | None
     ) -> str:
         """The message of a finding.  If `access` is None, `low` reads what `high` writes."""
         if access is None:
@@ -369,11 +369,11 @@ class Races:
             return said + "it is atomic only while the compiler moves its 32 bits with one instruction"
         return said + "each access is atomic, but the value can change between two reads"
 
-    def _report(self, shared: Shared, rule: str, message: str, other: LatestAccess, at: Spot) -> None:
+    def _report(self, shared: SharedObject, rule: str, message: str, other: LatestAccess, at: StatementNumber) -> None:
         """Report at the statement `at`, or at the running one if `at` is 0."""
         obj = shared.object
-        declaration, details = str(obj.declaration), (self._told(other),)
-        place = self._spots.place(at) if at else None
+        declaration, details = str(obj.declaration), (self._access_text(other),)
+        place = self._locator.place(at) if at else None
         if place is None:
             finding = self._findings.report(
                 rule, message, object=obj.declaration.path, declaration=declaration, details=details
@@ -386,43 +386,43 @@ class Races:
         if finding is not None:
             shared.findings[rule] = finding
 
-    def _again(self, shared: Shared, *accesses: LatestAccess) -> None:
+    def _again(self, shared: SharedObject, *accesses: LatestAccess) -> None:
         """The same race of an object has occurred again: count it, and keep the place if it is new."""
         for rule, finding in shared.findings.items():
             if _RANK.get(rule) == shared.rank:
                 finding.count += 1
                 for access in accesses:
-                    told = self._told(access, timed=False)
+                    told = self._access_text(access, timed=False)
                     if len(finding.details) < _DETAILS and not any(d.startswith(told) for d in finding.details):
                         finding.details += (told,)
 
-    def _told(self, access: LatestAccess, *, timed: bool = True) -> str:
+    def _access_text(self, access: LatestAccess, *, timed: bool = True) -> str:
         verb = "writes" if access.write else "reads"
         gates = access.protection.gates
         under = " under " + ", ".join(sorted(map(self._names.of, gates))) if gates else ""
         at = f", at {us(access.time):.3f} us" if timed else ""
-        return f"{access.thread} {verb} it{under} in {self._spots.text(access.spot)}{at}"
+        return f"{access.thread} {verb} it{under} in {self._locator.text(access.statement)}{at}"
 
     # Gates
 
-    def _wrong_gate(self, shared: Shared, other: LatestAccess, access: LatestAccess) -> None:
+    def _wrong_gate(self, shared: SharedObject, other: LatestAccess, access: LatestAccess) -> None:
         """Two threads use an object under different gates, which do not exclude each other."""
         a, b = (", ".join(sorted(map(self._names.of, x.protection.gates))) for x in (other, access))
         how = f"under {a} by {other.thread} and under {b} by {access.thread}"
-        self._wrong(shared, how, self._told(other), access.spot)
+        self._add_detail(shared, how, self._access_text(other), access.statement)
 
-    def _gates(self, shared: Shared, gates: frozenset[Gate], thread: Thread, spot: Spot) -> None:
+    def _gates(self, shared: SharedObject, gates: frozenset[Gate], thread: Thread, statement: StatementNumber) -> None:
         """Report an object that most functions use under one gate, and one function under another gate."""
-        use = (spot, thread, gates)
-        if not gates or not spot or use in shared.known:
+        use = (statement, thread, gates)
+        if not gates or not statement or use in shared.known:
             return
         shared.known.add(use)
         shared.users.add(thread)
-        function = self._spots.function(spot)
+        function = self._locator.function(statement)
         if all(function in shared.under.get(gate, ()) for gate in gates):
             return
         for gate in gates:
-            shared.under.setdefault(gate, {})[function] = spot
+            shared.under.setdefault(gate, {})[function] = statement
         if len(shared.under) < 2 or len(shared.users) < 2 or not shared.written:
             return
         usual = max(shared.under, key=lambda gate: len(shared.under[gate]))
@@ -434,17 +434,17 @@ class Races:
                 if user not in functions and len(users) < len(functions):
                     a, b = self._names.of(usual), self._names.of(gate)
                     how = f"under {a} by {len(functions)} functions, but under {b} by {user[1]}"
-                    first = self._spots.text(next(iter(functions.values())))
-                    self._wrong(shared, how, f"under {a} in {first}", where)
+                    first = self._locator.text(next(iter(functions.values())))
+                    self._add_detail(shared, how, f"under {a} in {first}", where)
 
-    def _wrong(self, shared: Shared, how: str, detail: str, spot: Spot) -> None:
+    def _add_detail(self, shared: SharedObject, how: str, detail: str, statement: StatementNumber) -> None:
         known = shared.findings.get("wrong-gate")
         if known is not None:
             known.count += 1
             return
         obj = shared.object
         message = f"{obj.declaration.path} is used {how}: neither gate keeps the other's users off"
-        place = self._spots.place(spot)
+        place = self._locator.place(statement)
         if place is not None:
             finding = self._findings.report_at(
                 place, "wrong-gate", message, object=obj.declaration.path, declaration=str(obj.declaration),

@@ -18,7 +18,7 @@ from emulator.sysbios.scheduler import TERMINATED, Task
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.names import HandleNames
-from emulator.sysbios.watch.spots import Spot, StatementSpots
+from emulator.sysbios.watch.statements import StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import Thread, ThreadWatch
 
 #: A burst of posts that is still not worked off after this time is a backlog.
@@ -36,7 +36,7 @@ class Release:
     """One post by a Clock function, with the CPU time (cycles) that each thread had used by then."""
 
     time: int
-    spot: Spot
+    statement: StatementNumber
     usage: list[int]
 
 
@@ -62,19 +62,19 @@ class Releases:
     """Listens to posts and pends."""
 
     def __init__(
-        self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings, calls: Calls
+        self, threads: ThreadWatch, locator: StatementLocator, names: HandleNames, findings: Findings, calls: Calls
     ) -> None:
         self._threads = threads
-        self._spots = spots
+        self._locator = locator
         self._names = names
         self._findings = findings
         self._clock = findings.clock
         self._sources: dict[Semaphore, SemaphoreState] = {}
-        calls.after("Semaphore_create", tell=self._create)
-        calls.before("Semaphore_post", tell=self._posting)
-        calls.after("Semaphore_post", tell=self._posted)
-        calls.before("Semaphore_pend", tell=self._pending)
-        calls.after("Semaphore_pend", tell=self._pended)
+        calls.after("Semaphore_create", callback=self._create)
+        calls.before("Semaphore_post", callback=self._posting)
+        calls.after("Semaphore_post", callback=self._posted)
+        calls.before("Semaphore_pend", callback=self._pending)
+        calls.after("Semaphore_pend", callback=self._pended)
 
     def period(self, thread: Thread) -> int:
         """Cycles between the releases of a task; 0 if it has none."""
@@ -99,9 +99,9 @@ class Releases:
             return
         source.period = timer.period * self._threads.kernel.clocks.tick_period_us * CYCLES_PER_US
         if source.consumer is not None and not semaphore.waiters and (source.job is not None or source.releases):
-            self._miss(semaphore, source, source.consumer)
+            self._report_miss(semaphore, source, source.consumer)
         if len(source.releases) < _KEPT:
-            source.releases.append(Release(self._clock.now, self._spots.here(), self._threads.usage()))
+            source.releases.append(Release(self._clock.now, self._locator.here(), self._threads.usage()))
 
     def _posted(self, _result: None, semaphore: Semaphore) -> None:
         """After the post: report a semaphore whose count keeps growing."""
@@ -121,7 +121,7 @@ class Releases:
         if not source.period and grows < BACKLOG_CYCLES and not forgotten:
             return
         source.most = count
-        self._pile(semaphore, source, source.since)
+        self._report_pile_up(semaphore, source, source.since)
 
     def _pending(self, semaphore: Semaphore, timeout: int) -> None:
         """A task pends on the semaphore again: its job is done."""
@@ -132,10 +132,10 @@ class Releases:
         if source.consumer is None:
             source.consumer = thread
             if semaphore.count > 1 and source.period:
-                self._miss(semaphore, source, thread)
+                self._report_miss(semaphore, source, thread)
                 if source.missed is not None:
                     source.missed.count = semaphore.count - 1
-        self._done(source)
+        self._job_done(source)
 
     def _pended(self, taken: int, semaphore: Semaphore, timeout: int) -> None:
         source = self._source(semaphore)
@@ -162,14 +162,14 @@ class Releases:
         )  # fmt: skip
         return True
 
-    def _pile(self, semaphore: Semaphore, source: SemaphoreState, since: int) -> None:
+    def _report_pile_up(self, semaphore: Semaphore, source: SemaphoreState, since: int) -> None:
         name, consumer = self._names.of(semaphore), source.consumer
         if self._ended(semaphore, consumer):
             return
         where = "no task has pended on it yet"
         if consumer is not None and isinstance(consumer.what, Task):
-            spot = self._spots.of(consumer.what, self._threads.kernel.tasks.current)
-            where = f"{consumer} does not take them: it is in {self._spots.text(spot)}"
+            statement = self._locator.of(consumer.what, self._threads.kernel.tasks.current)
+            where = f"{consumer} does not take them: it is in {self._locator.text(statement)}"
         message = f"{name} holds {semaphore.count} releases, growing since {ms(since):.3f} ms: {where}"
         if source.piled is None:
             source.piled = self._findings.report("semaphore-pile-up", message, object=name, value=semaphore.count)
@@ -179,10 +179,10 @@ class Releases:
         if source.piled is not None:
             running = self._threads.kernel.tasks.current
             if running is not None:
-                spot = self._spots.of(running, running)
-                source.piled.details = (f"{running.name} has the CPU, in {self._spots.text(spot)}",)
+                statement = self._locator.of(running, running)
+                source.piled.details = (f"{running.name} has the CPU, in {self._locator.text(statement)}",)
 
-    def _miss(self, semaphore: Semaphore, source: SemaphoreState, thread: Thread) -> None:
+    def _report_miss(self, semaphore: Semaphore, source: SemaphoreState, thread: Thread) -> None:
         """Report that the next release has come before the job of the last one was done."""
         if self._ended(semaphore, thread):
             return
@@ -193,8 +193,8 @@ class Releases:
             return
         task = thread.what
         assert isinstance(task, Task)
-        spot = self._spots.of(task, self._threads.kernel.tasks.current)
-        place = self._spots.place(spot) or self._spots.place(release.spot)
+        statement = self._locator.of(task, self._threads.kernel.tasks.current)
+        place = self._locator.place(statement) or self._locator.place(release.statement)
         if place is None:
             return
         message = (
@@ -203,10 +203,10 @@ class Releases:
         )
         source.missed = self._findings.report_at(
             place, "deadline", message, object=thread.name, value=us(self._clock.now - release.time),
-            details=self._meanwhile(thread, release), how="dynamic", task=thread.name,
+            details=self._ran_since(thread, release), how="dynamic", task=thread.name,
         )  # fmt: skip
 
-    def _done(self, source: SemaphoreState) -> None:
+    def _job_done(self, source: SemaphoreState) -> None:
         """The job has ended.  If it was late, put its response time into the finding."""
         job, source.job = source.job, None
         if job is None or not source.late or source.missed is None or source.consumer is None:
@@ -215,11 +215,11 @@ class Releases:
         if response > source.missed.value:
             source.missed.value = response
             source.missed.details = (
-                f"longest response {response:.1f} us", *self._meanwhile(source.consumer, job)
+                f"longest response {response:.1f} us", *self._ran_since(source.consumer, job)
             )  # fmt: skip
         source.late = bool(source.releases)
 
-    def _meanwhile(self, thread: Thread, release: Release) -> tuple[str, ...]:
+    def _ran_since(self, thread: Thread, release: Release) -> tuple[str, ...]:
         """The threads that had the CPU since a release, as sentences."""
         used = [(t, cycles) for t, cycles in self._threads.used_since(release.usage) if cycles > CYCLES_PER_US]
         return tuple(f"{t} ran for {us(cycles):.1f} us of it" for t, cycles in used[:4])

@@ -24,7 +24,7 @@ from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.posters import Posters
-from emulator.sysbios.watch.spots import Spot, StatementSpots
+from emulator.sysbios.watch.statements import StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import Gate, Thread, ThreadWatch
 from emulator.trace import Trace
 
@@ -41,32 +41,32 @@ class Standstill:
     """Listens to pends.  When a task blocks while another waits for a gate, it looks for tasks that never run again."""
 
     def __init__(
-        self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings, gates: Gates,
+        self, threads: ThreadWatch, locator: StatementLocator, names: HandleNames, findings: Findings, gates: Gates,
         posters: Posters, calls: Calls,
     ) -> None:  # fmt: skip
         self._threads = threads
-        self._spots = spots
+        self._locator = locator
         self._names = names
         self._findings = findings
         self._gates = gates
         self._posters = posters
-        self._pends: dict[Thread, tuple[Semaphore, Spot]] = {}
+        self._pends: dict[Thread, tuple[Semaphore, StatementNumber]] = {}
         #: Waits for events and mailboxes: the function, the kernel object, and the statement.
-        self._waits: dict[Thread, tuple[str, Any, Spot]] = {}
+        self._waits: dict[Thread, tuple[str, Any, StatementNumber]] = {}
         #: Waits for events: the bits that must all be posted, and the bits of which one must be posted.
         self._wanted: dict[Thread, tuple[int, int]] = {}
         #: Clocks that `Clock_create` did not start.
-        self._idle: dict[ClockObject, Spot] = {}
-        calls.before("Semaphore_pend", tell=self._pending)
-        calls.after("Semaphore_pend", tell=self._pended)
+        self._idle: dict[ClockObject, StatementNumber] = {}
+        calls.before("Semaphore_pend", callback=self._pending)
+        calls.after("Semaphore_pend", callback=self._pended)
         for function in ENDS:
             if function != "Semaphore_pend":
-                calls.before(function, tell=partial(self._waiting, function))
-                calls.after(function, tell=self._waited)
+                calls.before(function, callback=partial(self._waiting, function))
+                calls.after(function, callback=self._waited)
         #: Software interrupts that were created.
-        self._swis: dict[Swi, Spot] = {}
-        calls.after("Clock_create", tell=self._created)
-        calls.after("Swi_create", tell=self._swi_created)
+        self._swis: dict[Swi, StatementNumber] = {}
+        calls.after("Clock_create", callback=self._created)
+        calls.after("Swi_create", callback=self._swi_created)
 
     def listen(self, trace: Trace) -> None:
         """Listen to tasks that block."""
@@ -74,12 +74,12 @@ class Standstill:
 
     def _blocks(self, _cycles: int, _kind: str, _name: str) -> None:
         if self._pends and self._gates.anybody_waits:
-            self._look()
+            self._report_deadlocks()
 
     def _pending(self, semaphore: Semaphore, timeout: int) -> None:
         forever = timeout & self._threads.kernel.tasks.timeout_mask == WAIT_FOREVER
         if forever and self._threads.current.is_task:
-            self._pends[self._threads.current] = semaphore, self._spots.here()
+            self._pends[self._threads.current] = semaphore, self._locator.here()
 
     def _pended(self, taken: int, semaphore: Semaphore, timeout: int) -> None:
         self._pends.pop(self._threads.current, None)
@@ -87,7 +87,7 @@ class Standstill:
     def _waiting(self, function: str, what: Any, *arguments: Any) -> None:
         forever = arguments[-1] & self._threads.kernel.tasks.timeout_mask == WAIT_FOREVER
         if forever and self._threads.current.is_task:
-            self._waits[self._threads.current] = function, what, self._spots.here()
+            self._waits[self._threads.current] = function, what, self._locator.here()
             if function == "Event_pend":
                 self._wanted[self._threads.current] = arguments[0], arguments[1]
 
@@ -96,19 +96,19 @@ class Standstill:
 
     def _created(self, clock: ClockObject | None, *_arguments: Any) -> None:
         if clock is not None and not clock.active:
-            self._idle[clock] = self._spots.here()
+            self._idle[clock] = self._locator.here()
 
     def _swi_created(self, swi: Swi | None, *_arguments: Any) -> None:
         if swi is not None:
-            self._swis[swi] = self._spots.here()
+            self._swis[swi] = self._locator.here()
 
     def finish(self) -> None:
         """Report waits that no statement ends, Clocks that no statement starts and Swis that no statement posts."""
         if not self._names.whole:
             return
         pends = {thread: ("Semaphore_pend", *pend) for thread, pend in self._pends.items() if not pend[0].count}
-        for thread, (function, what, spot) in {**self._waits, **pends}.items():
-            place, end = self._spots.place(spot), ENDS[function]
+        for thread, (function, what, statement) in {**self._waits, **pends}.items():
+            place, end = self._locator.place(statement), ENDS[function]
             brought = isinstance(what, Event) and self._names.brings(what)
             name = self._names.of(what)
             if place is not None and not brought and isinstance(what, Event) and self._names.could(end, what):
@@ -119,16 +119,19 @@ class Standstill:
                 place, "never-posted", f"{thread} waits in {function} for {name} without a timeout, and no statement "
                 f"calls {end} for it", object=name, how="dynamic", task=thread.name,
             )  # fmt: skip
-        for clock, spot in self._idle.items():
-            place = self._spots.place(spot)
+        for clock, statement in self._idle.items():
+            place = self._locator.place(statement)
             if place is not None and not clock.active and not self._names.could("Clock_start", clock):
                 self._findings.report_at(
                     place, "clock-not-started", f"the Clock of {clock.name} is created without startFlag, and no "
                     "statement starts it: its function never runs", object=clock.name, how="dynamic",
                 )  # fmt: skip
 
-        for swi, spot in self._swis.items():
-            place, posts = self._spots.place(spot), [post for post in POSTS_OF_SWI if self._names.could(post, swi)]
+        for swi, statement in self._swis.items():
+            place, posts = (
+                self._locator.place(statement),
+                [post for post in POSTS_OF_SWI if self._names.could(post, swi)],
+            )
             why = "" if posts else "no statement posts it"
             # Swi_andn posts the Swi when all bits of its trigger are 0.
             left = swi.initial_trigger & ~self._names.bits("Swi_andn", swi) if posts == ["Swi_andn"] else 0
@@ -151,7 +154,7 @@ class Standstill:
                 "timeout, and no statement posts them", object=name, how="dynamic", task=thread.name,
             )  # fmt: skip
 
-    def _look(self) -> None:
+    def _report_deadlocks(self) -> None:
         """Report tasks that never run again.
 
         It starts with all waiting tasks, and removes those that can still be released until none is left to remove.
@@ -171,7 +174,7 @@ class Standstill:
                 del stuck[task]
         for task, what in stuck.items():
             if not isinstance(what, Semaphore) and what.owner is not None and isinstance(stuck[what.owner], Semaphore):
-                self._tell(self._threads.of(task), what, self._threads.of(what.owner))
+                self._report_deadlock(self._threads.of(task), what, self._threads.of(what.owner))
 
     def _needs(self, what: Gate | Semaphore) -> set[Task]:
         """The tasks of which one must run to end a wait; empty if something else can end it too."""
@@ -179,14 +182,14 @@ class Standstill:
             return set() if what.free or what.owner is None else {what.owner}
         return self._posters.of(what) or set()
 
-    def _tell(self, producer: Thread, gate: Gate, consumer: Thread) -> None:
-        semaphore, spot = self._pends[consumer]
-        place = self._spots.place(spot)
+    def _report_deadlock(self, producer: Thread, gate: Gate, consumer: Thread) -> None:
+        semaphore, statement = self._pends[consumer]
+        place = self._locator.place(statement)
         if place is None:
             return
         a, b = self._names.of(semaphore), self._names.of(gate)
         self._findings.report_at(
             place, "deadlock", f"{consumer} waits for {a} while it holds {b}, and {producer}, which would post {a}, "
             f"waits for {b}: neither runs again", object=b, how="dynamic", task=consumer.name,
-            details=(f"{producer} waits in {self._spots.text(self._gates.spot(producer))}",),
+            details=(f"{producer} waits in {self._locator.text(self._gates.statement(producer))}",),
         )  # fmt: skip

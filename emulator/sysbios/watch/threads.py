@@ -193,7 +193,7 @@ class ThreadWatch:
                 if number >= FIRST_PIE and number not in self.enables and self.line is not None:
                     line = self.line(number)
                     self.enables[number] = line, (line,)
-                self._look_at_handlers()
+                self._update_handlers()
             self._nested.append(self.current)
             routine = self.of(Routine(number, name))
             self._follow(number, routine)
@@ -324,7 +324,7 @@ class ThreadWatch:
         # Interrupts with a handler that are disabled one by one, by the kernel's call or at the peripheral.
         off = self.disabled
         if len(kernel.hwis.table) != self._handlers:
-            self._look_at_handlers()
+            self._update_handlers()
         for number, gate, mask, sources in self._gated:
             if gate.value & mask:
                 for register, bit in sources:
@@ -341,7 +341,7 @@ class ThreadWatch:
         thread.protection = now = Protection(gates, ceiling, lines, off)
         return now
 
-    def _look_at_handlers(self) -> None:
+    def _update_handlers(self) -> None:
         handlers = [*self.kernel.hwis.table, *self.routines]
         self._handlers = len(self.kernel.hwis.table)
         gated = [(number, self.enables[number]) for number in handlers if number in self.enables]

@@ -18,21 +18,21 @@ from typing import Any, Protocol
 from emulator.c28x.findings import Finding, Findings
 from emulator.clock import us
 from emulator.signal import Signal
-from emulator.sysbios.watch.accesses import LatestAccess, SharedObject
+from emulator.sysbios.watch.accesses import LatestAccess, SharedCell
 from emulator.sysbios.watch.names import HandleNames
-from emulator.sysbios.watch.spots import Spot, StatementSpots
+from emulator.sysbios.watch.statements import StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import Protection, Thread, ThreadWatch
 from emulator.trace import Trace
 
 
-class TappedBlock(Protocol):
+class WatchedBlock(Protocol):
     """A block of registers whose accesses a listener can follow (`emulator.registers.core.Block`)."""
 
     name: str
     registers: dict[str, Any]
 
 
-class Select(Protocol):
+class SelectWire(Protocol):
     """A wire that selects a slave while it is low (`emulator.signals.Wire`)."""
 
     name: str
@@ -43,12 +43,12 @@ class Select(Protocol):
 
 
 @dataclass(slots=True)
-class Open:
+class OpenTransaction:
     """A transaction that has begun and not ended."""
 
     block: str
     thread: Thread
-    spot: Spot
+    statement: StatementNumber
     time: int
     #: Whether it stays open while its thread blocks.
     lasts: bool = False
@@ -57,14 +57,14 @@ class Open:
 class Transactions:
     """Keeps which thread occupies which part of a peripheral, and reports transactions that can be interleaved."""
 
-    def __init__(self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings) -> None:
+    def __init__(self, threads: ThreadWatch, locator: StatementLocator, names: HandleNames, findings: Findings) -> None:
         self._threads = threads
-        self._spots = spots
+        self._locator = locator
         self._names = names
         self._findings = findings
         self._clock = findings.clock
-        self._cells: dict[str, SharedObject] = {}
-        self._open: dict[str, Open] = {}
+        self._cells: dict[str, SharedCell] = {}
+        self._open: dict[str, OpenTransaction] = {}
         #: Per register: word -> the thread that alone has used all parts of this word.  Such a write needs no check.
         self._quiet: list[dict[int, Thread]] = []
         self._found: dict[tuple[str, frozenset[Thread]], Finding] = {}
@@ -84,16 +84,16 @@ class Transactions:
         cell = self._cells.get(part)
         if thread is self._threads.main or (cell is not None and cell.owner is thread):
             return
-        spot = self._spots.here()
-        self._use(block, part, thread, spot, self._threads.protection())
+        statement = self._locator.here()
+        self._use(block, part, thread, statement, self._threads.protection())
         if opens:
-            self._open[part] = Open(block, thread, spot, self._clock.now)
+            self._open[part] = OpenTransaction(block, thread, statement, self._clock.now)
 
-    def _use(self, block: str, part: str, thread: Thread, spot: Spot, protection: Protection) -> None:
+    def _use(self, block: str, part: str, thread: Thread, statement: StatementNumber, protection: Protection) -> None:
         """A thread has used a part, and `protection` held for the whole time."""
         cell = self._cells.get(part)
         if cell is None:
-            cell = self._cells[part] = SharedObject(thread)
+            cell = self._cells[part] = SharedCell(thread)
         if cell.owner is thread:
             return
         if cell.owner is not None:
@@ -103,13 +103,13 @@ class Transactions:
         conflicts = cell.conflicts(thread, protection)
         if conflicts:
             self._cut(block, part, thread, conflicts[0])
-        cell.keep(thread, True, protection, spot, self._clock.now)
+        cell.keep(thread, True, protection, statement, self._clock.now)
 
     def _cut(self, block: str, part: str, thread: Thread, other: LatestAccess) -> None:
         opened = next((o for o in self._open.values() if o.block == block and o.thread is not thread), None)
         happened = () if opened is None else (
             f"it has happened: {opened.thread.name} began at {us(opened.time):.3f} us in "
-            f"{self._spots.text(opened.spot)} and had not ended",
+            f"{self._locator.text(opened.statement)} and had not ended",
         )  # fmt: skip
         key = (block, frozenset((thread, other.thread)))
         known = self._found.get(key)
@@ -122,14 +122,14 @@ class Transactions:
         finding = self._findings.report(
             "transaction-cut", f"{part} is used by {thread} and by {other.thread} without a common gate: {high} can "
             f"cut a transaction of {low}", object=block,
-            details=(f"{other.thread} uses it in {self._spots.text(other.spot)}", *happened),
+            details=(f"{other.thread} uses it in {self._locator.text(other.statement)}", *happened),
         )  # fmt: skip
         if finding is not None:
             self._found[key] = finding
 
     # Peripherals
 
-    def watch_adc(self, regs: TappedBlock, results: TappedBlock) -> None:
+    def watch_adc(self, regs: WatchedBlock, results: WatchedBlock) -> None:
         """A conversion occupies a SOC and an interrupt flag from the trigger until the result is read."""
         socs = [f"{regs.name} SOC{soc}" for soc in range(16)]
         flags = [f"{regs.name} ADCINT{n}" for n in range(1, 5)]
@@ -138,13 +138,13 @@ class Transactions:
         self._on_bits(regs, "ADCSOCFRC1", socs, opens=True, tasks_only=False)
         self._on_bits(regs, "ADCINTFLGCLR", flags, opens=False, tasks_only=True)
 
-    def watch_spi(self, regs: TappedBlock) -> None:
+    def watch_spi(self, regs: WatchedBlock) -> None:
         """A word occupies the shift register from the write of SPITXBUF to the read of SPIRXBUF."""
         part = f"{regs.name} shift register"
         self._on_write(regs, "SPITXBUF", lambda _word: self.begin(regs.name, part, opens=True))
         self._on_read(regs, "SPIRXBUF", part)
 
-    def watch_select(self, block: str, chip_select: Select) -> None:
+    def watch_select(self, block: str, chip_select: SelectWire) -> None:
         """All words while a slave is selected are one transaction.  The protection must hold for all of them."""
         part = f"{block} with {chip_select.name} low"
         held: dict[Thread, Protection] = {}
@@ -154,29 +154,29 @@ class Transactions:
             opened = self._open.get(part)
             if thread is self._threads.main or (level and opened is None):
                 return
-            now, spot = self._threads.protection(), self._spots.here()
+            now, statement = self._threads.protection(), self._locator.here()
             if not level:
-                self._open[part] = Open(block, thread, spot, self._clock.now, lasts=True)
+                self._open[part] = OpenTransaction(block, thread, statement, self._clock.now, lasts=True)
                 held[thread] = now
             elif opened is not None:
                 begun = held.pop(opened.thread, now)
                 whole = self._throughout(opened, begun, now) if opened.thread is thread else begun
-                self._use(block, part, opened.thread, opened.spot, whole)
+                self._use(block, part, opened.thread, opened.statement, whole)
                 if opened.thread is not thread:
-                    self._use(block, part, thread, spot, now)
+                    self._use(block, part, thread, statement, now)
                 del self._open[part]
 
         chip_select.changed.connect(changed)
 
     @staticmethod
-    def _throughout(opened: Open, begun: Protection, now: Protection) -> Protection:
+    def _throughout(opened: OpenTransaction, begun: Protection, now: Protection) -> Protection:
         """The protection that held from begin to end.  A gate that was left meanwhile does not count."""
         left = opened.thread.left
         gates = frozenset(g for g in begun.gates & now.gates if left.get(g, -1) < opened.time)
         ceiling = min(begun.ceiling, now.ceiling)
         return Protection(gates, ceiling, begun.lines & now.lines, begun.disabled & now.disabled)
 
-    def watch_sci(self, regs: TappedBlock, sent: Callable[[], None]) -> None:
+    def watch_sci(self, regs: WatchedBlock, sent: Callable[[], None]) -> None:
         """Watch the characters that tasks write.  `sent()` is called for every character, whoever writes it."""
 
         def write(_word: int) -> None:
@@ -186,7 +186,7 @@ class Transactions:
 
         self._on_write(regs, "SCITXBUF", write)
 
-    def _on_read(self, regs: TappedBlock, name: str, part: str) -> None:
+    def _on_read(self, regs: WatchedBlock, name: str, part: str) -> None:
         """A read of the register ends the transaction on a part."""
         opened = self._open
 
@@ -196,7 +196,7 @@ class Transactions:
 
         regs.registers[name].tap(seen, reads=True)
 
-    def _on_bits(self, regs: TappedBlock, name: str, parts: list[str], *, opens: bool, tasks_only: bool) -> None:
+    def _on_bits(self, regs: WatchedBlock, name: str, parts: list[str], *, opens: bool, tasks_only: bool) -> None:
         """A write to the register occupies the parts whose bits are set in the word."""
         threads, cells = self._threads, self._cells
         quiet: dict[int, Thread] = {}
@@ -215,8 +215,8 @@ class Transactions:
         regs.registers[name].tap(seen)
 
     @staticmethod
-    def _on_write(regs: TappedBlock, name: str, tell: Callable[[int], None]) -> None:
-        regs.registers[name].tap(lambda _register, _access, word, _mask: tell(word))
+    def _on_write(regs: WatchedBlock, name: str, callback: Callable[[int], None]) -> None:
+        regs.registers[name].tap(lambda _register, _access, word, _mask: callback(word))
 
 
 def _bits(parts: list[str], word: int) -> list[str]:

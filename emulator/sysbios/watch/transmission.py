@@ -14,7 +14,7 @@ from typing import Final
 from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.memory import Object
 from emulator.clock import us
-from emulator.sysbios.watch.spots import Spot, StatementSpots
+from emulator.sysbios.watch.statements import StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import Thread, ThreadWatch
 
 #: After this many character times without a new character, the transmission has ended.
@@ -22,7 +22,7 @@ GRACE: Final = 2
 
 
 @dataclass(slots=True)
-class Sending:
+class BufferInTransmission:
     """A buffer that is being sent."""
 
     register: str
@@ -30,7 +30,7 @@ class Sending:
     #: The word that was read last, the thread's clock at that time, and the statement.
     offset: int
     clock: int
-    spot: Spot
+    statement: StatementNumber
     #: The cycle when everything written so far has been sent, and the cycles of one character.
     until: int
     character: int
@@ -39,14 +39,14 @@ class Sending:
 class Transmission:
     """Listens to accesses of objects, and to writes to a transmit register."""
 
-    def __init__(self, threads: ThreadWatch, spots: StatementSpots, findings: Findings) -> None:
+    def __init__(self, threads: ThreadWatch, locator: StatementLocator, findings: Findings) -> None:
         self._threads = threads
-        self._spots = spots
+        self._locator = locator
         self._findings = findings
         self._clock = findings.clock
-        self._read: dict[Thread, tuple[Object, int, Spot]] = {}
+        self._read: dict[Thread, tuple[Object, int, StatementNumber]] = {}
         #: Buffers that are being sent.
-        self.sending: dict[Object, Sending] = {}
+        self.sending: dict[Object, BufferInTransmission] = {}
         #: Register -> the cycle when its transmitter has sent everything.
         self._dry: dict[str, int] = {}
         self._found: dict[Object, Finding] = {}
@@ -60,7 +60,7 @@ class Transmission:
         elif obj.words > 2:
             thread = self._threads.current
             if not thread.is_task:
-                self._read[thread] = (obj, offset, self._spots.here())
+                self._read[thread] = (obj, offset, self._locator.here())
 
     def sent(self, register: str, character_cycles: int) -> None:
         """The running thread writes a character to a transmit register."""
@@ -69,10 +69,12 @@ class Transmission:
         thread = self._threads.current
         found = self._read.pop(thread, None)
         if found is not None:
-            obj, offset, spot = found
-            self.sending[obj] = Sending(register, thread, offset, thread.clock, spot, until, character_cycles)
+            obj, offset, statement = found
+            self.sending[obj] = BufferInTransmission(
+                register, thread, offset, thread.clock, statement, until, character_cycles
+            )
 
-    def _written(self, obj: Object, offset: int, sending: Sending, thread: Thread) -> None:
+    def _written(self, obj: Object, offset: int, sending: BufferInTransmission, thread: Thread) -> None:
         if self._clock.now >= sending.until + GRACE * sending.character:
             del self.sending[obj]
             return
@@ -88,7 +90,7 @@ class Transmission:
             f"{sending.register} and is at word {sending.offset}: a mixture of old and new content is sent",
             object=path, declaration=str(obj.declaration), value=offset,
             details=(
-                f"{sending.thread} reads it in {self._spots.text(sending.spot)}; the transmitter is busy until "
+                f"{sending.thread} reads it in {self._locator.text(sending.statement)}; the transmitter is busy until "
                 f"{us(sending.until):.1f} us",
             ),
         )  # fmt: skip

@@ -40,7 +40,7 @@ PROPERTIES: Final[Mapping[str, Callable[[Firmware], Evidence]]] = {
 }
 
 
-class _Enough(Exception):
+class _SpecimenDone(Exception):
     """The specimen has shown what it is there for."""
 
 
@@ -61,12 +61,12 @@ def seen(specimen: Specimen) -> bool:
 
     def look(finding: Finding) -> None:
         if _meant(finding, specimen):
-            raise _Enough
+            raise _SpecimenDone
 
     board.findings.found.connect(look)
     try:
         getattr(firmware, specimen.name).run()
-    except _Enough:
+    except _SpecimenDone:
         return True
     return False
 

@@ -16,7 +16,7 @@ BUS: Final = "A"
 CS_GPIO: Final = 64
 
 
-class _Put:
+class _SetAcceleration:
     """What it feels where faces were put, and no world moves it: at rest, until they are."""
 
     def __init__(self) -> None:
@@ -30,7 +30,7 @@ class _Put:
 def solder(board: Board) -> Lis3dh:
     """Put it on the board."""
     device = Lis3dh(board.clock, rng=board.rng("accelerometer"), ideal=board.ideal, report=board.reports)
-    device.set_motion_source(_Put())
+    device.set_motion_source(_SetAcceleration())
     board.pins[CS_GPIO].set_pull(1)
     faces = [
         Face(f"{axis}_m_s2", "m/s2", -200.0, 200.0, partial(_put, device, index), partial(_is_put, device, index))
@@ -41,12 +41,12 @@ def solder(board: Board) -> Lis3dh:
 
 def _put(device: Lis3dh, axis: int, value_m_s2: float) -> None:
     source = device.motion_source
-    if not isinstance(source, _Put):
-        source = _Put()
+    if not isinstance(source, _SetAcceleration):
+        source = _SetAcceleration()
         device.set_motion_source(source)
     source.felt_m_s2[axis] = value_m_s2
 
 
 def _is_put(device: Lis3dh, axis: int) -> float | None:
     source = device.motion_source
-    return source.felt_m_s2[axis] if isinstance(source, _Put) else None
+    return source.felt_m_s2[axis] if isinstance(source, _SetAcceleration) else None

@@ -26,7 +26,7 @@ def sonar_mounts(options: Sequence[str]) -> Mapping[str, SonarMount]:
     return {**DEFAULT_MOUNTS, **DIAGONAL_MOUNTS} if FIVE_SONARS in options else DEFAULT_MOUNTS
 
 
-class Motion:
+class AccelerometerMotion:
     """What an accelerometer over the middle of the axle feels: the means since it was asked last, in m/s2.
 
     Ahead it is the change of speed, to the left speed times yaw rate (no wheel slips sideways), up the weight.
@@ -51,7 +51,7 @@ class Motion:
         return (speed - before) * SYSCLK_HZ / since, 0.5 * (sideways + sideways_before), GRAVITY_M_S2
 
 
-class Sight:
+class LidarView:
     """What a LiDAR sees: walls and obstacles, all of them high enough."""
 
     def __init__(self, world: World) -> None:

@@ -19,7 +19,7 @@ RX_GPIO: Final = 71
 
 
 @dataclass(frozen=True, slots=True)
-class _Round:
+class _SetDistance:
     """A round wall, where a face was put and no world is."""
 
     distance_m: float
@@ -34,15 +34,15 @@ def solder(board: Board) -> RplidarA1:
         board.clock, board.serial_pins[TX_GPIO], board.serial_pins[RX_GPIO], rng=board.rng("lidar"), ideal=board.ideal,
         report=board.reports,
     )  # fmt: skip
-    device.set_distance_source(_Round(inf))
+    device.set_distance_source(_SetDistance(inf))
     face = Face("distance_m", "m", 0.0, inf, partial(_put, device), partial(_is_put, device))
     return board.add("lidar", device, pins={"RX": f"GPIO{TX_GPIO}", "TX": f"GPIO{RX_GPIO}"}, faces=[face])
 
 
 def _put(device: RplidarA1, distance_m: float) -> None:
-    device.set_distance_source(_Round(distance_m))
+    device.set_distance_source(_SetDistance(distance_m))
 
 
 def _is_put(device: RplidarA1) -> float | None:
     source = device.distance_source
-    return source.distance_m if isinstance(source, _Round) else None
+    return source.distance_m if isinstance(source, _SetDistance) else None

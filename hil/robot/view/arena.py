@@ -17,7 +17,7 @@ from hil.client.plot import place, sonar_points
 from hil.robot.view import arena_drawing as draw
 from hil.robot.view.arena_drawing import Obstacle, Point, Viewport
 from hil.robot.view.scene import Scene, Trails
-from hil.robot.view.window import Hand, Window
+from hil.robot.view.window import PointerGestures, Window
 from hil.view.engine import Engine
 from hil.view.line import LineLog
 from hil.view.snapshot import Snapshot
@@ -33,7 +33,7 @@ TURN_RAD: Final = pi / 12.0
 HANDS: Final = "drag the robot or an obstacle; add or remove an obstacle"
 
 
-class Stroke:
+class GrowingPath:
     """A growing row of points in two layers: what is finished is sent again only when some more is."""
 
     def __init__(self, window: Window, shape: Callable[[Viewport, Sequence[Point]], str]) -> None:
@@ -61,7 +61,7 @@ class Stroke:
         self._growing.content = self._shape(view, tail)
 
 
-class Cloud:
+class PointCloud:
     """Points that frames make, in the frame the robot starts in, by whole radians as the thesis console has them."""
 
     def __init__(self, log: LineLog) -> None:
@@ -118,17 +118,17 @@ class ArenaPanel:
         self._following = False
         corners = [point for wall in self._scene.walls for point in wall]
         self._view = view = Viewport.around(corners)
-        self._cloud = Cloud(engine.line.log)
+        self._cloud = PointCloud(engine.line.log)
         self._newest: list[Point] = []
         with ui.element("div").classes("arena w-full").mark("arena"):
             self._window = window = Window(view.extent(corners), self._touched, self._looked, self._follow_no_more)
             self._grid = window.layer()
             window.layer().content = draw.walls(view, self._scene.walls)
             self._beams = window.layer()
-            self._dots = Stroke(window, lambda view, points: draw.dots(view, points, "cloud"))
+            self._dots = GrowingPath(window, lambda view, points: draw.dots(view, points, "cloud"))
             self._old_dots = window.layer()
-            self._true = Stroke(window, lambda view, points: draw.path(view, points, "trail-true"))
-            self._believed = Stroke(window, lambda view, points: draw.path(view, points, "trail-odo"))
+            self._true = GrowingPath(window, lambda view, points: draw.path(view, points, "trail-true"))
+            self._believed = GrowingPath(window, lambda view, points: draw.path(view, points, "trail-odo"))
             self._posts = window.layer()
             self._robot = window.layer()
             self._hand = window.layer()
@@ -231,7 +231,7 @@ class ArenaPanel:
 
     # Hands
 
-    def _touched(self, hand: Hand) -> None:
+    def _touched(self, hand: PointerGestures) -> None:
         x, y = self._view.to_world(hand.x, hand.y)
         if hand.what == "take":
             self._press(x, y)
@@ -305,7 +305,7 @@ class FrameMap:
     """The picture of a robot that is only a line: what its frames say."""
 
     def __init__(self, log: LineLog) -> None:
-        self._cloud = Cloud(log)
+        self._cloud = PointCloud(log)
         self._log = log
         corners = [(-1.0, -1.0), (2.0, 1.0)]
         self._view = view = Viewport.around(corners)
@@ -315,8 +315,8 @@ class FrameMap:
         with ui.element("div").classes("arena w-full").mark("map"):
             self._window = window = Window(self._held, on_seen=self._looked)
             self._grid = window.layer()
-            self._dots = Stroke(window, lambda view, points: draw.dots(view, points, "cloud"))
-            self._way = Stroke(window, lambda view, points: draw.path(view, points, "trail-odo"))
+            self._dots = GrowingPath(window, lambda view, points: draw.dots(view, points, "cloud"))
+            self._way = GrowingPath(window, lambda view, points: draw.path(view, points, "trail-odo"))
             self._old = window.layer()
             self._robot = window.layer()
             with ui.row().classes("tools no-wrap gap-1"):

@@ -17,7 +17,7 @@ TOOLS_PX: Final = 40
 
 
 @dataclass(frozen=True, slots=True)
-class Hand:
+class PointerGestures:
     """Done with the mouse or a finger: `take`, `drag`, `drop`, `leave` of what has a grip, `tap` of anything else."""
 
     what: str
@@ -35,7 +35,7 @@ class Window(Element, component="layers.js"):
     def __init__(
         self,
         extent: tuple[float, float, float, float] = (0, 0, WIDTH, HEIGHT),
-        on_hand: Callable[[Hand], None] | None = None,
+        on_hand: Callable[[PointerGestures], None] | None = None,
         on_seen: Callable[[VisibleArea], None] | None = None,
         on_shifted: Callable[[], None] | None = None,
     ) -> None:
@@ -82,6 +82,6 @@ class Window(Element, component="layers.js"):
                 self._on_seen(self.seen)
 
     def _touched(self, e: events.GenericEventArguments) -> None:
-        hand = Hand(str(e.args["what"]), float(e.args["x"]), float(e.args["y"]), bool(e.args["shift"]))
+        hand = PointerGestures(str(e.args["what"]), float(e.args["x"]), float(e.args["y"]), bool(e.args["shift"]))
         if self._on_hand is not None and isfinite(hand.x) and isfinite(hand.y):
             self._on_hand(hand)

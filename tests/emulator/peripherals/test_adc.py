@@ -113,22 +113,22 @@ def test_a_sample_is_what_stood_at_the_pin_when_the_window_closed() -> None:
 def test_a_dead_converter_never_ends_and_a_mended_one_goes_on() -> None:
     bench = Bench()
     bench.interrupt_1_on(0)
-    bench.adc.dead = True
+    bench.adc.stopped_by_fault = True
     bench.regs.ADCSOCFRC1.all = 1
     bench.at(100_000)
     assert (bench.adc.conversions, bench.regs.ADCSOCFLG1.all, bench.clock.poll(6)) == (0, 1, NEVER)
-    bench.adc.dead = False
+    bench.adc.stopped_by_fault = False
     bench.clock.charge(EOC)
     assert (bench.adc.conversions, bench.regs.ADCINTFLG.all) == (1, 1)
 
 
 def test_what_several_keep_from_converting_goes_on_when_the_last_is_over() -> None:
     bench = Bench()
-    first, second = bench.adc.kill(), bench.adc.kill()
+    first, second = bench.adc.stop_converting(), bench.adc.stop_converting()
     bench.regs.ADCSOCFRC1.all = 1
     first()
     bench.at(100_000)
-    assert bench.adc.dead
+    assert bench.adc.stopped_by_fault
     assert not bench.adc.conversions
     second()
     bench.clock.charge(EOC)

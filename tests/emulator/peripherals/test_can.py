@@ -511,7 +511,7 @@ def test_without_retransmission_a_frame_is_tried_once() -> None:
 def to_bus_off(bench: Bench) -> None:
     """32 destroyed frames: TEC 256."""
     bench.part()
-    bench.chip.can_bus["A"].spoil(frames=32)
+    bench.chip.can_bus["A"].disturb(frames=32)
     bench.transmit("A", 1, 0x55)
     while not bench.chip.register("CanaRegs", "CAN_ES").value & 0x80:
         bench.wait_bits(10)
@@ -551,14 +551,14 @@ def test_auto_bus_on_clears_init_after_its_time() -> None:
 def test_a_receiver_counts_destroyed_frames_and_recovers() -> None:
     bench = Bench()
     sender = bench.part()
-    bench.chip.can_bus["A"].spoil(frames=100)
+    bench.chip.can_bus["A"].disturb(frames=100)
     sender.send(CanFrame(1))
     while sender.waiting:
         bench.wait_bits(1)
     # 100 errors, and 1 less for the frame that came through: the warning is at 96.
     assert bench.read("A", "ERRC") == 99 << 8
     assert bench.read("A", "ES") & 0x60 == 0x40
-    bench.chip.can_bus["A"].spoil(frames=60)
+    bench.chip.can_bus["A"].disturb(frames=60)
     sender.send(CanFrame(2))
     while len(sender.errors) < 100 + 40:
         bench.wait_bits(1)

@@ -10,7 +10,7 @@ from firmware_model.catalogue import CATALOGUE, DefectKind
 from firmware_model.corrections import ALL
 from firmware_model.image import link
 from hil.audit.demonstrations import DEMONSTRATIONS
-from hil.audit.evidence import By
+from hil.audit.evidence import EvidenceKind
 from hil.audit.rig import Rig
 from hil.audit.run import all_but_one, demonstrate
 from hil.robot.board import RobotBoard
@@ -68,10 +68,12 @@ def test_an_entry_is_shown_by_evidence_of_its_rule(name: str) -> None:
     assert faithful.seen, f"faithful: {faithful.line}"
     # The entry's rule is its evidence's: of a detector, whose findings are of that rule, or of a property.
     rule = CATALOGUE[name].rule
-    assert {finding.rule for finding in faithful.findings} == ({rule} if faithful.by is By.DETECTOR else set())
-    assert (faithful.by is By.DETECTOR) == (RULES[rule].family != "property")
-    assert faithful.by is not By.READ or CATALOGUE[name].kind is DefectKind.FIGURE
-    assert outcome.proven == (faithful.by is not By.READ)
+    assert {finding.rule for finding in faithful.findings} == (
+        {rule} if faithful.by is EvidenceKind.DETECTOR else set()
+    )
+    assert (faithful.by is EvidenceKind.DETECTOR) == (RULES[rule].family != "property")
+    assert faithful.by is not EvidenceKind.READ or CATALOGUE[name].kind is DefectKind.FIGURE
+    assert outcome.proven == (faithful.by is not EvidenceKind.READ)
     assert corrected is not None
     assert not corrected.seen, f"corrected: {corrected.line}"
     assert all_corrected is not None

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
-from hil.audit.evidence import By, measured, read, reported
+from hil.audit.evidence import EvidenceKind, measured, read, reported
 
 numbers = st.floats(allow_nan=False, allow_infinity=False, width=32)
 
@@ -33,7 +33,7 @@ def test_what_is_no_number_is_outside_any_bounds() -> None:
 
 def test_what_is_only_read_says_so() -> None:
     seen = measured("B", 33.25, "us", low=12.0, high=12.0)
-    assert read("B", 33.25, "us", low=12.0, high=12.0) == replace(seen, by=By.READ) != seen
+    assert read("B", 33.25, "us", low=12.0, high=12.0) == replace(seen, by=EvidenceKind.READ) != seen
 
 
 def test_the_line_says_what_was_measured_and_what_is_right() -> None:

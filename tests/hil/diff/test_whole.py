@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from hil.diff.compare import Result, Wanted, compare_firmware
+from hil.diff.compare import ComparisonOptions, Result, compare_firmware
 
 pytest.importorskip("pycparser")
 
@@ -36,7 +36,7 @@ char Read_Bumper(void)
 
 def compared(folder: Path, text: str) -> Result:
     (folder / "bumper.c").write_text(text, encoding="utf-8")
-    return compare_firmware(Wanted([str(folder)], seconds=1.0))
+    return compare_firmware(ComparisonOptions([str(folder)], seconds=1.0))
 
 
 @pytest.mark.slow

@@ -9,8 +9,8 @@ import pytest
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
 from emulator.devices.lv_maxsonar_beam import Echo
 from hil.board import load
-from hil.faults import Mounted, mount, parse
-from hil.testing.faults import OnBoard
+from hil.faults import MountedFault, mount, parse
+from hil.testing.faults import BoardTarget
 
 READ_WHO_AM_I = 0x8F
 #: L3G, WHO_AM_I.
@@ -22,11 +22,11 @@ class Rig:
 
     def __init__(self) -> None:
         self.board = load("robot")()
-        self.machine = OnBoard(self.board, lambda: pytest.fail("no firmware is linked"))
+        self.machine = BoardTarget(self.board, lambda: pytest.fail("no firmware is linked"))
         self.bus = self.board.spi_bus["A"]
         self.bus.connected = True
 
-    def mount(self, text: str) -> Mounted:
+    def mount(self, text: str) -> MountedFault:
         mounted = mount(parse(text), self.machine, from_now=True)  # type: ignore[arg-type]
         self.board.clock.advance_to(self.board.clock.now + 1)
         return mounted

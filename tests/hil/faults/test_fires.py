@@ -14,7 +14,7 @@ import pytest
 
 from emulator.clock import CYCLES_PER_MS
 from hil.bench import Bench
-from hil.faults import FAULTS, Fired, parse
+from hil.faults import FAULTS, FaultOutcome, parse
 from hil.machine import Setup
 
 #: The corrected firmware begins a round of its sonars so often.
@@ -25,7 +25,7 @@ ROUND_MS = 150
 class Ran:
     """What the robot did."""
 
-    fired: tuple[Fired, ...]
+    fired: tuple[FaultOutcome, ...]
     state: str
     way_m: float
     heading_rad: float

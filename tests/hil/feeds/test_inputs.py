@@ -18,7 +18,7 @@ from hil.machine import Setup
 from hil.reports.policy import Policy
 from hil.running import running
 from hil.scenarios.scenario import load_scenario
-from hil.testing.faults import OnBoard
+from hil.testing.faults import BoardTarget
 from hil.view.checkpoints import RewindableRun
 
 
@@ -50,15 +50,15 @@ class Own(Board):
         self.thing = self.on_adc("thing", Thing(), adc="B", channel=3, faces=[Face("level", "m", 0.0, 10.0)])
 
 
-def machine(board: Board) -> OnBoard:
+def machine(board: Board) -> BoardTarget:
     def none() -> object:
         raise AssertionError("a feed needs no firmware")
 
-    return OnBoard(board, none)  # type: ignore[arg-type]
+    return BoardTarget(board, none)  # type: ignore[arg-type]
 
 
 @pytest.fixture
-def own() -> OnBoard:
+def own() -> BoardTarget:
     return machine(Own())
 
 
@@ -67,11 +67,11 @@ def robot() -> Bench:
     return Bench(Setup(realistic=False, fixes=("all",)), traced=False)
 
 
-def volts(on: OnBoard, pin: int = 3) -> float:
+def volts(on: BoardTarget, pin: int = 3) -> float:
     return on.board.analog["B"][pin].source(on.clock.now)
 
 
-def to(on: OnBoard, time_s: float) -> None:
+def to(on: BoardTarget, time_s: float) -> None:
     on.clock.advance_to(round(time_s * SYSCLK_HZ))
 
 
@@ -86,7 +86,7 @@ def to(on: OnBoard, time_s: float) -> None:
     ],
     ids=["number", "arrays", "NumPy", "function", "generator"],
 )  # fmt: skip
-def test_an_adc_input_of_any_board_sees_it(own: OnBoard, source: Source, how: str, wanted: list[float]) -> None:
+def test_an_adc_input_of_any_board_sees_it(own: BoardTarget, source: Source, how: str, wanted: list[float]) -> None:
     feed(own, "ADCINB3", source, how=how)
     seen = []
     for time_s in (0.0, 0.5, 1.0):
@@ -98,7 +98,7 @@ def test_an_adc_input_of_any_board_sees_it(own: OnBoard, source: Source, how: st
     assert not own.feeds
 
 
-def test_arrays_of_a_text_are_those_of_python(own: OnBoard) -> None:
+def test_arrays_of_a_text_are_those_of_python(own: BoardTarget) -> None:
     load("ADCINB3=[[0.5, 1], [1.5, 2.5]],linear").feed(own)
     seen = []
     for time_s in (0.0, 1.0, 2.0):
@@ -119,19 +119,19 @@ def test_arrays_of_a_text_are_those_of_python(own: OnBoard) -> None:
         ("thing.level=[]", "thing.level: .* 0 times, 0 values"),
     ],
 )  # fmt: skip
-def test_a_text_without_right_arrays_is_one_line(own: OnBoard, text: str, told: str) -> None:
+def test_a_text_without_right_arrays_is_one_line(own: BoardTarget, text: str, told: str) -> None:
     with pytest.raises(ValueError, match=told) as caught:
         load(text).feed(own)
     assert "\n" not in str(caught.value)
     assert not own.feeds
 
 
-def test_units_are_converted(own: OnBoard) -> None:
+def test_units_are_converted(own: BoardTarget) -> None:
     feed(own, "ADCINB3", 1500, unit="mV")
     assert volts(own) == 1.5
 
 
-def test_nobody_asks_before_the_sensor_looks(own: OnBoard) -> None:
+def test_nobody_asks_before_the_sensor_looks(own: BoardTarget) -> None:
     asked: list[float] = []
     feed(own, "ADCINB3", lambda time_s: asked.append(time_s) or 1.0)  # type: ignore[func-returns-value]
     to(own, 1.0)
@@ -140,7 +140,7 @@ def test_nobody_asks_before_the_sensor_looks(own: OnBoard) -> None:
     assert asked == [1.0]
 
 
-def test_a_face_is_set_when_it_changes(own: OnBoard) -> None:
+def test_a_face_is_set_when_it_changes(own: BoardTarget) -> None:
     thing: Thing = own.board.part("thing").device
     feed(own, "thing.level", ([0.0, 0.5, 1.0], [1.0, 2.0, 3.0]))
     to(own, 0.75)
@@ -172,7 +172,7 @@ def test_a_face_is_set_when_it_changes(own: OnBoard) -> None:
         ("thing.level", lambda time_s: -1, "hold", "feed at 0 s: -1: thing.level must be 0 to 10 m"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_fed_says_what_can(own: OnBoard, name: str, source: Source, how: str, told: str) -> None:
+def test_what_cannot_be_fed_says_what_can(own: BoardTarget, name: str, source: Source, how: str, told: str) -> None:
     with pytest.raises(ValueError, match=told):
         feed(own, name, source, how=how)
     assert not own.feeds

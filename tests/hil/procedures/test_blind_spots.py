@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from emulator.devices.lv_maxsonar_beam import A0_RAD, A1_RAD
 from hil.cli import invoke
 from hil.procedures import blind_spots as procedure
-from hil.procedures.calibrate import AtWall
+from hil.procedures.calibrate import WallRig
 from hil.robot.options.in_world import sonar_mounts
 from hil.world.sonar_rays import SonarRays
 
@@ -52,7 +52,7 @@ def test_three_sonars_lose_what_the_thesis_says_and_five_do_not() -> None:
 
 def test_the_firmware_reads_far_too_much_before_a_lost_wall() -> None:
     def read_cm(angle_deg: float) -> list[float]:
-        robot = AtWall(None)
+        robot = WallRig(None)
         walls = SonarRays([procedure.wall(angle_deg, 0.4)])
         robot.board.sonars.set_range_source(lambda name, cycles: walls.echoes(name, (0.0, 0.0, 0.0)))
         # Counts of a centimetre: see test_calibrate.

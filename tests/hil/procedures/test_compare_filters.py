@@ -32,7 +32,7 @@ def test_every_filter_reads_the_same_distances(found: list[procedure.Filter]) ->
 def test_every_filter_reads_the_same_pings_and_one_at_a_time() -> None:
     pings: dict[str, list[int]] = {}
     for name, (read, fixes) in procedure.FILTERS.items():
-        robot = procedure.AtWall(1, fixes)
+        robot = procedure.WallRig(1, fixes)
         robot.stand(40.0)
         sonar = robot.board.sonars.sensors["FRONT"]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from emulator.c28x.findings import Finding
-from hil.reports.baseline import Baseline, Known, known
+from hil.reports.baseline import Baseline, KnownFinding, known
 from tests.hil.reports.samples import SOURCE, finding, module
 
 
@@ -93,6 +93,6 @@ def test_a_missing_baseline_says_how_to_make_one(tmp_path: Path) -> None:
 
 
 def test_the_file_is_readable_by_a_person(tmp_path: Path) -> None:
-    entry = Known("00", "unit", "us.c", "f", "x", "x = 1", "x is in mm")
+    entry = KnownFinding("00", "unit", "us.c", "f", "x", "x = 1", "x is in mm")
     Baseline((entry,)).write(tmp_path / "k.json")
     assert json.loads((tmp_path / "k.json").read_text())["findings"][0]["message"] == "x is in mm"

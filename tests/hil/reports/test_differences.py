@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.client.decode import OdometryFrame
-from hil.reports.differences import OutputDifference, Proof, RunDifferences, Subject, compare
+from hil.reports.differences import FilledMemory, OutputDifference, RunDifferences, TwoFillProof, compare
 from hil.reports.outputs import OutputKind, RunOutputs, Stream, kind_of
 from tests.hil.reports.samples import finding
 
@@ -83,6 +83,6 @@ def test_a_run_that_ends_is_reached() -> None:
 
 def test_a_proof_belongs_to_rule_and_object() -> None:
     reach: RunDifferences = compare(RunOutputs(), RunOutputs())
-    proof = Proof("zero", "ones", reach, {Subject("unit", "us.f.total", "float total"): reach})
+    proof = TwoFillProof("zero", "ones", reach, {FilledMemory("unit", "us.f.total", "float total"): reach})
     assert proof.reach_of(finding("us.py", 3, rule="unit")) is reach
     assert proof.reach_of(finding("us.py", 3, rule="index")) is None

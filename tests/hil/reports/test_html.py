@@ -12,7 +12,7 @@ from emulator.c28x.sites import Place
 from emulator.rules import RULES
 from hil.machine import PathPoint, Setup
 from hil.reports.baseline import Baseline, known
-from hil.reports.differences import Proof, Subject, compare
+from hil.reports.differences import FilledMemory, TwoFillProof, compare
 from hil.reports.html import html, write_html
 from hil.reports.model import DrivenTrack, Report, Run
 from hil.reports.outputs import RunOutputs
@@ -62,7 +62,7 @@ def text(tmp_path_factory: pytest.TempPathFactory) -> str:
     report = Report.of(
         [old, hostile, still], run=Run("a <run>", Setup(fixes=("all",)), 3.0, ("mission",), "a trap"),
         baseline=Baseline(tuple(known([old, gone]))),
-        proof=Proof("zero", "ones", reach, {Subject("unit", "us.f.total", "float total"): reach}),
+        proof=TwoFillProof("zero", "ones", reach, {FilledMemory("unit", "us.f.total", "float total"): reach}),
         drive=DrivenTrack((((0.0, 0.0), (2.0, 0.0)),), (), path, path),
     )  # fmt: skip
     return html(report)

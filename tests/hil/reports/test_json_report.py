@@ -12,7 +12,7 @@ from jsonschema import Draft202012Validator
 
 from emulator.c28x.findings import Finding
 from hil.machine import Setup
-from hil.reports.differences import Proof, Subject, compare
+from hil.reports.differences import FilledMemory, TwoFillProof, compare
 from hil.reports.json_report import as_dict, write_json
 from hil.reports.model import Report, Run
 from hil.reports.outputs import RunOutputs
@@ -30,7 +30,7 @@ def test_every_report_is_valid(found: list[Finding]) -> None:
 def test_a_proof_is_valid_and_stands_at_its_finding(tmp_path: Path) -> None:
     reach = compare(RunOutputs({"UART": [(5, 48)]}), RunOutputs({"UART": [(5, 49)]}))
     one = finding(module(tmp_path), 3)
-    proof = Proof("zero", "ones", reach, {Subject.of(one): reach})
+    proof = TwoFillProof("zero", "ones", reach, {FilledMemory.of(one): reach})
     write_json(tmp_path / "r.json", Report.of([one], run=Run("x"), proof=proof))
     read = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
     assert [error.message for error in SCHEMA.iter_errors(read)] == []

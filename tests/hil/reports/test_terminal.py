@@ -9,7 +9,7 @@ import pytest
 from rich.console import Console
 
 from hil.reports.baseline import Baseline, known
-from hil.reports.differences import Proof, Subject, compare
+from hil.reports.differences import FilledMemory, TwoFillProof, compare
 from hil.reports.model import Report, Run
 from hil.reports.outputs import RunOutputs
 from hil.reports.policy import Policy
@@ -28,7 +28,7 @@ def test_details_say_where_when_and_what_it_reaches(tmp_path: Path) -> None:
     one = finding(module(tmp_path), 3, count=2, value=None)
     a = RunOutputs({"EPwm2Regs.CMPA": [(400, 5)], "SpiaRegs.SPICCR": [(1, 1)]})
     reach = compare(a, RunOutputs({"EPwm2Regs.CMPA": [(400, 7)], "SpiaRegs.SPICCR": [(2, 1)]}))
-    proof = Proof("zero", "ones", reach, {Subject.of(one): reach})
+    proof = TwoFillProof("zero", "ones", reach, {FilledMemory.of(one): reach})
     text = printed(Report.of([one], run=Run("x"), proof=proof), details=True)
     # 2 000 000 cycles of 5 ns; 400 cycles.
     assert "first at 10000.000 us in TaskUS, 2 times │" in " ".join(text.split())

@@ -6,7 +6,7 @@ import pytest
 
 from emulator.c28x.findings import Finding
 from hil.machine import Setup
-from hil.reports.differences import Proof, RunDifferences, compare
+from hil.reports.differences import RunDifferences, TwoFillProof, compare
 from hil.reports.outputs import OutputKind
 from hil.reports.two_fill import outputs, prove
 from hil.scenarios.scenario import Scenario
@@ -25,11 +25,11 @@ def found(scenario: Scenario) -> list[Finding]:
 
 
 @pytest.fixture(scope="module")
-def proof() -> Proof:
+def proof() -> TwoFillProof:
     return prove(SCENARIO, found(SCENARIO))
 
 
-def part(proof: Proof, rule: str, object: str) -> RunDifferences:
+def part(proof: TwoFillProof, rule: str, object: str) -> RunDifferences:
     """What the object of a finding reaches."""
     (reach,) = [reach for subject, reach in proof.parts.items() if (subject.rule, subject.object) == (rule, object)]
     return reach
@@ -39,7 +39,7 @@ def test_the_same_run_twice_differs_in_nothing() -> None:
     assert compare(outputs(SCENARIO), outputs(SCENARIO)).differences == ()
 
 
-def test_the_fills_differ_in_the_three_distances_and_nothing_else_of_a_frame(proof: Proof) -> None:
+def test_the_fills_differ_in_the_three_distances_and_nothing_else_of_a_frame(proof: TwoFillProof) -> None:
     assert set(proof.whole.frames.fields) == {"dL", "dF", "dR"}
     assert proof.whole.frames.numbers[0] == 1
     assert proof.whole.of(OutputKind.UART)
@@ -48,14 +48,14 @@ def test_the_fills_differ_in_the_three_distances_and_nothing_else_of_a_frame(pro
 
 
 @pytest.mark.parametrize(("accumulator", "field"), ACCUMULATORS.items())
-def test_each_accumulator_reaches_its_own_distance(proof: Proof, accumulator: str, field: str) -> None:
+def test_each_accumulator_reaches_its_own_distance(proof: TwoFillProof, accumulator: str, field: str) -> None:
     # us.c: result is the left sonar's sum, resultF the front's, resultR the right's.
     reach = part(proof, "uninitialised", f"us.Read_Distance.{accumulator}")
     assert set(reach.frames.fields) == {field}
     assert reach.tried == ("ones",)
 
 
-def test_the_cell_before_the_array_reaches_nothing_and_the_report_says_what_was_tried(proof: Proof) -> None:
+def test_the_cell_before_the_array_reaches_nothing_and_the_report_says_what_was_tried(proof: TwoFillProof) -> None:
     # us.c: v[i - 1] at i = 0 decides whether v[i - 1] is written; the sum has taken v[i] before it is "corrected".
     reach = part(proof, "index", "us.Read_Distance.v")
     assert not reach.anything

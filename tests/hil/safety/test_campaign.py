@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from hil.cli import invoke
-from hil.safety.campaign import HELD, Campaign, Failed, broken, campaign, drawn, expectations, shortest, text_of
+from hil.safety.campaign import HELD, Campaign, FailedRun, broken, campaign, drawn, expectations, shortest, text_of
 from hil.scenarios.running import run_file
 
 
@@ -90,7 +90,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
 def test_a_full_disk_does_not_keep_failures_from_being_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:  # fmt: skip
-    ran = Campaign(5, (Failed(1, ("it drives",), "a"), Failed(3, ("it stopped",), "b")), ())
+    ran = Campaign(5, (FailedRun(1, ("it drives",), "a"), FailedRun(3, ("it stopped",), "b")), ())
     monkeypatch.setattr("hil.safety.campaign.campaign", lambda *_arguments, **_options: ran)
     folder = tmp_path / "kept"
     # Two folders stand where the files would: no file can be written.

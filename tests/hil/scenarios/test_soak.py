@@ -17,7 +17,7 @@ from hil.faults import Fault, mount
 from hil.faults.all import FAULTS
 from hil.faults.kinds import FaultKind
 from hil.machine import Setup
-from hil.scenarios.soak import Soaked, _value, soak
+from hil.scenarios.soak import SoakResult, _value, soak
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +57,7 @@ def test_a_robot_that_does_not_come_back_is_switched_off_and_on(tmp_path: Path) 
 
 
 def test_an_interrupted_one_tells_what_it_has(capsys: pytest.CaptureFixture[str]) -> None:
-    def ctrl_c(_soaked: Soaked) -> None:
+    def ctrl_c(_soaked: SoakResult) -> None:
         raise KeyboardInterrupt
 
     told = soak(1e6, seed=1, told=ctrl_c)

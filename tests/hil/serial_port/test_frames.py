@@ -6,16 +6,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil.serial_port.frames import LONGEST_UNIT, PAUSE_CYCLES, Counters, Deliver, Outbound, split_units
+from hil.serial_port.frames import LONGEST_UNIT, PAUSE_CYCLES, Counters, Delivery, OutboundQueue, split_units
 from tests.hil.scripted_machine import BYTE_CYCLES
 from tests.hil.serial_port.lines import frame
 
 
-def outbound(keep: int = 3, deliver: Deliver = Deliver.FRAMES) -> Outbound:
-    return Outbound(Counters(), keep=keep, deliver=deliver)
+def outbound(keep: int = 3, deliver: Delivery = Delivery.FRAMES) -> OutboundQueue:
+    return OutboundQueue(Counters(), keep=keep, deliver=deliver)
 
 
-def push(out: Outbound, data: bytes, start: int = 0) -> int:
+def push(out: OutboundQueue, data: bytes, start: int = 0) -> int:
     for byte in data:
         start += BYTE_CYCLES
         out.push(byte, start)
@@ -32,7 +32,7 @@ def test_a_frame_becomes_visible_with_its_last_byte() -> None:
 
 
 def test_byte_delivery_makes_each_byte_visible_by_itself() -> None:
-    out = outbound(deliver=Deliver.BYTES)
+    out = outbound(deliver=Delivery.BYTES)
     seen = []
     for index, byte in enumerate(frame(1)):
         out.push(byte, (index + 1) * BYTE_CYCLES)
@@ -52,7 +52,7 @@ def test_the_oldest_whole_frames_give_way() -> None:
 
 
 def test_a_frame_that_has_begun_to_leave_is_never_torn() -> None:
-    out = outbound(keep=1, deliver=Deliver.BYTES)
+    out = outbound(keep=1, deliver=Delivery.BYTES)
     now = push(out, frame(0)[:5])
     begun = out.take()
     now = push(out, frame(0)[5:], now)
@@ -79,7 +79,7 @@ def test_a_cut_frame_does_not_swallow_the_next() -> None:
 
 
 def test_a_new_listener_does_not_get_the_rest_of_a_frame_it_did_not_hear_begin() -> None:
-    out = outbound(deliver=Deliver.BYTES)
+    out = outbound(deliver=Delivery.BYTES)
     now = push(out, frame(0)[:4])
     out.take()
     out.discard()
@@ -95,9 +95,9 @@ def test_keep_outside_1_to_64_is_refused() -> None:
             outbound(keep=keep)
 
 
-@given(st.binary(max_size=2000), st.integers(1, 8), st.sampled_from(Deliver), st.data())
+@given(st.binary(max_size=2000), st.integers(1, 8), st.sampled_from(Delivery), st.data())
 def test_whatever_comes_memory_is_bounded_and_no_byte_is_lost_uncounted(
-    data: bytes, keep: int, deliver: Deliver, choices: st.DataObject
+    data: bytes, keep: int, deliver: Delivery, choices: st.DataObject
 ) -> None:
     out = outbound(keep, deliver)
     taken = b""

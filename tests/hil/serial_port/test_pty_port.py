@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hil.client.decode import FrameDecoder, OdometryFrame
-from hil.serial_port import Deliver, PortError
+from hil.serial_port import Delivery, PortError
 from hil.serial_port.frames import PAUSE_CYCLES
 from hil.serial_port.pty_port import PtyPort
 from tests.hil.serial_port.lines import Robot, frame
@@ -179,7 +179,7 @@ def test_any_bytes_pass_unchanged_in_both_directions(chunks: list[bytes]) -> Non
 
 
 def test_byte_delivery_shows_a_frame_growing() -> None:
-    port = PtyPort(deliver=Deliver.BYTES)
+    port = PtyPort(deliver=Delivery.BYTES)
     fd = os.open(port.device, os.O_RDWR | os.O_NOCTTY)
     try:
         robot = Robot(port)

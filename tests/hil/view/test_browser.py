@@ -408,7 +408,7 @@ def test_keys_are_listed_and_light_and_dark_can_be_read(page: Any, shot: Shot) -
 
 
 def test_one_page_too_many_is_told_so_and_asks_again(browser: Any, shot: Shot) -> None:
-    from hil.view.crowd import MOST_PAGES
+    from hil.view.page_limit import MOST_PAGES
 
     view = View("--world", "room", "--no-open")
     for _ in range(MOST_PAGES):  # pages that are asked for and may be loading still

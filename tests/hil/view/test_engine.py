@@ -19,7 +19,7 @@ from hil.machine import Setup
 from hil.reports.policy import Policy
 from hil.scenarios.scenario import load_scenario
 from hil.serial_port import open_port
-from hil.view.checkpoints import Checkpoint, Moments, RecordedInput, RewindableRun, hands
+from hil.view.checkpoints import Checkpoint, CheckpointList, RecordedInput, RewindableRun, hands
 from hil.view.engine import Engine
 from hil.view.snapshot import Mode
 from hil.view.stage import stage_of
@@ -138,7 +138,7 @@ def test_a_new_future_may_begin_during_start_up(engine: Engine) -> None:
 
 
 def test_moments_with_a_name_outlive_those_without() -> None:
-    moments = Moments(BOOT_CYCLES, most=4)
+    moments = CheckpointList(BOOT_CYCLES, most=4)
     moments.note(BOOT_CYCLES + 1, "mine")
     for later in range(2, 20):
         moments.note(BOOT_CYCLES + later, "")
@@ -161,7 +161,7 @@ def test_an_order_is_a_moment_to_go_back_to_just_before_it(engine: Engine) -> No
 
 
 def test_start_up_is_a_moment_however_many_orders_there_are() -> None:
-    moments = Moments(BOOT_CYCLES, most=4)
+    moments = CheckpointList(BOOT_CYCLES, most=4)
     for later in range(10):
         moments.note_order(RecordedInput(BOOT_CYCLES - 5 + later, "order", (order("stop"),)))
     assert Checkpoint(BOOT_CYCLES, "ready") in moments.all
@@ -323,7 +323,7 @@ def test_a_map_that_is_edited_meanwhile_does_not_change_the_past(tmp_path: Path)
 def test_a_scenario_says_start_floor_and_orders_that_wait(tmp_path: Path) -> None:
     file = tmp_path / "ice.scenario.toml"
     waiting = 'world = "room"\norders = []\n[[order]]\nsend = "mission"\nwhen = "frame 2"\n'
-    file.write_text(waiting + '[start]\nx_m = 1.0\ny_m = 1.2\nheading_deg = 90\n[floor]\ngrip = 0.25\n')
+    file.write_text(waiting + "[start]\nx_m = 1.0\ny_m = 1.2\nheading_deg = 90\n[floor]\ngrip = 0.25\n")
     scenario, _ = load_scenario(file, Policy())
     engine = Engine(SETUP, pace=None, read=scenario.read())
     engine.pause()

@@ -232,7 +232,7 @@ class CExpressionReader:
             case c_ast.FuncCall() if self.is_octet(node):
                 return self.octet(node)
         value = self.value(node)
-        return build.held(b, value, where) if isinstance(value.ctype, StructType) else value
+        return build.in_temporary(b, value, where) if isinstance(value.ctype, StructType) else value
 
     def as_value(self, place: Place | Expr) -> Expr:
         """The value of a place."""
@@ -373,7 +373,7 @@ class CExpressionReader:
             place, value = self.assigned_operands(node)
             return build.assigned(b, place, value, where)
         place, value = self.assigned_operands(node)
-        place = build.complete(build.settled(b, place))
+        place = build.complete(build.evaluated_once(b, place))
         result = build.binary(b, _ARITHMETIC[node.op], build.value_of(b, place), value, where)
         return build.assigned(b, place, result, where)
 

@@ -25,7 +25,7 @@ _DRIVE = re.compile(r"[A-Za-z]:")
 
 
 @lru_cache(maxsize=64)
-def _ours(name: str, text: str) -> SourceText:
+def _header_of_emulator(name: str, text: str) -> SourceText:
     """One of our headers, which is not a file."""
     return SourceText(f"<{name}>", text, keep=True)
 
@@ -89,7 +89,7 @@ class IncludePath:
             raise Refused("that is not a file name")
         beside = quoted and folder is not None and self._standard(name.lower()) and self._lies_in(folder, name)
         if not beside and (text := self._builtin(name.lower())) is not None:
-            return _ours(name, text)
+            return _header_of_emulator(name, text)
         absolute = name.startswith("/") or _DRIVE.match(name) is not None
         if absolute:
             places = [""]
@@ -112,7 +112,7 @@ class IncludePath:
                 raise Refused(f"{name} is a link to {real}, outside the include path: name its folder with -I FOLDER")
             return self._open(real, os.path.join(self._roots[root], os.path.relpath(path, root)))
         if (text := self._fallback(name.lower())) is not None:
-            return _ours(name, text)
+            return _header_of_emulator(name, text)
         if outside:
             raise Refused(f"{name} leaves the include path: name its folder with -I FOLDER")
         raise Refused(f"there is no header {name}: name its folder with -I FOLDER")

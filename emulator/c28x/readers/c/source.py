@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Final
 
 from emulator.c28x import build
 from emulator.c28x.readers.c import headers
-from emulator.c28x.readers.c.beside import Beside
 from emulator.c28x.readers.c.includes import Refused
 from emulator.c28x.readers.c.kernel_headers import kernel
 from emulator.c28x.readers.c.library_headers import OF_FLOAT, library
+from emulator.c28x.readers.c.neighbour_files import NeighbourFiles
 from emulator.c28x.readers.c.preprocessor import PreprocessorOptions, Unit, preprocess, preprocess_text
 from emulator.c28x.readers.c.register_types import device
 from emulator.c28x.readers.reading import reading
@@ -67,7 +67,7 @@ class CFile:
     reader: CDeclarationReader
     unit: Unit
 
-    def wanted(self) -> set[str]:
+    def undefined_names(self) -> set[str]:
         """Names that the file, or a header that is not ours, uses and that the file only declares."""
         used = {token.text for token in self.unit.tokens if not token.source.file.startswith("<")}
         return used & set(self.reader.linkage.declared)
@@ -84,15 +84,15 @@ class CFiles:
     bring: Callable[[Path], object] = lambda file: None
     files: dict[str, CFile] = field(default_factory=dict)
     _linked: int = 0
-    _beside: Beside = field(init=False)
+    _neighbours: NeighbourFiles = field(init=False)
 
     def __post_init__(self) -> None:
-        self._beside = Beside(self.settings.include)
+        self._neighbours = NeighbourFiles(self.settings.include)
 
-    def looked_into(self) -> set[str]:
+    def searched_paths(self) -> set[str]:
         """The files that were read, and the folders in which headers were searched."""
         files = {file for read in self.files.values() for file in read.unit.files}
-        return files | {str(Path(file).parent) for file in files} | {str(folder) for folder in self._beside.folders}
+        return files | {str(Path(file).parent) for file in files} | {str(folder) for folder in self._neighbours.folders}
 
     def read(self, name: str, file: str, text: str | None = None) -> Module:
         """Read a C file; `text` is used if there is no file.  Raises SourceError; NoParser without pycparser."""
@@ -128,7 +128,7 @@ class CFiles:
                 symbol = file.module.symbols[name]
                 if isinstance(symbol, Function):
                     return symbol
-        module = _of_ours(name) or self.libraries(name)
+        module = _module_of_emulator(name) or self.libraries(name)
         found = module.symbols.get(name) if module is not None else None
         if isinstance(found, Function):
             return found
@@ -142,7 +142,7 @@ class CFiles:
         """
         if self._linked == len(self.files):
             return []
-        self._bring_what_is_beside()
+        self._add_neighbour_files()
         added = self._behind_headers()
         self._linked = len(self.files)
         defined: dict[str, CFile] = {}
@@ -156,34 +156,34 @@ class CFiles:
                     raise SourceError.at(where, f"{name} is defined twice: also at {at}")
         python = [module for module in others if module.name not in self.files]
         for file in self.files.values():
-            wanted = file.wanted()
+            undefined_names = file.undefined_names()
             for name, where in file.reader.linkage.declared.items():
                 if name in file.reader.linkage.static:
                     used = file.module.symbols[name]
                     if isinstance(used, Function):
                         continue
-                self._resolve(file, name, where, defined, python, used=name in wanted)
+                self._resolve(file, name, where, defined, python, used=name in undefined_names)
         return added
 
-    def _bring_what_is_beside(self) -> None:
+    def _add_neighbour_files(self) -> None:
         """Read C files beside headers if they define what the files use and none defines; repeat for these files."""
         asked: set[str] = set()
         while True:
             defined = {name for file in self.files.values() for name in file.reader.linkage.defined}
-            wanted = {name for file in self.files.values() for name in file.wanted()} - defined - asked
-            if not wanted:
+            names = {name for file in self.files.values() for name in file.undefined_names()} - defined - asked
+            if not names:
                 return
-            asked |= wanted
-            known = (name for name in wanted if _of_ours(name) is None and headers.definitions(name) is None)
-            files = {self._beside.file(name) for name in known if self.libraries(name) is None}
+            asked |= names
+            known = (name for name in names if _module_of_emulator(name) is None and headers.definitions(name) is None)
+            files = {self._neighbours.file(name) for name in known if self.libraries(name) is None}
             for path in sorted(path for path in files if path is not None):
                 self.bring(path)
 
     def _behind_headers(self) -> list[Module]:
         """Read the definitions of names that our headers only declare, if the files use but do not define them."""
         defined = {name for file in self.files.values() for name in file.reader.linkage.defined}
-        wanted = {name for file in self.files.values() for name in file.wanted()} - defined
-        added = dict(filter(None, map(headers.definitions, sorted(wanted))))
+        undefined_names = {name for file in self.files.values() for name in file.undefined_names()} - defined
+        added = dict(filter(None, map(headers.definitions, sorted(undefined_names))))
         modules = [self.read(name, f"<{name}.c>", text) for name, text in added.items()]
         for variable in (variable for module in modules for variable in module.variables):
             variable.address = headers.LINKED.get(variable.declaration.name)
@@ -198,7 +198,7 @@ class CFiles:
             found = defined[name].module.symbols[name]
         else:
             found = next((m.symbols[name] for m in python if name in m.own and name in m.symbols), None)
-            if found is None and (used or _of_ours(name)):  # a linker takes only what is used from a library
+            if found is None and (used or _module_of_emulator(name)):  # a linker takes only what is used from a library
                 found = self.find(name)
         if isinstance(mine, Function) and isinstance(found, Function):
             self._compare(file, mine, found, where)
@@ -225,7 +225,7 @@ class CFiles:
         file.module.remarks.append(Remark(where, rule="prototype-mismatch", message=message, name=mine.name))
 
 
-def _of_ours(name: str) -> Module | None:
+def _module_of_emulator(name: str) -> Module | None:
     """The module of the emulator with a function of this name; None: there is none."""
     return next((m for m in (library(), kernel(), device()) if isinstance(m.symbols.get(name), Function)), None)
 

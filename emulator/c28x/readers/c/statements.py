@@ -193,7 +193,7 @@ class CStatementReader:
         target = self.b.look_up(node.lvalue.name) if isinstance(node.lvalue, c_ast.ID) else None
         if isinstance(node.rvalue, c_ast.FuncCall) and isinstance(target, Variable) and target.kind != "global":
             return False
-        return not any(_stands(written(node.lvalue), branch) for branch in branches)
+        return not any(_contains_text(written(node.lvalue), branch) for branch in branches)
 
     # Loops
 
@@ -451,7 +451,7 @@ def _declares(node: c_ast.Node) -> bool:
     return False
 
 
-def _stands(text: str, node: c_ast.Node | None) -> bool:
+def _contains_text(text: str, node: c_ast.Node | None) -> bool:
     """Whether a statement contains an expression with this text."""
     waiting = [node]
     while waiting:

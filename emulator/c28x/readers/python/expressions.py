@@ -306,7 +306,7 @@ class PythonExpressionReader:
             return self.place(node)
         value = self.value(node)
         if isinstance(value.ctype, StructType):  # the result of a function
-            return build.held(self.b, value, self.where(node))
+            return build.in_temporary(self.b, value, self.where(node))
         if not isinstance(value.ctype, PointerType):
             raise self.error(node, f"'{shown(node)}' is a {value.ctype}, not a pointer")
         return value

@@ -21,10 +21,10 @@ def log_of(count: int) -> LineLog:
 
 def test_a_page_that_is_opened_late_takes_what_it_can_draw() -> None:
     needs_view()
-    from hil.robot.view.arena import MOST_POINTS, Cloud
+    from hil.robot.view.arena import MOST_POINTS, PointCloud
 
     log = log_of(10_000)
-    cloud = Cloud(log)
+    cloud = PointCloud(log)
     cloud.update()
     assert len(cloud.points) == MOST_POINTS
     assert cloud.way[-1] == (9.999, 0.0)
@@ -36,10 +36,10 @@ def test_a_page_that_is_opened_late_takes_what_it_can_draw() -> None:
 
 def test_another_run_begins_a_new_cloud() -> None:
     needs_view()
-    from hil.robot.view.arena import Cloud
+    from hil.robot.view.arena import PointCloud
 
     log = log_of(20)
-    cloud = Cloud(log)
+    cloud = PointCloud(log)
     cloud.update()
     log.clear()
     cloud.update()

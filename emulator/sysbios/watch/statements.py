@@ -11,38 +11,38 @@ from emulator.c28x.sites import INTERRUPT, Calls, Place, interrupted
 from emulator.sysbios.scheduler import Task
 
 #: The number of a statement; 0: none.
-Spot = int
+StatementNumber = int
 #: The identity of a call (`emulator.c28x.sites.Calls`).
 Call = Calls
 #: A function of the firmware: its file and name.
 Function = tuple[str, str]
 
 
-class StatementSpots:
+class StatementLocator:
     """Finds the running statements, and translates their numbers."""
 
     def __init__(self, findings: Findings) -> None:
         self._position = findings.position
         self._places = findings.places
 
-    def place(self, spot: Spot) -> Place | None:
+    def place(self, statement: StatementNumber) -> Place | None:
         """The place of a statement, for a finding; None for spot 0."""
-        return self._places[spot] if spot else None
+        return self._places[statement] if statement else None
 
     def takes(self, spot: Spot) -> bool:
         """Whether the statement clears an object that a statement just before it has read."""
         return self._places[spot].kind == "takes"
 
-    def text(self, spot: Spot) -> str:
+    def text(self, statement: StatementNumber) -> str:
         """The place of a statement as text, for a sentence."""
-        return str(self._places[spot]) if spot else "no statement of the firmware"
+        return str(self._places[statement]) if statement else "no statement of the firmware"
 
-    def function(self, spot: Spot) -> Function:
+    def function(self, statement: StatementNumber) -> Function:
         """The function in which a statement stands."""
-        place = self._places[spot]
+        place = self._places[statement]
         return place.file, place.function
 
-    def here(self) -> Spot:
+    def here(self) -> StatementNumber:
         """The innermost firmware statement that is executing."""
         position = self._position
         return position.at or position.innermost()
@@ -56,12 +56,12 @@ class StatementSpots:
         """Whether a call has not returned: it is on the call stack of the code that runs now."""
         return self._position.within(call)
 
-    def of(self, task: Task, current: Task | None) -> Spot:
+    def of(self, task: Task, current: Task | None) -> StatementNumber:
         """The statement at which `task` was interrupted or suspended.  0 before its first statement."""
         position = self._position if task is current else task
         return interrupted(position.at, position.calls)[0]
 
-    def sample(self) -> tuple[Spot, bool, Call | None] | None:
+    def sample(self) -> tuple[StatementNumber, bool, Call | None] | None:
         """The statement that a just taken interrupt has interrupted, whether the statement only polls, and its call.
 
         None if no firmware was interrupted: the idle loop, or an interrupt that has not reached its first statement.
@@ -72,5 +72,5 @@ class StatementSpots:
         if calls is None:
             return None
         assert calls[2] is INTERRUPT
-        spot, call = calls[0], calls[1]
-        return (spot, self._places[spot].kind in ("poll", "idle"), call) if spot else None
+        statement, call = calls[0], calls[1]
+        return (statement, self._places[statement].kind in ("poll", "idle"), call) if statement else None

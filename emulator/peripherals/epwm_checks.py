@@ -20,7 +20,7 @@ from emulator.signals import DutyWire
 SET_UP_CYCLES: Final = 10 * CYCLES_PER_MS
 
 
-class Beyond(NamedTuple):
+class CompareBeyondPeriod(NamedTuple):
     """A compare value beyond a period, and the statement that wrote it."""
 
     value: int
@@ -28,7 +28,7 @@ class Beyond(NamedTuple):
     cause: Cause
 
 
-class EPwmDoubts:
+class EPwmChecks:
     """The findings of one module."""
 
     __slots__ = ("_above", "_clock", "_cpu", "_first", "_regs", "above")
@@ -38,8 +38,8 @@ class EPwmDoubts:
         self._first: int | None = None
         #: Compare register -> the first value above the period plus 1, with its statement and the period.  A value
         #: counts only if it stood until the next one was written and the period did not change meanwhile.
-        self.above: dict[str, Beyond] = {}
-        self._above: dict[str, Beyond] = {}
+        self.above: dict[str, CompareBeyondPeriod] = {}
+        self._above: dict[str, CompareBeyondPeriod] = {}
 
     def reset(self) -> None:
         """Module reset."""
@@ -51,7 +51,7 @@ class EPwmDoubts:
         if self._above and (stood := self._above.pop(compare, None)):
             self.above.setdefault(compare, stood)
         if value > period + 1 and period and compare not in self.above and (cause := self._cpu.findings.mark()):
-            self._above[compare] = Beyond(value, period, cause)
+            self._above[compare] = CompareBeyondPeriod(value, period, cause)
 
     def period_written(self) -> None:
         """The period was written.  The compare value under test may be for the new period."""

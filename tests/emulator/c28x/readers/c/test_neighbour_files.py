@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from emulator.c28x.link import LinkError
-from emulator.c28x.readers.c.beside import Beside, functions
+from emulator.c28x.readers.c.neighbour_files import NeighbourFiles, functions
 from hil.drivers.check import DriverFiles, check_files
 from hil.image import Build
 
@@ -81,13 +81,13 @@ def test_sources_lie_in_source_beside_include_too(library: Path, tmp_path: Path)
 
 def test_another_program_is_no_library(library: Path) -> None:
     (library / "port.c").write_text(PORT_C + "void main(void) { }\n", encoding="utf-8")
-    assert Beside([library]).file("PORT_set") is None
+    assert NeighbourFiles([library]).file("PORT_set") is None
 
 
 def test_a_link_that_leaves_the_folder_is_not_followed(library: Path, tmp_path: Path) -> None:
     (library / "port.c").rename(tmp_path / "port.c")
     (library / "port.c").symlink_to(tmp_path / "port.c")
-    assert Beside([library]).file("PORT_set") is None
+    assert NeighbourFiles([library]).file("PORT_set") is None
 
 
 @pytest.mark.parametrize(("text", "found"), [

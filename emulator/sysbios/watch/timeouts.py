@@ -23,41 +23,41 @@ from emulator.sysbios.mailbox import Mailbox
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.names import HandleNames
-from emulator.sysbios.watch.spots import Spot, StatementSpots
+from emulator.sysbios.watch.statements import StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import Thread, ThreadWatch
 
 #: A task may wait at a gate for so long while the owner's wait times out, or while the owner sleeps: an EEPROM needs
 #: time to write, a sonar needs time to measure (CHOICE).
-PATIENCE_CYCLES: Final = 20 * CYCLES_PER_MS
+TIMEOUT_CYCLES: Final = 20 * CYCLES_PER_MS
 SLEEP_CYCLES: Final = 100 * CYCLES_PER_MS
 FOREVER: Final = 0xFFFF
 #: Report when this many pends in a row got no message.
 SILENCES: Final = 2
 
 
-class Waits:
+class TimeoutWatch:
     """Listens to pends and sleeps."""
 
     def __init__(
-        self, threads: ThreadWatch, spots: StatementSpots, names: HandleNames, findings: Findings, gates: Gates,
+        self, threads: ThreadWatch, locator: StatementLocator, names: HandleNames, findings: Findings, gates: Gates,
         calls: Calls, linked: Linked,
     ) -> None:  # fmt: skip
-        self._threads, self._spots, self._names, self._findings = threads, spots, names, findings
+        self._threads, self._locator, self._names, self._findings = threads, locator, names, findings
         self._gates, self._clock, self._linked = gates, findings.clock, linked
         self._began: dict[Thread, int] = {}
         #: The kernel objects that interrupts have posted, and those that other threads have posted.
         self._by_interrupt: set[Any] = set()
         self._by_others: set[Any] = set()
         #: Statement -> how many of its pends in a row got no message, since the last that got one.
-        self._silences: dict[Spot, int] = {}
-        self._unlooked: set[tuple[str, int]] | None = None
-        calls.before("Semaphore_post", "Event_post", "Mailbox_post", tell=self._posting)
+        self._silences: dict[StatementNumber, int] = {}
+        self._ignored: set[tuple[str, int]] | None = None
+        calls.before("Semaphore_post", "Event_post", "Mailbox_post", callback=self._posting)
         for name in ("Semaphore_pend", "Event_pend", "Mailbox_pend", "Mailbox_post"):
-            calls.before(name, tell=self._begins)
-            calls.after(name, tell=partial(self._ended, name))
-        calls.before("Task_sleep", tell=self._begins)
-        calls.after("Task_sleep", tell=self._slept)
-        calls.after("Mailbox_pend", tell=self._message)
+            calls.before(name, callback=self._begins)
+            calls.after(name, callback=partial(self._ended, name))
+        calls.before("Task_sleep", callback=self._begins)
+        calls.after("Task_sleep", callback=self._slept)
+        calls.after("Mailbox_pend", callback=self._message)
 
     def _posting(self, what: Any, *_arguments: Any) -> None:
         in_interrupt = self._threads.kernel.core.thread_type == HWI
@@ -71,36 +71,36 @@ class Waits:
         # A semaphore that nobody has posted yet may be one that an interrupt posts.
         unknown = function == "Semaphore_pend" and what not in self._by_others
         if timeout and timeout != FOREVER and not result and what not in self._by_interrupt and not unknown:
-            self._held(f"{function}({self._names.of(what)}), which times out", PATIENCE_CYCLES)
+            self._check_gates(f"{function}({self._names.of(what)}), which times out", TIMEOUT_CYCLES)
 
     def _slept(self, _result: None, ticks: int) -> None:
-        self._held(f"Task_sleep({ticks})", SLEEP_CYCLES)
+        self._check_gates(f"Task_sleep({ticks})", SLEEP_CYCLES)
 
-    def _held(self, waits: str, patience_cycles: int) -> None:
+    def _check_gates(self, waits: str, limit_cycles: int) -> None:
         """A wait has ended by time alone.  Report tasks that waited too long at a gate that the task held meanwhile."""
         thread = self._threads.current
         began = self._began.get(thread, self._clock.now)
         for gate in thread.entered if self._gates.anybody_waits else ():
             for other, since in self._gates.waiting(gate):
                 stood = self._clock.now - max(since, began)
-                if stood > patience_cycles and other is not thread:
+                if stood > limit_cycles and other is not thread:
                     name = self._names.of(gate)
                     self._findings.report(
                         "gate-across-wait",
                         f"{thread} holds {name} during {waits}: {other} was blocked at it for {ms(stood):.0f} ms",
                         object=name, value=round(ms(stood), 3),
-                        details=(f"{other} waits in {self._spots.text(self._gates.spot(other))}",),
+                        details=(f"{other} waits in {self._locator.text(self._gates.statement(other))}",),
                     )  # fmt: skip
 
     def _message(self, taken: int, mailbox: Mailbox, message: Any, timeout: int) -> None:
         """A pend on a mailbox has returned, with a message or with none."""
-        spot = self._spots.here()
+        statement = self._locator.here()
         if taken:
-            self._silences[spot] = 0
-        elif timeout and timeout != FOREVER and spot in self._silences:
-            self._silences[spot] += 1
-            place = self._spots.place(spot)
-            if self._silences[spot] == SILENCES and place is not None and place[:2] in self._not_looked_at():
+            self._silences[statement] = 0
+        elif timeout and timeout != FOREVER and statement in self._silences:
+            self._silences[statement] += 1
+            place = self._locator.place(statement)
+            if self._silences[statement] == SILENCES and place is not None and place[:2] in self._ignored_pends():
                 name = self._names.of(mailbox)
                 self._findings.report(
                     "timeout-ignored",
@@ -108,15 +108,15 @@ class Waits:
                     "follows uses the last message again", object=name,
                 )  # fmt: skip
 
-    def _not_looked_at(self) -> set[tuple[str, int]]:
+    def _ignored_pends(self) -> set[tuple[str, int]]:
         """File and line of the pends on a mailbox whose result the program does not use."""
-        if self._unlooked is None:
+        if self._ignored is None:
             modules = self._linked.program.modules.values()
-            self._unlooked = {at for module in modules for f in module.functions for at in _left(f)}
-        return self._unlooked
+            self._ignored = {at for module in modules for f in module.functions for at in _ignored_results(f)}
+        return self._ignored
 
 
-def _left(f: Function) -> Iterator[tuple[str, int]]:
+def _ignored_results(f: Function) -> Iterator[tuple[str, int]]:
     for s in statements(f.body):
         if isinstance(s, Evaluate) and isinstance(s.value, Call) and s.value.function.name == "Mailbox_pend":
             yield s.where.file, s.where.line

@@ -17,15 +17,15 @@ _UTO: Final = QFLG.UTO.mask
 _UNIT_RUNS: Final = QEPCTL.UTE.mask | QEPCTL.QPEN.mask
 
 
-class EQepDoubts:
+class EQepChecks:
     """The findings of one module."""
 
-    __slots__ = ("_cpu", "_held", "_quadrature", "_regs", "_seen", "_stale", "_unserved")
+    __slots__ = ("_cpu", "_on_blocked", "_quadrature", "_regs", "_seen", "_stale", "_unserved")
 
     def __init__(
-        self, cpu: Cpu, regs: EQepRegs, quadrature: QuadratureWire, held: Callable[[], bool] = lambda: False
+        self, cpu: Cpu, regs: EQepRegs, quadrature: QuadratureWire, on_blocked: Callable[[], bool] = lambda: False
     ) -> None:
-        self._cpu, self._regs, self._quadrature, self._held = cpu, regs, quadrature, held
+        self._cpu, self._regs, self._quadrature, self._on_blocked = cpu, regs, quadrature, on_blocked
         self.cleared(_INT | _UTO)
 
     def cleared(self, flags: int) -> None:
@@ -93,10 +93,10 @@ class EQepDoubts:
     def event(self, flags: int) -> None:
         """Events of `flags`, enabled in QEINT, occurred while QFLG.INT was set.
 
-        The second in a row is reported, unless `held()` has reported the routine that left the flag.
+        The second in a row is reported, unless `on_blocked()` has reported the routine that left the flag.
         """
         self._unserved += 1
-        if self._unserved > 1 and not self._held():
+        if self._unserved > 1 and not self._on_blocked():
             path = f"{self._regs.name}.QFLG.INT"
             self._cpu.findings.report(
                 "flag-not-cleared",

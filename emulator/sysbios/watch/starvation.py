@@ -16,7 +16,7 @@ from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, ms, us
 from emulator.sysbios.scheduler import READY, Task
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.releases import Releases
-from emulator.sysbios.watch.spots import Call, Spot, StatementSpots
+from emulator.sysbios.watch.statements import Call, StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import Thread, ThreadWatch
 from emulator.trace import Trace
 
@@ -31,11 +31,11 @@ _SAMPLES: Final = 10_000
 _TICK: Final = "Clock_tick"
 
 #: Thread, statement, and what it does there: "poll", "delay" or "" (it computes).
-Sample = tuple[Thread, Spot, str]
+Sample = tuple[Thread, StatementNumber, str]
 
 
 @dataclass(slots=True)
-class Waiting:
+class ReadyTask:
     """A task that is ready and does not run."""
 
     since: int
@@ -44,7 +44,7 @@ class Waiting:
 
 
 @dataclass(slots=True)
-class Busy:
+class BusyWait:
     """A busy wait that several ticks in a row found at the same statement."""
 
     call: Call | None
@@ -55,28 +55,28 @@ class Busy:
     finding: Finding | None = None
 
 
-class Patience:
+class StarvationWatch:
     """Listens to the scheduler and samples at the tick."""
 
     def __init__(
-        self, threads: ThreadWatch, spots: StatementSpots, findings: Findings, releases: Releases, calls: Calls,
+        self, threads: ThreadWatch, locator: StatementLocator, findings: Findings, releases: Releases, calls: Calls,
         starved_cycles: int = STARVED_CYCLES,
     ) -> None:  # fmt: skip
         self._threads = threads
-        self._spots = spots
+        self._locator = locator
         self._findings = findings
         self._clock = findings.clock
         self._releases = releases
         self._starved_cycles = starved_cycles
-        self._waiting: dict[Thread, Waiting] = {}
+        self._waiting: dict[Thread, ReadyTask] = {}
         self._running: Thread | None = None
         self._samples: deque[tuple[int, Sample]] = deque(maxlen=_SAMPLES)
-        self._busy: Busy | None = None
+        self._busy: BusyWait | None = None
         #: Thread -> microseconds that it waits in DelayUs now; the number of calls of DelayUs so far.
         self._delays: dict[Thread, float] = {}
         self._calls = 0
-        calls.before("DelayUs", "DELAY_US", tell=self._delay)
-        calls.after("DelayUs", "DELAY_US", tell=self._delayed)
+        calls.before("DelayUs", "DELAY_US", callback=self._delay)
+        calls.after("DelayUs", "DELAY_US", callback=self._delayed)
 
     def listen(self, trace: Trace) -> None:
         """Listen to the scheduler and to the tick."""
@@ -88,7 +88,7 @@ class Patience:
     def _readied(self, cycles: int, _kind: str, name: str) -> None:
         thread = self._threads.named(name)
         if thread is not None and thread.level > 0:
-            self._waiting[thread] = Waiting(cycles, self._threads.usage())
+            self._waiting[thread] = ReadyTask(cycles, self._threads.usage())
 
     def _idle(self, _ticks: int, _interrupt_cycles: int, _swi_cycles: int) -> None:
         """Ticks have passed in which only the idle task ran: no busy wait goes on."""
@@ -106,7 +106,7 @@ class Patience:
     def _switched(self, cycles: int, _kind: str, _name: str) -> None:
         old, new = self._running, self._threads.current
         if old is not None and old.level > 0 and isinstance(old.what, Task) and old.what.mode == READY:
-            self._waiting[old] = Waiting(cycles, self._threads.usage())
+            self._waiting[old] = ReadyTask(cycles, self._threads.usage())
         self._running = new
         waiting = self._waiting.pop(new, None)
         if waiting is not None:
@@ -115,32 +115,32 @@ class Patience:
     # Sampling
 
     def _tick(self, cycles: int) -> None:
-        found = self._spots.sample()
+        found = self._locator.sample()
         thread = self._threads.interrupted
         if found is None:
             self._busy = None
         else:
-            spot, polls, call = found
-            sample = (thread, spot, "poll" if polls else "delay" if thread in self._delays else "")
+            statement, polls, call = found
+            sample = (thread, statement, "poll" if polls else "delay" if thread in self._delays else "")
             self._samples.append((cycles, sample))
-            self._spent(cycles, sample, call)
+            self._sample_statement(cycles, sample, call)
         for waiting_thread, waiting in self._waiting.items():
             if waiting.finding is None:
                 self._judge(waiting_thread, waiting, cycles)
 
-    def _spent(self, cycles: int, sample: Sample, call: Call | None) -> None:
+    def _sample_statement(self, cycles: int, sample: Sample, call: Call | None) -> None:
         """A tick has found this statement.  Report a busy wait that has lasted long enough and keeps a task waiting."""
-        thread, spot, kind = sample
+        thread, statement, kind = sample
         busy = self._busy
         if busy is None or busy.call is not call or busy.sample != sample or busy.delay != self._calls:
-            self._busy = Busy(call, sample, self._calls, cycles) if kind else None
+            self._busy = BusyWait(call, sample, self._calls, cycles) if kind else None
             return
         lasted = cycles - busy.since
         tick = self._threads.kernel.clocks.tick_period_us * CYCLES_PER_US
         lower = self._threads.ready_below(thread.level)
         if lasted < BUSY_TICKS * tick or not lower:
             return
-        place = self._spots.place(spot)
+        place = self._locator.place(statement)
         if place is None:
             return
         what = f"DelayUs({self._delays[thread]:g})" if kind == "delay" and thread in self._delays else "a polling loop"
@@ -168,7 +168,7 @@ class Patience:
 
     # Starvation
 
-    def _judge(self, thread: Thread, waiting: Waiting, now: int) -> None:
+    def _judge(self, thread: Thread, waiting: ReadyTask, now: int) -> None:
         waited = now - waiting.since
         limit = self._releases.period(thread) or self._starved_cycles
         if waited <= limit:
@@ -177,8 +177,8 @@ class Patience:
         used = [(t, cycles) for t, cycles in self._threads.used_since(waiting.usage) if t is not thread]
         if blamed is None or not used:
             return
-        (culprit, spot, kind), ticks = blamed
-        place = self._spots.place(spot)
+        (culprit, statement, kind), ticks = blamed
+        place = self._locator.place(statement)
         if place is None:
             return
         doing = {"delay": "was in DelayUs", "poll": "polled", "": "computed"}[kind]

@@ -22,7 +22,7 @@ _SKIPPED: Final = re.compile(
 _HEAD: Final = re.compile(r"\b(\w++)\s*+\([^(){};]*+(?:\([^(){};]*+\)[^(){};]*+)*+\)\s*+$")
 
 
-class Beside:
+class NeighbourFiles:
     """The C files of some folders, by the functions that they define.  They are read at the first request."""
 
     def __init__(self, folders: Iterable[str | Path]) -> None:

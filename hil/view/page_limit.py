@@ -30,7 +30,7 @@ _TOO_MANY: Final = f"""<!doctype html>
 """
 
 
-class Crowd:
+class PageLimit:
     """Builds a page by `build` where there is room for it.  Made in the process that serves.
 
     A page counts while a browser is connected to it, or may still be loading it.  A browser that left may come back for

@@ -35,7 +35,7 @@ class Region(NamedTuple):
         return self.base <= address < self.base + self.words
 
 
-class TransferDoubts:
+class TransferChecks:
     """The findings of one channel.  `region(address)` is the object there, None: there is none."""
 
     __slots__ = ("_causes", "_findings", "_mode", "_path", "_region", "_regions", "_registers", "moving", "used")

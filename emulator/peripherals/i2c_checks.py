@@ -29,7 +29,7 @@ _DATA_INTERRUPTS: Final = I2CIER.XRDY.mask | I2CIER.RRDY.mask
 _FIFO_MODE: Final = I2CFFTX.I2CFFEN.mask
 
 
-class I2cDoubts:
+class I2cChecks:
     """Findings of one module."""
 
     __slots__ = (
