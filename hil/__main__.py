@@ -10,9 +10,9 @@ from hil import ending
 def main() -> None:
     """Entry point of ``hil`` and ``python -m hil``."""
     ending.leaves()
-    from hil.collector import look_rarely
+    from hil.collector import collect_rarely
 
-    look_rarely()
+    collect_rarely()
     from hil.cli import invoke
     from hil.cli.commands import import_chosen
 

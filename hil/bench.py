@@ -109,7 +109,7 @@ class Bench(RunningBoard):
     def _sent(self, frame: SerialFrame) -> None:
         super()._sent(frame)
         self._frames.add(frame.data & 0xFF, seconds(self.clock.now))
-        if frame.data == 0x0D and self._tells("ROBOT_Odometry_T"):
+        if frame.data == 0x0D and self._has_objects("ROBOT_Odometry_T"):
             believed = self.firmware.servidores.ROBOT_Odometry_T
             # The firmware's X and Y are millimetres; its angle is in radians.
             self.odometry.add(seconds(self.clock.now), believed.X / 1000.0, believed.Y / 1000.0, believed.tita)
@@ -149,7 +149,7 @@ class Bench(RunningBoard):
         """The world's round obstacles as (x, y, radius) in metres."""
         return [(post.x_m, post.y_m, post.radius_m) for post in self.world.posts]
 
-    def _tells(self, *names: str) -> bool:
+    def _has_objects(self, *names: str) -> bool:
         """Whether servidores.c has these objects: one of somebody else's may keep the robot's state elsewhere."""
         return all(hasattr(self.firmware.servidores, name) for name in names)
 
@@ -160,9 +160,9 @@ class Bench(RunningBoard):
         state, distances = "unknown", (nan, nan, nan)
         if not self.board.kernel.started:
             state = START_UP
-        elif self._tells("ROBOT_Status"):
+        elif self._has_objects("ROBOT_Status"):
             state = self.firmware.robot_types.STATUS.name(servers.ROBOT_Status)
-        if self._tells("ROBOT_df", "ROBOT_dr", "ROBOT_dl"):
+        if self._has_objects("ROBOT_df", "ROBOT_dr", "ROBOT_dl"):
             distances = (servers.ROBOT_df, servers.ROBOT_dr, servers.ROBOT_dl)
         return Status(
             seconds(self.clock.now), state, pose.x_m, pose.y_m, pose.heading_rad, distances, len(self.findings)

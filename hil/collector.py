@@ -9,12 +9,12 @@ from typing import Final
 
 #: How many objects are made before the collector looks at them.  A chip has 80,000, and all of them live as long as it:
 #: at Python's 700 a check of driver files, which makes an image for each circumstance, spends half of its time there.
-OBJECTS_BETWEEN_LOOKS: Final = 100_000
+OBJECTS_BETWEEN_COLLECTIONS: Final = 100_000
 
 
-def look_rarely() -> None:
+def collect_rarely() -> None:
     """For a process that makes chips: collect less often."""
-    gc.set_threshold(OBJECTS_BETWEEN_LOOKS, *gc.get_threshold()[1:])
+    gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS, *gc.get_threshold()[1:])
 
 
 @contextmanager

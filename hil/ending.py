@@ -20,12 +20,12 @@ SIGNALS: Final = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "
 #: What a shell gives for a command that Ctrl-C ended.
 EXIT_INTERRUPTED: Final = 130
 #: Wrappers that forward Ctrl-C to a group deliver it twice; a second one later than this means it.
-IMPATIENCE_S: Final = 1.0
+REPEAT_S: Final = 1.0
 #: Processor time that an interrupted command may still take.  Python drops an exception in places (a finaliser).
 DEADLINE_S: Final = 1.0
 
 
-def meant() -> tuple[int, ...]:
+def ending_signals() -> tuple[int, ...]:
     """What ends a command here.
 
     The end of the terminal does not, where nohup had it ignored.  Ctrl-C always does: a shell's `&` in a script ignores
@@ -46,7 +46,7 @@ def interrupts() -> None:
 
     def interrupt(_number: int, _frame: FrameType | None) -> None:
         now = time.monotonic()
-        if heard and now - heard[-1] < IMPATIENCE_S:
+        if heard and now - heard[-1] < REPEAT_S:
             return
         heard.append(now)
         if hasattr(signal, "setitimer"):
@@ -66,7 +66,7 @@ def ignored() -> None:
 
 
 def _handle(handler: signal._HANDLER) -> None:
-    for number in meant():
+    for number in ending_signals():
         signal.signal(number, handler)
 
 

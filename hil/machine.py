@@ -26,7 +26,7 @@ START_UP: Final = "start-up"
 
 
 #: How the sentence about an error of this tool begins.
-FAULT_OF_OURS: Final = "an error of this tool"
+INTERNAL_ERROR: Final = "an error of this tool"
 FAULT_OF_THE_BOARD: Final = "an error of the board"
 
 
@@ -36,7 +36,7 @@ class FirmwareStopped(Exception):
     """
 
 
-def fault_of_ours(error: Exception, board_file: str = "") -> str:
+def internal_error(error: Exception, board_file: str = "") -> str:
     """What a report says where this tool itself failed while firmware ran: what was found before is told all the same.
 
     An error behind a line of `board_file` is that board's, whose file a user wrote.  With `HIL_TRACEBACK` in the
@@ -49,7 +49,7 @@ def fault_of_ours(error: Exception, board_file: str = "") -> str:
     where = (of_board or frames)[-1:]
     at = f" in {Path(where[0].filename).name}:{where[0].lineno}" if where else ""
     what = f"{type(error).__name__}: {error}"
-    whose = FAULT_OF_THE_BOARD if of_board else FAULT_OF_OURS
+    whose = FAULT_OF_THE_BOARD if of_board else INTERNAL_ERROR
     return f"{whose}{at}, not of the firmware: {what}; HIL_TRACEBACK=1 shows it whole"
 
 

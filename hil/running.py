@@ -31,7 +31,7 @@ from emulator.sysbios.statistics import TaskStatistics
 from hil.board import Board, load, made, optional, source_of
 from hil.collector import uncollected
 from hil.faces import FaceSetting, parse_all
-from hil.machine import CpuUse, FirmwareStopped, Setup, TaskTimes, fault_of_ours
+from hil.machine import CpuUse, FirmwareStopped, Setup, TaskTimes, internal_error
 
 if TYPE_CHECKING:
     from hil.faults import MountedFault
@@ -174,7 +174,7 @@ class RunningBoard:
             who = "; ".join(getattr(error, "__notes__", []))
             if not who:
                 raise
-            raise FirmwareStopped(f"{fault_of_ours(error, source_of(type(self.board)))} ({who})") from error
+            raise FirmwareStopped(f"{internal_error(error, source_of(type(self.board)))} ({who})") from error
 
     # The faces of its parts
 

@@ -10,9 +10,9 @@ import os
 import pytest
 from hypothesis import HealthCheck, settings
 
-from hil.collector import look_rarely
+from hil.collector import collect_rarely
 
-look_rarely()
+collect_rarely()
 
 #: Runs of pytest within a test, for the plugin of this project.
 pytest_plugins = ["pytester"]

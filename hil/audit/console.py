@@ -51,7 +51,7 @@ def _shown(script: Script, look: Callable[[Bench, Desk], Evidence], fixes: Fixes
         return look(bench, run_console(bench, script, corrected))
 
 
-def way(bench: Bench, duration_s: float) -> float:
+def distance(bench: Bench, duration_s: float) -> float:
     """How far the robot goes (m) in the next seconds, without an order."""
     bench.world.sync_now()
     before = bench.world.travelled_m
@@ -70,7 +70,7 @@ def speed(bench: Bench) -> Series:
 def _still_drives(what: str, bench: Bench, _desk: Desk) -> Evidence:
     """A second later, for two seconds."""
     bench.run_for(1.0)
-    evidence = measured(f"way in 2 s, a second after {what}", way(bench, 2.0), "m", high=STANDS_M)
+    evidence = measured(f"way in 2 s, a second after {what}", distance(bench, 2.0), "m", high=STANDS_M)
     return evidence.shown(Picture("The robot's true speed", "time in s", "speed in m/s", [speed(bench)]))
 
 
@@ -130,7 +130,7 @@ def _named_file(_bench: Bench, desk: Desk) -> Evidence:
     return measured("lines of a drive in the file that the configuration names", lines, low=2)
 
 
-def _kept(first_s: float, last_s: float, _bench: Bench, desk: Desk) -> Evidence:
+def _frame_share(first_s: float, last_s: float, _bench: Bench, desk: Desk) -> Evidence:
     sent = [frame for time_s, frame in _frames(desk) if first_s < time_s < last_s]
     texts = [text for name, text in desk.files.items() if name.startswith(DRIVE_FILE)]
     kept = sum(any(f"\n{frame.x_mm},{frame.y_mm}," in text for text in texts) for frame in sent)
@@ -143,7 +143,7 @@ def _legend(_bench: Bench, desk: Desk) -> Evidence:
 
 
 def _obeys_set(bench: Bench, _desk: Desk) -> Evidence:
-    return measured("way in 2 s, after SET with 0.1 m/s during TELE", way(bench, 2.0), "m", low=0.15, high=0.25)
+    return measured("way in 2 s, after SET with 0.1 m/s during TELE", distance(bench, 2.0), "m", low=0.15, high=0.25)
 
 
 def _highest_speed(_bench: Bench, desk: Desk) -> Evidence:
@@ -193,7 +193,8 @@ DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "CONS-archive-unused": partial(_shown, Script(6.0, ((READY_S, "MISION"),), archive="pasillo.txt"), _named_file),
     "CONS-drive-erased": partial(
         _shown,
-        Script(13.0, ((READY_S, "MISION"), (10.0, "MISION")), (PressedKey("esc", 8.0, 8.5),)), partial(_kept, 4.5, 7.5),
+        Script(13.0, ((READY_S, "MISION"), (10.0, "MISION")), (PressedKey("esc", 8.0, 8.5),)),
+        partial(_frame_share, 4.5, 7.5),
     ),
     "CONS-legend-grows": partial(_shown, Script(7.0, ((READY_S, "MISION"),)), _legend),
     "CONS-set-in-tele": partial(

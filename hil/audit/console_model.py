@@ -63,7 +63,7 @@ class ConsoleModel:
         there = bool(desk.read())
         if there:
             desk.wait(2.0)
-        self.says(there)
+        self.robot_label(there)
         while True:
             self.update()
 
@@ -71,14 +71,14 @@ class ConsoleModel:
         """Whether this entry's correction is in."""
         return name in self.corrected
 
-    def says(self, there: bool) -> None:
+    def robot_label(self, there: bool) -> None:
         """The label about the robot."""
         self.desk.label = "Robot Conectado" if there else "Robot No Conectado"
 
     def update(self) -> None:
         """A look at the window."""
         if self.fixed("CONS-connected-once"):
-            self.says(self.desk.now_s - self.desk.heard_s < GONE_S)
+            self.robot_label(self.desk.now_s - self.desk.heard_s < GONE_S)
         self.desk.update()
 
     def sleep(self, duration_s: float) -> None:

@@ -18,7 +18,7 @@ PRESSED, FREE = 0, 1
 PERIOD_S: Final = 0.05
 
 
-def way_in_spite_of(fixes: Fixes, fault: str, within_s: float, *, orders: bytes = b"#MISN\r") -> float:
+def distance_despite(fixes: Fixes, fault: str, within_s: float, *, orders: bytes = b"#MISN\r") -> float:
     """How far the wheels roll in the second that begins `within_s` after a fault (m); the robot drives by then."""
     with robot(fixes, watch=False, static=False) as bench:
         bench.run_for(0.8)
@@ -42,8 +42,8 @@ _STANDS_M: Final = 0.005
 def watchdog(fixes: Fixes) -> Evidence:
     """TaskNAVIGATION hangs for ten seconds: it may be three periods late, the reset comes 105 ms later, and the wheels
     coast for some 0.3 s."""
-    way = way_in_spite_of(fixes, "task-slow:task=TaskNAVIGATION,us=1e7", 0.9)
-    return measured("way in a second, 0.9 s after TaskNAVIGATION hangs", way, "m", high=_STANDS_M)
+    distance_m = distance_despite(fixes, "task-slow:task=TaskNAVIGATION,us=1e7", 0.9)
+    return measured("way in a second, 0.9 s after TaskNAVIGATION hangs", distance_m, "m", high=_STANDS_M)
 
 
 def distance_unchecked(fixes: Fixes) -> Evidence:
@@ -62,20 +62,20 @@ def distance_unchecked(fixes: Fixes) -> Evidence:
 
 def front_stuck(fixes: Fixes) -> Evidence:
     """The front sonar says 2 m, whatever stands there: 25 cm at 0.15 m/s are 1.7 s."""
-    way = way_in_spite_of(fixes, "sonar-stuck:sensor=FRONT,range=2", 2.5)
-    return measured("way in a second, 2.5 s after the front sonar is stuck", way, "m", high=_STANDS_M)
+    distance_m = distance_despite(fixes, "sonar-stuck:sensor=FRONT,range=2", 2.5)
+    return measured("way in a second, 2.5 s after the front sonar is stuck", distance_m, "m", high=_STANDS_M)
 
 
 def link_silent(fixes: Fixes) -> Evidence:
     """SETR, and nothing more: 3 s later."""
-    way = way_in_spite_of(fixes, "", 2.0, orders=b"#TELE\r#SETR0.1,0.0\r")
-    return measured("way in a second, 3 s after the last order", way, "m", high=_STANDS_M)
+    distance_m = distance_despite(fixes, "", 2.0, orders=b"#TELE\r#SETR0.1,0.0\r")
+    return measured("way in a second, 3 s after the last order", distance_m, "m", high=_STANDS_M)
 
 
 def turn_unchecked(fixes: Fixes) -> Evidence:
     """The gyro is at the end of its range, 250 degrees/s; a difference of 0.4 rad/s is to be seen within 0.5 s."""
-    way = way_in_spite_of(fixes, "gyro-saturation:sign=+", 0.5)
-    return measured("way in a second, 0.5 s after the gyro is at its end", way, "m", high=_STANDS_M)
+    distance_m = distance_despite(fixes, "gyro-saturation:sign=+", 0.5)
+    return measured("way in a second, 0.5 s after the gyro is at its end", distance_m, "m", high=_STANDS_M)
 
 
 def actuator_limits(fixes: Fixes) -> Evidence:
@@ -88,8 +88,8 @@ def actuator_limits(fixes: Fixes) -> Evidence:
 
 def wheel_unchecked(fixes: Fixes) -> Evidence:
     """The left wheel is held; 0.4 s, a period of TaskNAVIGATION and one of TaskSERVO later the right one stands too."""
-    way = way_in_spite_of(fixes, "wheel-blocked:side=left", 0.7)
-    return measured("way of a wheel in a second, 0.7 s after the other is held", way, "m", high=_STANDS_M)
+    distance_m = distance_despite(fixes, "wheel-blocked:side=left", 0.7)
+    return measured("way of a wheel in a second, 0.7 s after the other is held", distance_m, "m", high=_STANDS_M)
 
 
 def _slanted() -> WorldMap:
@@ -113,8 +113,8 @@ def push_unnoticed(fixes: Fixes) -> Evidence:
         before = bench.world.travelled_m
         bench.run_for(5.0)
         bench.world.sync_now()
-        way = bench.world.travelled_m - before
-    return measured("way of a mission in 5 s, 7 s after it began towards a slanted wall", way, "m", low=0.1)
+        distance_m = bench.world.travelled_m - before
+    return measured("way of a mission in 5 s, 7 s after it began towards a slanted wall", distance_m, "m", low=0.1)
 
 
 def bumper_stuck(fixes: Fixes) -> Evidence:
@@ -122,11 +122,11 @@ def bumper_stuck(fixes: Fixes) -> Evidence:
     rig = TaskRig(fixes)
     main = rig.fw.main_robot
     main.bumper, main.df, main.dl, main.dr = PRESSED, 300.0, 100.0, 100.0
-    way = 0.0
+    distance_m = 0.0
     for _ in range(240):
         main.MISION_4()
-        way -= min(0.0, float(main.Robot_Reference_N.V)) * PERIOD_S
-    return measured("way backwards in 12 s with the bumper pressed", way, "m", high=0.4)
+        distance_m -= min(0.0, float(main.Robot_Reference_N.V)) * PERIOD_S
+    return measured("way backwards in 12 s with the bumper pressed", distance_m, "m", high=0.4)
 
 
 DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {

@@ -29,7 +29,7 @@ def units_turning(fixes: Fixes) -> Evidence:
     circle = properties.odometry_picture(
         rig, "A circle at 0.3 m/s and 0.5 rad/s", 0.0, [SpeedStep(0.3, 0.5, periods=50)]
     )
-    return properties.odometry_way(rig, 0.0, SpeedStep(0.3, 0.5)).shown(circle)
+    return properties.odometry_distance(rig, 0.0, SpeedStep(0.3, 0.5)).shown(circle)
 
 
 def angle_factor(fixes: Fixes) -> Evidence:

@@ -202,7 +202,7 @@ def odometry_heading(rig: Rig, heading_rad: float, drives: Sequence[SpeedStep]) 
     return measured("error of the heading", error, "degrees", low=-0.1, high=0.1)
 
 
-def odometry_way(rig: Rig, heading_rad: float, drive: SpeedStep) -> Evidence:
+def odometry_distance(rig: Rig, heading_rad: float, drive: SpeedStep) -> Evidence:
     """`unit`: one period's way (mm) is V [m/s] times the period [ms], turning or not, but for the chord."""
     run = _Reckoned(rig, heading_rad, [drive._replace(periods=1)])
     bound = EXACT_MM + run.way_mm * _chord_share([drive])

@@ -157,7 +157,7 @@ def stop_is_neutral(bench: Bench, orders: Sequence[bytes], after_s: float) -> Ev
     return measured(f"drive of a motor after {b''.join(orders)!r} and STOP", greatest, high=0.0)
 
 
-def stop_way(bench: Bench, orders: Sequence[bytes], after_s: float) -> Evidence:
+def stopping_distance(bench: Bench, orders: Sequence[bytes], after_s: float) -> Evidence:
     """`stop-stops`: STOP, `after_s` behind any orders, has the robot at rest within 5 cm (m): 0.3 m/s (TFG 3.2.3) for
     the 82 ms until the wheels are told and for the 85 ms of the motor's time constant."""
     _driving(bench, orders, after_s)

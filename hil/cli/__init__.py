@@ -19,7 +19,7 @@ import typer
 from emulator import compiled
 from hil.cli import show
 from hil.cli.commands import Group
-from hil.cli.show import EXIT_BAD_INPUT, EXIT_DEFECT, EXIT_FAILED, UserError, complain
+from hil.cli.show import EXIT_BAD_INPUT, EXIT_DEFECT, EXIT_FAILED, UserError, print_error
 from hil.ending import EXIT_INTERRUPTED
 from hil.machine import FirmwareStopped
 
@@ -66,16 +66,16 @@ def invoke(arguments: list[str] | None = None) -> int:
         text = str(getattr(error, "format_message", error.__str__)())
         # Without a subcommand the help has been printed already.
         if type(error).__name__ != "NoArgsIsHelpError":
-            complain(f"{text} (see hil --help)")
+            print_error(f"{text} (see hil --help)")
         return EXIT_BAD_INPUT
     except UserError as error:
-        complain(str(error))
+        print_error(str(error))
         return EXIT_BAD_INPUT
     except FirmwareStopped as error:
-        complain(f"the firmware stopped: {error}")
+        print_error(f"the firmware stopped: {error}")
         return EXIT_FAILED
     except (typer.Abort, KeyboardInterrupt):
-        complain("interrupted")
+        print_error("interrupted")
         return EXIT_INTERRUPTED
     except BrokenPipeError:
         # The reader of our output is gone; nothing is left to say, and Python must not try at exit.
@@ -83,15 +83,15 @@ def invoke(arguments: list[str] | None = None) -> int:
         return 1
     except Exception as error:
         if isinstance(error.__cause__, KeyboardInterrupt):  # in a `__set_name__`, before Python 3.12
-            complain("interrupted")
+            print_error("interrupted")
             return EXIT_INTERRUPTED
         if os.environ.get("HIL_TRACEBACK"):
             raise
         if isinstance(error, OSError) and show.of_standard_output(error):
-            complain(f"standard output: {error.strerror}")
+            print_error(f"standard output: {error.strerror}")
             return EXIT_BAD_INPUT
-        complain(show.defect(error, sys.argv[1:] if arguments is None else arguments))
+        print_error(show.defect(error, sys.argv[1:] if arguments is None else arguments))
         return EXIT_DEFECT
     if status == EXIT_INTERRUPTED:
-        complain("interrupted")
+        print_error("interrupted")
     return int(status) if isinstance(status, int) else 0

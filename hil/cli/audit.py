@@ -119,9 +119,9 @@ def audit(
         _print_table(outcomes)
     for outcome in outcomes:
         if outcome.error:
-            show.say(f"{outcome.id}: {outcome.error}", to_stderr=True)
+            show.print_line(f"{outcome.id}: {outcome.error}", to_stderr=True)
     if interrupted:
-        show.say(f"{len(names) - len(outcomes)} of {len(names)} entries were not looked at", to_stderr=True)
+        show.print_line(f"{len(names) - len(outcomes)} of {len(names)} entries were not looked at", to_stderr=True)
         raise typer.Exit(EXIT_INTERRUPTED)
     if not all(outcome.shown for outcome in outcomes):
         raise typer.Exit(show.EXIT_FAILED)
@@ -184,7 +184,7 @@ def _print_list(names: list[str], *, json_output: bool) -> None:
     for d in defects:
         section = "" if d.section in d.where else f"  {d.section}"
         depends = f"  depends on {d.depends_on}" if d.depends_on else ""
-        show.say(f"{d.id}  {d.where}{section}  {d.severity.value}{depends}")
+        show.print_line(f"{d.id}  {d.where}{section}  {d.severity.value}{depends}")
 
 
 def _print_table(outcomes: list[DemonstrationOutcome]) -> None:

@@ -61,12 +61,12 @@ def campaign(
         with bar:
             task = bar.add_task("all held", total=runs)
 
-            def told(failed: FailedRun | None) -> None:
+            def on_run(failed: FailedRun | None) -> None:
                 nonlocal done, wrong
                 done, wrong = done + 1, wrong + (failed is not None)
                 bar.update(task, completed=done, description=f"{wrong} failed" if wrong else "all held")
 
-            found = run(runs, seed=seed, jobs=jobs, faithful=faithful, told=told)
+            found = run(runs, seed=seed, jobs=jobs, faithful=faithful, on_run=on_run)
         files: dict[int, Path] = {}
         unwritten: list[OSError] = []
         for failed in found.failed if keep is not None else ():
@@ -89,8 +89,8 @@ def campaign(
             show.print_report(found.report)
             for one in found.failed:
                 where = f", {files[one.number]}" if one.number in files else ""
-                show.say(f"run {one.number}{where}: {'; '.join(one.broken)}")
-            show.say(f"{found.runs - len(found.failed)} of {found.runs} runs held, seed {seed}")
+                show.print_line(f"run {one.number}{where}: {'; '.join(one.broken)}")
+            show.print_line(f"{found.runs - len(found.failed)} of {found.runs} runs held, seed {seed}")
         if unwritten:
             more = f" (and {len(unwritten) - 1} more)" if len(unwritten) > 1 else ""
             raise ValueError(f"{unwritten[0].filename}: {unwritten[0].strerror}{more}")

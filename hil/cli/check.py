@@ -238,8 +238,8 @@ def _report_of_drivers(wanted: DriverFiles, policy: Policy, *, quiet: bool, upda
         task = bar.add_task("translate", total=1.0)
         checked = check_files(wanted, lambda what, part: bar.update(task, description=what, completed=part))
     if update and policy.baseline:
-        weighed = (f for f in checked.findings if policy.weigh(f) is not None and not acceptance(f))
-        known_before = Baseline(tuple(known(weighed)))
+        rated = (f for f in checked.findings if policy.severity_of(f) is not None and not acceptance(f))
+        known_before = Baseline(tuple(known(rated)))
         known_before.write(policy.baseline)
     run = Run(
         ", ".join(file.name for file in wanted.files), virtual_s=checked.ran.virtual_s if checked.ran else 0.0,
@@ -319,16 +319,16 @@ def _print(report: Report, *, details: bool, as_lines: bool, json_output: bool) 
 
     if as_lines:
         for line in as_a_compiler(report):
-            show.say(line)
+            show.print_line(line)
     else:
         print_report(report, show.console(), details=details)
-    if report.run.how_sure and report.tells_times:
-        show.say(report.run.how_sure)
+    if report.run.how_sure and report.has_times:
+        show.print_line(report.run.how_sure)
     for fired in report.run.faults:
-        (show.say if fired.count else show.complain)(f"fault {fired}")
+        (show.print_line if fired.count else show.print_error)(f"fault {fired}")
     if report.run.stopped:
-        show.complain(f"the firmware stopped: {report.run.stopped}")
-    show.say(last_line(report))
+        show.print_error(f"the firmware stopped: {report.run.stopped}")
+    show.print_line(last_line(report))
 
 
 check.__doc__ = f"{check.__doc__}\n\n{EXAMPLES}"

@@ -32,11 +32,11 @@ def compare_tools(*, json_output: bool, markdown: bool) -> None:
         )
         return
     if markdown:
-        show.say(comparison.markdown())
+        show.print_line(comparison.markdown())
     else:
         _print_table(comparison)
     for name, package in missing.items():
-        show.say(f"not installed: {name} (package {package})", to_stderr=markdown)
+        show.print_line(f"not installed: {name} (package {package})", to_stderr=markdown)
 
 
 def _compare(*, quiet: bool) -> VersionComparison:

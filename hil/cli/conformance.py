@@ -88,4 +88,4 @@ def _print(results: list[tuple[Path, FileResult]], passed: int, failed: int, dif
         for path, miss in misses[:differences]:
             shown.add_row(path.name, str(miss.id), miss.field, str(miss.expected), str(miss.actual))
         terminal.print(shown)
-    show.say(f"{passed} passed, {failed} failed")
+    show.print_line(f"{passed} passed, {failed} failed")

@@ -95,7 +95,7 @@ def console(
     else:
         _print(summary)
     if summary["failure"]:
-        show.complain(summary["failure"])
+        show.print_error(summary["failure"])
         raise typer.Exit(show.EXIT_FAILED)
 
 
@@ -108,9 +108,9 @@ def _in_terminal(port: str | None, setup: Setup, *, json_output: bool) -> None:
     if json_output:
         show.print_json(summary.as_dict())
     else:
-        show.say(summary.line)
+        show.print_line(summary.line)
     if summary.failure:
-        show.complain(summary.failure)
+        show.print_error(summary.failure)
         raise typer.Exit(show.EXIT_FAILED)
 
 
@@ -122,10 +122,10 @@ def _in_browser(port: str | None, host: str, number: int) -> None:
 
     with ExitStack() as stack:
         line = serve_console(
-            port, host=host, port=number, say=show.say,
+            port, host=host, port=number, print_line=show.print_line,
             on_stop=lambda stop: stack.enter_context(show.ended_by_signals(stop)),
         )  # fmt: skip
-    show.say(line.log.counts)
+    show.print_line(line.log.counts)
     if line.failure:
         raise PortError(line.failure)
 
@@ -165,7 +165,7 @@ def _play(
             process = stack.enter_context(Process(app, folder, python))
             carrier = Tap(robot, line, wire=wire, tick=StopWhenAppEnds(process))
         stop.ends(process.end)
-        show.say(f"console: {app.path.name}, process {process.pid}, in {folder.path}", to_stderr=quiet)
+        show.print_line(f"console: {app.path.name}, process {process.pid}, in {folder.path}", to_stderr=quiet)
         failure = ""
         try:
             carrier.run()
@@ -192,8 +192,8 @@ def _play(
 
 def _print(summary: dict[str, Any]) -> None:
     port = summary["port"]
-    show.say(
+    show.print_line(
         f"{summary['seconds']:.1f} s: {port['frames_from_robot']} frames, {summary['bytes_from_robot']} bytes from the "
         f"robot ({port['frames_dropped']} frames dropped unread), {summary['bytes_to_robot']} bytes to it"
     )
-    show.say(f"output {summary['output']}" + (f", wire {summary['wire']}" if summary["wire"] else ""))
+    show.print_line(f"output {summary['output']}" + (f", wire {summary['wire']}" if summary["wire"] else ""))

@@ -44,23 +44,25 @@ def demo(
         if has("nicegui") and not terminal:
             from hil.cli.run import view_until_stopped
 
-            say = show.say_and_open if show.wants_page(open_page) else show.say
+            print_line = show.print_and_open if show.wants_page(open_page) else show.print_line
             view_until_stopped(
-                setup, {}, 1.0, [parse_timed_order(MISSION)], lambda machine: None, "127.0.0.1", view_port, say
+                setup, {}, 1.0, [parse_timed_order(MISSION)], lambda machine: None, "127.0.0.1", view_port, print_line
             )
         elif has("textual") and all(stream.isatty() for stream in (sys.stdin, sys.stdout, sys.stderr)):
             from hil.terminal.run import run_terminal
 
             summary = run_terminal(None, setup, machine=show.open_machine, first=("mission",))
-            show.say(summary.line)
-            show.say("hil console drives it; pip install 'c2000-hil[view]' && hil demo shows it in the browser")
+            show.print_line(summary.line)
+            show.print_line("hil console drives it; pip install 'c2000-hil[view]' && hil demo shows it in the browser")
             if summary.failure:
-                show.complain(summary.failure)
+                show.print_error(summary.failure)
                 raise typer.Exit(show.EXIT_FAILED)
         elif has("matplotlib"):
             from hil.cli.run import run
 
-            show.say(f"neither a terminal nor the extra view: {PICTURE_S:.0f} s of a mission, drawn into {PICTURE}")
+            show.print_line(
+                f"neither a terminal nor the extra view: {PICTURE_S:.0f} s of a mission, drawn into {PICTURE}"
+            )
             run(world=world, seed=seed, no_port=True, pace="max", for_s=PICTURE_S, order=[MISSION], plot=PICTURE)
         else:
             raise ValueError("; ".join(map(hint, ("nicegui", "textual", "matplotlib"))))

@@ -63,7 +63,7 @@ def diff(
 
         show.policy()
         for file in own(firmware).left_out:
-            show.say(f"note: {file}: no file of the robot, left out", to_stderr=True)
+            show.print_line(f"note: {file}: no file of the robot, left out", to_stderr=True)
         folders, defines = own_c.read_as(firmware, project, include, define)
         wanted = ComparisonOptions(
             [str(path) for path in firmware], folders, defines, world=world, seed=seed, fill=fill, calls=calls,
@@ -87,18 +87,18 @@ def diff(
 def _print(result: Result, terminal: Console) -> None:
     trees, runs = result.trees, result.runs
     total = len(trees.equal) + len(trees.functions)
-    show.say(f"trees: {len(trees.equal)} of {total} functions are equal")
+    show.print_line(f"trees: {len(trees.equal)} of {total} functions are equal")
     if trees.differences:
         terminal.print(_table(trees.differences, "function"))
     for path, called in result.calls.items():
         told = f"{called.calls} calls of both, {_number(len(called.differences))}"
-        show.say(f"calls: {path}: {f'not called: {called.reason}' if called.reason else told}")
+        show.print_line(f"calls: {path}: {f'not called: {called.reason}' if called.reason else told}")
     observed = [d for called in result.calls.values() for d in called.differences]
     if observed:
         terminal.print(_table(observed, "function"))
     if runs is not None:
         alike = sum(runs.streams.alike.values())
-        show.say(
+        show.print_line(
             f"runs: {runs.seconds:g} s after start-up: {alike} events alike in {len(runs.streams.alike)} streams, "
             f"{_number(len(runs.differences))}"
         )
@@ -107,9 +107,9 @@ def _print(result: Result, terminal: Console) -> None:
         for which, known in (("first", runs.streams.skew.first), ("largest", runs.streams.skew.largest)):
             if known is not None:
                 apart, thread, place = known
-                show.say(f"cycles: {which} skew {apart:+d} ({us(apart):+.3f} us) in {thread}, {place}")
+                show.print_line(f"cycles: {which} skew {apart:+d} ({us(apart):+.3f} us) in {thread}, {place}")
     show.print_report(result.report)
-    show.say(result.verdict)
+    show.print_line(result.verdict)
 
 
 def _number(differences: int) -> str:

@@ -77,4 +77,4 @@ def _site(target: Path) -> None:
     terminal = show.console()
     with terminal.status("the notebook") as status:
         count = build(target, lambda name: status.update(name))
-    show.say(f"{target / 'index.html'}: {count} pages")
+    show.print_line(f"{target / 'index.html'}: {count} pages")

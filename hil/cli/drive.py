@@ -97,7 +97,7 @@ def drive(
             )
         elif watch or for_s or png is not None:
             bad = listener.decoder.malformed
-            show.say(f"{listener.decoder.frames} frames, {bad} malformed" + (f", drawn to {png}" if png else ""))
+            show.print_line(f"{listener.decoder.frames} frames, {bad} malformed" + (f", drawn to {png}" if png else ""))
         if lost is not None:
             raise lost
 
@@ -124,7 +124,7 @@ class _Listener:
                 if self._keep:
                     self.frames.append(frame)
                 if not self._quiet:
-                    show.say(format_frame(frame))
+                    show.print_line(format_frame(frame))
 
 
 def format_frame(frame: OdometryFrame) -> str:

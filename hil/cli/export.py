@@ -62,4 +62,4 @@ def export(
         if json_output:
             show.print_json({"file": str(target), "events": len(found.events), "channels": list(found.channels)})
         else:
-            show.say(f"{target}: {len(found.events)} events")
+            show.print_line(f"{target}: {len(found.events)} events")

@@ -44,11 +44,11 @@ def watched(texts: Sequence[str]) -> bool:
     return any(parse(text).kind.watch for text in texts)
 
 
-def complain_of_silent(machine: Machine) -> bool:
+def report_silent_faults(machine: Machine) -> bool:
     """Print an error for each fault that never fired.  Returns whether there was one."""
     silent = [mounted.fault for mounted in getattr(machine, "faults", ()) if not mounted.count]
     for fault in silent:
-        show.complain(f"the fault {fault} never fired")
+        show.print_error(f"the fault {fault} never fired")
     return bool(silent)
 
 
@@ -97,10 +97,10 @@ def faults(
         for heading in ("fault", "what", "parameters", "needs"):
             listed.add_column(heading)
         for kind in kinds:
-            own = ", ".join(_said(each) for each in kind.parameters if each not in COMMON)
+            own = ", ".join(_parameter_text(each) for each in kind.parameters if each not in COMMON)
             listed.add_row(*map(escape, (kind.name, kind.sentence, own, kind.needs)))
         show.console().print(listed)
-        show.say(f"Every fault also has: {', '.join(_said(each) for each in COMMON)}.")
+        show.print_line(f"Every fault also has: {', '.join(_parameter_text(each) for each in COMMON)}.")
 
 
 def _measure(name: str | None, *, json_output: bool) -> None:
@@ -154,7 +154,7 @@ def _default(parameter: FaultParameter) -> str:
     return f"{default:g}" if isinstance(default, float) else str(default)
 
 
-def _said(parameter: FaultParameter) -> str:
+def _parameter_text(parameter: FaultParameter) -> str:
     """`rate=0.05`, `over=1 s`, `input=...`."""
     default = "..." if parameter.default in (None, "") else _default(parameter)
     return f"{parameter.name}={default}{f' {parameter.unit}' if parameter.unit else ''}"

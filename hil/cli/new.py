@@ -75,7 +75,7 @@ def new(
         "  hil check . --board board.py   the same without a test",
         f"Then make the commented line of {driver} a statement, and run pytest again.",
     ):  # fmt: skip
-        show.say(line)
+        show.print_line(line)
 
 
 def _what(path: str, driver: str) -> str:

@@ -82,7 +82,9 @@ def own_c(
 
     found = own(firmware)
     for file in found.left_out:
-        show.say(f"note: {file}: no file of the robot, left out (--firmware {file} links it too)", to_stderr=True)
+        show.print_line(
+            f"note: {file}: no file of the robot, left out (--firmware {file} links it too)", to_stderr=True
+        )
     return OwnC(found.files, *read_as(firmware, project, include, define))
 
 
@@ -100,7 +102,7 @@ def read_as(
     projects = [project] if project is not None else [path for path in beside if path.exists()]
     read = [code_composer.read(path) for path in projects]
     for note in (note for one in read for note in one.notes):
-        show.say(f"note: {note}", to_stderr=True)
+        show.print_line(f"note: {note}", to_stderr=True)
     folders_said = [str(folder) for folder in folders(include or ())]
     return (
         tuple(dict.fromkeys([*folders_said, *(folder for one in read for folder in one.include)])),

@@ -66,7 +66,7 @@ def record(
         console = open_port(link=link, listen=listen, device=to, deliver=deliver)
         stack.callback(console.close)
         wire = stack.enter_context(new_log(output, header_at(port)))
-        show.say(f"port: {console.address}", to_stderr=json_output)
+        show.print_line(f"port: {console.address}", to_stderr=json_output)
         tap = Tap(robot, console, wire=wire)
         stop.ends(tap.stop)
         lost: PortError | None = None
@@ -86,7 +86,7 @@ def record(
         if json_output:
             show.print_json(summary)
         else:
-            show.say(
+            show.print_line(
                 f"{summary['seconds']:.1f} s: {tap.bytes_from_robot} bytes from the robot "
                 f"({console.counters.frames_dropped} frames dropped unread), {tap.bytes_to_robot} to it, in {output}"
             )
@@ -136,7 +136,7 @@ def replay(
         show.policy()
         recording = read_log(log)
         for statement in recording.statements():
-            show.say(f"hil: {statement}", to_stderr=True)
+            show.print_line(f"hil: {statement}", to_stderr=True)
         if not to_console and any((link, listen, port, wait)):
             raise ValueError("--link, --listen, --port and --wait belong to --to-console")
         if to_console:
@@ -161,7 +161,9 @@ def _play_orders(
     """The verdict of the replay, the robot's setup, and the findings."""
     known = setup_of(recording)
     if known is None:
-        show.say(f"hil: {recording.name}: does not say which robot it was; taking the standard one", to_stderr=True)
+        show.print_line(
+            f"hil: {recording.name}: does not say which robot it was; taking the standard one", to_stderr=True
+        )
     setup = known or Setup()
     setup = replace(setup, world=setup.world if world is None else world, seed=setup.seed if seed is None else seed)
     with ExitStack() as stack:
@@ -195,7 +197,7 @@ def _play_frames(
         wire = None if output is None else stack.enter_context(new_log(output, header_at(line.address)))
         player = Player(recording, line, Pacer(1.0), wire=wire)
         stop.ends(player.stop)
-        show.say(f"port: {line.address}", to_stderr=json_output)
+        show.print_line(f"port: {line.address}", to_stderr=json_output)
         lost: PortError | None = None
         try:
             if wait:
@@ -210,21 +212,21 @@ def _play_frames(
         if json_output:
             show.print_json({"log": recording.name, "problems": recording.problems, "port": line.counters.as_dict()})
         else:
-            show.say(f"{frames} frames played, {player.bytes_from_console} bytes from the console")
+            show.print_line(f"{frames} frames played, {player.bytes_from_console} bytes from the console")
         if lost is not None:
             raise lost
 
 
 def _print_verdict(verdict: Verdict) -> None:
     if verdict.equal:
-        show.say(f"byte-equal: {verdict.recorded_frames} frames, {verdict.recorded_bytes} bytes")
+        show.print_line(f"byte-equal: {verdict.recorded_frames} frames, {verdict.recorded_bytes} bytes")
         return
-    show.say(
+    show.print_line(
         f"different: {verdict.recorded_frames} frames recorded, {verdict.replayed_frames} replayed; "
         f"frame {verdict.first_difference} is the first that differs"
     )
-    show.say(f"recorded {verdict.recorded!r}")
-    show.say(f"replayed {verdict.replayed!r}")
+    show.print_line(f"recorded {verdict.recorded!r}")
+    show.print_line(f"replayed {verdict.replayed!r}")
 
 
 def compare(
@@ -252,7 +254,7 @@ def compare(
             check_plot_file(plot)
         runs = (read_run(first), read_run(second))
         for statement in (line for run in runs for line in run.statements):
-            show.say(f"hil: {statement}", to_stderr=True)
+            show.print_line(f"hil: {statement}", to_stderr=True)
         comparison = compare_runs(*runs, tolerance_s=tolerance_s)
         if plot is not None:
             plot_comparison(plot, comparison)
@@ -260,7 +262,7 @@ def compare(
         show.print_json(_comparison_as_dict(comparison))
         return
     show.console().print(_comparison_table(comparison))
-    show.say(
+    show.print_line(
         f"aligned by {comparison.aligned_by}: {len(comparison.pairs)} pairs of frames, "
         f"{comparison.only_first} only in {first}, {comparison.only_second} only in {second}"
         + (f"; plot {plot}" if plot else "")

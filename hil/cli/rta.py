@@ -286,40 +286,46 @@ def _report(
     console = show.console()
     console.print(_table(responses, growth, runs, protocol, off_by))
     if task_set.nested and protocol == "inheritance":
-        show.say("A gate is entered within another: GateMutexPri's inheritance gives no bound there but that of none.")
+        show.print_line(
+            "A gate is entered within another: GateMutexPri's inheritance gives no bound there but that of none."
+        )
     if circles:
-        show.say(f"Tasks may wait in a circle for ever: gates {', '.join(circles)}")
-    show.say(
+        show.print_line(f"Tasks may wait in a circle for ever: gates {', '.join(circles)}")
+    show.print_line(
         f"Utilisation {by_load.utilisation:.6f}; Liu and Layland {by_load.liu_layland:.4f}: "
         f"{_yes(by_load.liu_layland_holds)}; hyperbolic {by_load.hyperbolic:.4f} of 2: "
         f"{_yes(by_load.hyperbolic_holds)} (both of D = T and priorities by period)"
     )
     if factor is not None:
-        show.say(f"All computation times may grow together by {factor:.3f}.")
+        show.print_line(f"All computation times may grow together by {factor:.3f}.")
     for task in task_set.tasks:
         for gates in _gates(task.sections):
-            show.say(f"{task.name} holds {gates}")
+            show.print_line(f"{task.name} holds {gates}")
     for interrupt in task_set.interrupts:
         apart = interrupt.arrival.period_ns / 1e3
-        show.say(f"{interrupt.name}: {interrupt.computation_ns / 1e3:g} us, at least {apart:g} us apart")
+        show.print_line(f"{interrupt.name}: {interrupt.computation_ns / 1e3:g} us, at least {apart:g} us apart")
     for start in starts:
-        show.say(f"Start-up of {start.task}: {start.computation_us:.2f} us, first wait at {start.first_wait_ms:.3f} ms")
+        show.print_line(
+            f"Start-up of {start.task}: {start.computation_us:.2f} us, first wait at {start.first_wait_ms:.3f} ms"
+        )
     for begin in begins:
         ready = "never" if begin.ready_ns is None else f"{begin.ready_ns / 1e3:.2f} us"
-        show.say(f"Start-up of {begin.task.name}: ends at {ready}, {begin.releases} releases by then")
+        show.print_line(f"Start-up of {begin.task.name}: ends at {ready}, {begin.releases} releases by then")
     for run in runs:
-        show.say(f"{run.kind}: the critical instant and {run.phasings} random phasings, {run.cpu_s:.1f} s of CPU time")
+        show.print_line(
+            f"{run.kind}: the critical instant and {run.phasings} random phasings, {run.cpu_s:.1f} s of CPU time"
+        )
         if run.kind == "firmware":
             from hil.tolerance import EXPLANATION
 
-            show.say(EXPLANATION.replace("its C mean", "its largest C"))
+            show.print_line(EXPLANATION.replace("its C mean", "its largest C"))
     if not_run:
-        show.say(f"Not run as synthetic tasks: {not_run}")
+        show.print_line(f"Not run as synthetic tasks: {not_run}")
     for line in exceeded:
         times = f"seen {line['seen_us']:.2f} us, computed {line['computed_us']:.2f} us"
-        show.say(f"{line['rule']}: {line['task']} ({line['runs']}): {times}")
+        show.print_line(f"{line['rule']}: {line['task']} ({line['runs']}): {times}")
     if late:
-        show.say(f"Deadlines that may be missed: {', '.join(late)}")
+        show.print_line(f"Deadlines that may be missed: {', '.join(late)}")
     return late
 
 
@@ -434,7 +440,7 @@ def _thesis(json_output: bool) -> None:
         )
     show.console().print(table)
     counts = {verdict: sum(cell.verdict == verdict for cell in found) for verdict in ("right", DOUBTFUL, WRONG)}
-    show.say(", ".join(f"{count} {verdict}" for verdict, count in counts.items()) + f" of {len(found)} cells")
+    show.print_line(", ".join(f"{count} {verdict}" for verdict, count in counts.items()) + f" of {len(found)} cells")
 
 
 def _us(time_ns: int | None) -> float | None:

@@ -19,7 +19,7 @@ from emulator.clock import seconds
 from hil.cli import accounts, own_c, show
 from hil.cli.accounts import status_line, summarize
 from hil.cli.board import Option
-from hil.cli.faults import Fault, checked_faults, complain_of_silent, watched
+from hil.cli.faults import Fault, checked_faults, report_silent_faults, watched
 from hil.cli.feeds import Feed
 from hil.client.orders import TimedOrder, parse_timed_order
 from hil.client.plot import MOVING, SUFFIXES, check_plot_file
@@ -221,7 +221,7 @@ def run(
         kind = _kind(board)
         robot = kind is None or kind.bench is not None
         if kind is not None and not robot:
-            _refuse(kind, {
+            _check_kind(kind, {
                 "--world": world, "--order": order, "--fix": fix, "--xbee/--no-xbee": xbee, "--plot": plot,
                 "--option": option,
             })  # fmt: skip
@@ -265,21 +265,21 @@ def run(
             if without_line(machine):
                 if asked_for_a_port:
                     raise ValueError(f"--link, --listen, --port: {board} has no line to a PC (Board.to_pc)")
-                show.say(f"port: none, {board} has no line to a PC", to_stderr=json_output)
+                show.print_line(f"port: none, {board} has no line to a PC", to_stderr=json_output)
                 return None
             opened = open_port(link=link, listen=listen, device=port, keep=keep, deliver=manner)
-            show.say(f"port: {opened.address}", to_stderr=json_output)
+            show.print_line(f"port: {opened.address}", to_stderr=json_output)
             if robot and not json_output and not view and for_s is None:
                 for line in NEXT:
-                    show.say(line.format(port=opened.address))
+                    show.print_line(line.format(port=opened.address))
             return opened
 
         if view:
             read: dict[str, Any] = {} if kind is None else {"kind": kind}
             if live is not None:
                 read |= live.read()
-            say = show.say_and_open if show.wants_page(open_page) else show.say
-            view_until_stopped(setup, read, pacer.pace, orders, open_line, view_host, view_port, say)
+            print_line = show.print_and_open if show.wants_page(open_page) else show.print_line
+            view_until_stopped(setup, read, pacer.pace, orders, open_line, view_host, view_port, print_line)
             return
         given: dict[str, Any] = {} if kind is None else {"kind": kind}
         if lcov is not None:
@@ -309,7 +309,7 @@ def run(
                 raise KeyboardInterrupt
         except FirmwareStopped as reason:
             _print_start_up(machine, str(reason), setup, json_output=json_output)
-            show.complain(f"the firmware stopped: {reason}")
+            show.print_error(f"the firmware stopped: {reason}")
             raise typer.Exit(show.EXIT_FAILED) from None
         line = open_line(machine)
         if line is not None:
@@ -357,21 +357,21 @@ def run(
             show.print_json(summary)
         else:
             _print_summary(summary, session)
-            display.tell_decided(ended=True)
+            display.print_decided(ended=True)
         if plot is not None and isinstance(machine, RobotMachine):
             told = accounts.plot(plot, session, machine, setup, hurried=stop.requested)
             if not json_output:
-                show.say(told)
+                show.print_line(told)
         if isinstance(stopped, PortError):
             raise stopped
         if stopped is not None:
-            show.complain(f"the firmware stopped: {stopped}")
+            show.print_error(f"the firmware stopped: {stopped}")
             raise typer.Exit(show.EXIT_FAILED)
         if interrupted:
             raise typer.Exit(EXIT_INTERRUPTED)
         for check in wrong:
-            show.complain(f"{check.name}: {check.seen}")
-        if complain_of_silent(machine) or wrong:
+            show.print_error(f"{check.name}: {check.seen}")
+        if report_silent_faults(machine) or wrong:
             raise typer.Exit(show.EXIT_FAILED)
 
 
@@ -397,7 +397,7 @@ def _kind(board: str) -> type[Board] | None:
     return load(board)
 
 
-def _refuse(kind: type[Board], of_robots: dict[str, Any]) -> None:
+def _check_kind(kind: type[Board], of_robots: dict[str, Any]) -> None:
     """Raises ValueError for an option that only means something for a robot."""
     for option, value in of_robots.items():
         if value is not None and value != []:
@@ -413,16 +413,16 @@ def without_line(machine: Machine) -> bool:
 
 def view_until_stopped(
     setup: Setup, read: dict[str, Any], pace: float | None, orders: list[TimedOrder],
-    open_line: Callable[[Machine], SerialPort | None], host: str, number: int, say: Callable[[str], None],
+    open_line: Callable[[Machine], SerialPort | None], host: str, number: int, print_line: Callable[[str], None],
 ) -> None:  # fmt: skip
-    """Serve the page until Ctrl-C; `say` gets its address."""
+    """Serve the page until Ctrl-C; `print_line` gets its address."""
     from hil.view.server import run_view
 
     policy = show.policy()
     with ExitStack() as stack:
         # Before it serves there is nothing to show, and a signal interrupts.
         engine = run_view(
-            setup, pace, orders, open_line, host=host, port=number, say=say,
+            setup, pace, orders, open_line, host=host, port=number, print_line=print_line,
             on_stop=lambda stop: stack.enter_context(show.ended_by_signals(stop)), read=read,
             policy=policy,
         )  # fmt: skip
@@ -433,7 +433,7 @@ def view_until_stopped(
     for told in engine.faults:
         print(f"fault {told}")
     if engine.stopped:
-        show.complain(f"the {'robot' if robot else 'firmware'} stopped: {engine.stopped}")
+        show.print_error(f"the {'robot' if robot else 'firmware'} stopped: {engine.stopped}")
         raise typer.Exit(show.EXIT_FAILED)
 
 
@@ -492,17 +492,17 @@ class _Display:
         if now < self._next_s:
             return
         self._next_s = now + self._every_s
-        self.tell_decided()
+        self.print_decided()
         if self._live:
             self.live.update(Text(status_line(session, self._policy), no_wrap=True, overflow="ellipsis"), refresh=True)
         else:
             show.say(status_line(session, self._policy))
 
-    def tell_decided(self, *, ended: bool = False) -> None:
+    def print_decided(self, *, ended: bool = False) -> None:
         """A line for each expectation that is decided, once."""
         if self._watching is not None and not self._quiet:
             for check in self._watching.decided(ended=ended):
-                show.say(f"{'ok    ' if check.ok else 'FAILED'} {check.name}: {check.seen}")
+                show.print_line(f"{'ok    ' if check.ok else 'FAILED'} {check.name}: {check.seen}")
 
 
 def _print_summary(summary: dict[str, Any], session: Session) -> None:

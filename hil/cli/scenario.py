@@ -114,7 +114,7 @@ def _run(paths: list[Path], jobs: int, *, quiet: bool) -> list[ScenarioOutcome]:
     with bar:
         task = bar.add_task("scenarios", total=len(paths))
         return list(run_files(
-            paths, jobs=jobs, told=lambda _index: bar.advance(task, 1),
+            paths, jobs=jobs, on_file=lambda _index: bar.advance(task, 1),
             progress=lambda index, fraction: bar.update(task, description=paths[index].name, completed=index + fraction)
             if fraction < 1.0 else None,
         ))  # fmt: skip
@@ -149,8 +149,8 @@ def _print(outcomes: list[ScenarioOutcome]) -> None:
     terminal.print(table)
     for outcome in outcomes:
         for failure in outcome.failures:
-            show.say(f"{outcome.name}: {failure}")
-    show.say(f"{sum(outcome.passed for outcome in outcomes)} of {len(outcomes)} scenarios as their files say")
+            show.print_line(f"{outcome.name}: {failure}")
+    show.print_line(f"{sum(outcome.passed for outcome in outcomes)} of {len(outcomes)} scenarios as their files say")
 
 
 scenario.__doc__ = f"{scenario.__doc__}\n\n{EXAMPLES}"

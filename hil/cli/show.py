@@ -19,7 +19,7 @@ import typer
 from rich.console import Console
 
 from hil.client.orders import KEYWORDS
-from hil.ending import IMPATIENCE_S, meant
+from hil.ending import REPEAT_S, ending_signals
 from hil.extras import hint
 
 if TYPE_CHECKING:
@@ -109,32 +109,32 @@ def defect(error: Exception, arguments: Iterable[str]) -> str:
     """The line about an unexpected exception: what, in which command, where in our code, what to do."""
     import traceback
 
-    from hil.machine import FAULT_OF_OURS
+    from hil.machine import INTERNAL_ERROR
 
     frames = traceback.extract_tb(error.__traceback__)
-    places = [(frame, _in_ours(Path(frame.filename))) for frame in frames]
+    places = [(frame, _project_path(Path(frame.filename))) for frame in frames]
     at = next((f", at {place.as_posix()}:{frame.lineno}" for frame, place in reversed(places) if place), "")
     command = next((each for each in arguments if not each.startswith("-")), "")
     what = " ".join(f"{type(error).__name__}: {error}".split())
     return (
-        f"{FAULT_OF_OURS} in hil{f' {command}' if command else ''}{at}: {what}; "
+        f"{INTERNAL_ERROR} in hil{f' {command}' if command else ''}{at}: {what}; "
         "HIL_TRACEBACK=1 shows the traceback: report it with that"
     )
 
 
-def _in_ours(file: Path) -> Path | None:
+def _project_path(file: Path) -> Path | None:
     """A file of this project as a path from its root; None: somebody else's."""
     file = file if file.is_absolute() else _ROOT / file  # of a compiled module
     return file.relative_to(_ROOT) if any(file.is_relative_to(_ROOT / name) for name in _PACKAGES) else None
 
 
-def complain(message: str) -> None:
+def print_error(message: str) -> None:
     """Print one error line on stderr.  Of a word too long to read only the two ends are shown."""
     shortened = _ENDLESS.sub(lambda word: f"{word[0][:100]}[...]{word[0][-50:]}", " ".join(message.split("\n")))
     print(f"hil: error: {shortened}", file=sys.stderr, flush=True)
 
 
-def say(message: str, *, to_stderr: bool = False) -> None:
+def print_line(message: str, *, to_stderr: bool = False) -> None:
     """One line that a script may wait for: written at once, never wrapped or coloured."""
     print(message, file=sys.stderr if to_stderr else sys.stdout, flush=True)
 
@@ -147,12 +147,12 @@ def wants_page(asked: bool | None) -> bool:
     return desktop and sys.stdout.isatty()
 
 
-def say_and_open(message: str) -> None:
-    """`say`, and the browser for the address at the message's end.  One that cannot be started is no error."""
+def print_and_open(message: str) -> None:
+    """`print_line`, and the browser for the address at the message's end.  One that cannot be started is no error."""
     import threading
     import webbrowser
 
-    say(message)
+    print_line(message)
     address = message.rpartition(" ")[2]
     if address.startswith("http"):
         # A browser of the terminal would keep us waiting.
@@ -246,10 +246,10 @@ def ended_by_signals(stop: Callable[[], None]) -> Iterator[None]:
         if not first:
             first.append(now)
             stop()
-        elif signum == signal.SIGINT and now - first[0] > IMPATIENCE_S:
+        elif signum == signal.SIGINT and now - first[0] > REPEAT_S:
             raise KeyboardInterrupt
 
-    previous = {number: signal.signal(number, handler) for number in meant()}
+    previous = {number: signal.signal(number, handler) for number in ending_signals()}
     try:
         yield
     finally:

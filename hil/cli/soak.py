@@ -55,10 +55,10 @@ def soak(
         with bar:
             task = bar.add_task("soak", total=for_s)
 
-            def told(soaked: SoakResult) -> None:
+            def on_progress(soaked: SoakResult) -> None:
                 bar.update(task, completed=soaked.seconds, description=f"{sum(soaked.mounted.values())} faults")
 
-            soaked = run(for_s, seed=seed, fixes=() if faithful else ("all",), world=world, told=told)
+            soaked = run(for_s, seed=seed, fixes=() if faithful else ("all",), world=world, on_progress=on_progress)
         if json_output:
             show.print_json(soaked.as_dict())
         else:
@@ -78,17 +78,17 @@ def _print(soaked: SoakResult) -> None:
     show.print_findings(soaked.findings)
     for what, why in (("the firmware ended", soaked.ended), ("the robot did not come back", soaked.stranded)):
         for one in why:
-            show.say(f"{escape(one)}: {what}; switched off and on")
-    show.say(
+            show.print_line(f"{escape(one)}: {what}; switched off and on")
+    show.print_line(
         f"{soaked.seconds:.0f} virtual s, {soaked.travelled_m:.0f} m, {soaked.collisions} collisions, "
         f"{soaked.orders} orders, {soaked.frames} frames, switched on {soaked.switched_on} times"
     )
     if soaked.objects:
         (begin_s, first), (end_s, last) = soaked.objects[0], soaked.objects[-1]
         most = max(count for _, count in soaked.objects)
-        show.say(f"objects of Python: {first} at {begin_s:.0f} s, {last} at {end_s:.0f} s, at most {most}")
-    show.say(f"uart {soaked.uart_sha256}")
-    show.say(f"trace {soaked.trace_sha256}")
+        show.print_line(f"objects of Python: {first} at {begin_s:.0f} s, {last} at {end_s:.0f} s, at most {most}")
+    show.print_line(f"uart {soaked.uart_sha256}")
+    show.print_line(f"trace {soaked.trace_sha256}")
 
 
 soak.__doc__ = f"{soak.__doc__}\n\n{EXAMPLES}"

@@ -107,11 +107,11 @@ def tasks(
         )
     else:
         show.console().print(_table(use))
-        show.say(
+        show.print_line(
             f"CPU load {use.cpu_load * 100:.3f} % over {measured_s:.3f} s (thesis, sum of C/T: "
             f"{PUBLISHED_CPU_LOAD * 100:.3f} %)"
         )
-        show.say(EXPLANATION)
+        show.print_line(EXPLANATION)
 
 
 def _residual(times: TaskTimes, use: CpuUse) -> tuple[float, float] | None:

@@ -34,7 +34,7 @@ class Process:
         """Start it.  Raises OSError."""
         self.app = app
         self.output = folder.output
-        self._kill_at: float | None = None
+        self._killed_at: float | None = None
         with self.output.open("wb") as output:
             self._child = subprocess.Popen(
                 [python, str(_RUNNER), str(app.path)],
@@ -57,18 +57,18 @@ class Process:
     @property
     def asked_to_end(self) -> bool:
         """Whether `end` was called."""
-        return self._kill_at is not None
+        return self._killed_at is not None
 
     def end(self) -> None:
         """Ask it to end.  Safe in a signal handler."""
-        if self._kill_at is None:
-            self._kill_at = time.monotonic() + GRACE_S
+        if self._killed_at is None:
+            self._killed_at = time.monotonic() + GRACE_S
             self._child.terminate()
 
     def ended(self) -> bool:
         """Whether it has ended."""
         status = self._child.poll()
-        if status is None and self._kill_at is not None and time.monotonic() > self._kill_at:
+        if status is None and self._killed_at is not None and time.monotonic() > self._killed_at:
             self._child.kill()
         return status is not None
 

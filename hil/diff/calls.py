@@ -17,7 +17,7 @@ from emulator.c28x.tree import Function
 from hil.diff.difference import BOTH, OWN, PORT, Difference, matched, place
 from hil.diff.recorder import FirmwareRecorder, RecordedEvent, value_text
 from hil.diff.streams import align
-from hil.drivers.judge import INITIALISES
+from hil.drivers.call_checker import INITIALISES
 from hil.drivers.roles import Roles, roles
 from hil.drivers.values import NotGenerated, Parameter, Value, arguments, moderate, parameters
 from hil.image import Build, Image, is_static
@@ -112,12 +112,12 @@ class Caller:
         self.calls = calls
         self.seed = seed
         self._roles: Roles = roles(port.modules)
-        self._ours = {function.path: function for function in self._roles.functions}
+        self._python = {function.path: function for function in self._roles.functions}
         self._theirs = {function.path: function for module in own.modules for function in module.functions}
 
     def compare(self, path: str) -> CallComparison:
         """Call one function of both."""
-        function = self._ours.get(path)
+        function = self._python.get(path)
         other = self._theirs.get(path)
         if function is None or other is None:
             return CallComparison(reason=f"only {OWN if function is None else PORT} has it")
@@ -130,7 +130,7 @@ class Caller:
         if [v.ctype.name for v in function.parameters] != [v.ctype.name for v in other.parameters]:
             return CallComparison(reason="its parameters have other types")
         try:
-            wanted = parameters(function, self._ours)
+            wanted = parameters(function, self._python)
         except NotGenerated as why:
             return CallComparison(reason=f"{why}: the runs show it")
         called = CallComparison()
@@ -142,7 +142,7 @@ class Caller:
         yield ()
         ready = tuple(
             (name, moderate(wanted, 1))
-            for name, function in self._ours.items()
+            for name, function in self._python.items()
             if name != path and INITIALISES.search(function.name) and (wanted := self._callable(function)) is not None
         )
         if ready:
@@ -156,7 +156,7 @@ class Caller:
         if is_static(function, function.where.file) or len(self._theirs[path].parameters) != len(function.parameters):
             return None
         try:
-            return parameters(function, self._ours)
+            return parameters(function, self._python)
         except NotGenerated:
             return None
 

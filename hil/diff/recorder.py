@@ -68,7 +68,7 @@ class FirmwareRecorder:
         for name in [name for name in space if name.startswith(("_x_", "_f_"))]:
             shown = name[3:]
             if (shown in own if name.startswith("_f_") else not shown.startswith(_LOGGING)):
-                space[name] = self._told(shown, space[name])
+                space[name] = self._reporting(shown, space[name])
 
     def sent(self, byte: int) -> None:
         """The robot has sent a byte: a frame ends with a carriage return."""
@@ -91,7 +91,7 @@ class FirmwareRecorder:
     def _traced(self, cycles: int, kind: str, name: str) -> None:
         self._add(self._board.findings.context(), f"{kind} {name}")
 
-    def _told(self, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    def _reporting(self, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
         add, context = self._add, self._board.findings.context
 
         @wraps(function)

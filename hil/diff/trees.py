@@ -136,7 +136,7 @@ def compare_functions(port: CompiledFunction, own: CompiledFunction, factor: flo
     bodies = _undeclared(port.function.body), _undeclared(own.function.body)
     walk.block(*bodies, port.function.where, own.function.where)
     if not walk.found and walk.named_alike and _generated(port) != _generated(own):
-        walk.tell(port.function.where, own.function.where, "other checks: they are translated differently")
+        walk.add_difference(port.function.where, own.function.where, "other checks: they are translated differently")
     return walk.found
 
 
@@ -226,13 +226,13 @@ class _FunctionComparison:
         self.renamed = _renamed(port, own)
         self.named_alike = [v.name for v in _locals(port)] == [v.name for v in _locals(own)]
         self._declares = _declares(port.body), _declares(own.body)
-        self._told: set[Hashable] = set()
+        self._reported: set[Hashable] = set()
         self._retyped = False
 
     def key(self, node: Any) -> Hashable:
         return key(node, self.renamed)
 
-    def tell(self, port: Where, own: Where, cause: str) -> None:
+    def add_difference(self, port: Where, own: Where, cause: str) -> None:
         """A difference at two places, told once."""
         if not port.file:
             port = self.port.where
@@ -249,21 +249,23 @@ class _FunctionComparison:
             a = ours.get(self.renamed.get(b, ""))
             if a is not None and type_name(a.ctype) != type_name(b.ctype):
                 port, own = (Where(v.declaration.file, v.declaration.line) for v in (a, b))
-                self.tell(port, own, f"other type: {b.declaration.name} is {a.ctype} in {PORT}, {b.ctype} in {OWN}")
+                cause = f"other type: {b.declaration.name} is {a.ctype} in {PORT}, {b.ctype} in {OWN}"
+                self.add_difference(port, own, cause)
                 self._retyped = True
 
     def signature(self) -> None:
         """Parameters and result."""
         a, b = self.port, self.own
         if type_name(a.ctype.result) != type_name(b.ctype.result):
-            self.tell(a.where, b.where, f"other type: it returns {a.ctype.result} in {PORT}, {b.ctype.result} in {OWN}")
+            cause = f"other type: it returns {a.ctype.result} in {PORT}, {b.ctype.result} in {OWN}"
+            self.add_difference(a.where, b.where, cause)
         if len(a.parameters) != len(b.parameters):
             message = f"other parameters: {len(a.parameters)} in {PORT}, {len(b.parameters)} in {OWN}"
-            self.tell(a.where, b.where, message)
+            self.add_difference(a.where, b.where, message)
         for x, y in zip(a.parameters, b.parameters, strict=False):
             if type_name(x.ctype) != type_name(y.ctype):
                 message = f"other type: parameter {y.declaration.name} is {x.ctype} in {PORT}, {y.ctype} in {OWN}"
-                self.tell(a.where, b.where, message)
+                self.add_difference(a.where, b.where, message)
 
     # Statements
 
@@ -293,11 +295,11 @@ class _FunctionComparison:
                     self.statement(x, y)
                 else:
                     cause = f"other statement: {statement_text(x)} in {PORT}, {statement_text(y)} in {OWN}"
-                    self.tell(x.where, y.where, cause)
+                    self.add_difference(x.where, y.where, cause)
             for x in left[len(right) :]:
-                self.tell(x.where, own_at, f"other statement: only {PORT} has {statement_text(x)}")
+                self.add_difference(x.where, own_at, f"other statement: only {PORT} has {statement_text(x)}")
             for y in right[len(left) :]:
-                self.tell(at, y.where, f"other statement: only {OWN} has {statement_text(y)}")
+                self.add_difference(at, y.where, f"other statement: only {OWN} has {statement_text(y)}")
 
     def _about(self, s: Stmt) -> Hashable:
         match s:
@@ -324,14 +326,14 @@ class _FunctionComparison:
         ours, theirs = ({self.key(v): found for v, found in d.items()} for d in self._declares)
         if name not in ours or name not in theirs:
             return False
-        if name not in self._told:
-            self._told.add(name)
+        if name not in self._reported:
+            self._reported.add(name)
             (a, where), (b, own_where) = ours[name], theirs[name]
             moved = f": {a.cycles * self.factor:.3g} cycles moved" if a.cycles == b.cycles and a.cycles else ""
             places = f"{OWN} declares {b.variable.declaration.name} {own_where}, {PORT} {where}"
             if where == own_where:
                 places = f"{OWN} declares {b.variable.declaration.name} before or after other statements than {PORT}"
-            self.tell(a.where, b.where, f"declared elsewhere: {places}{moved}")
+            self.add_difference(a.where, b.where, f"declared elsewhere: {places}{moved}")
             self._about_value(a, b)
         return True
 
@@ -356,7 +358,7 @@ class _FunctionComparison:
         labels, own_labels = ([label for label, _ in cases] for cases in (x, y))
         if labels != own_labels:
             message = f"other constant: cases {_labels(labels)} in {PORT}, {_labels(own_labels)} in {OWN}"
-            self.tell(a.where, b.where, message)
+            self.add_difference(a.where, b.where, message)
             return
         for (_, inner), (_, own_inner) in zip(x, y, strict=True):
             self.block(inner, own_inner, a.where, b.where)
@@ -365,7 +367,7 @@ class _FunctionComparison:
         where, own_where, cause = self.expression(x, y)
         if self._retyped and cause.startswith("other type"):
             return  # what follows from the type of a local
-        self.tell(where if where.file else a.where, own_where if own_where.file else b.where, cause)
+        self.add_difference(where if where.file else a.where, own_where if own_where.file else b.where, cause)
 
     # Expressions
 

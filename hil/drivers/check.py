@@ -10,7 +10,7 @@ from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Finding
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from hil.board import Board
-from hil.drivers.judge import CheckedFunction, Judge, Key, key_of
+from hil.drivers.call_checker import CallChecker, CheckedFunction, Key, key_of
 from hil.drivers.program_run import ProgramOutcome, run_program
 from hil.drivers.roles import Roles, roles
 from hil.drivers.units import mixed_units
@@ -95,10 +95,10 @@ def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction:
             silence=wanted.silence,
         )  # fmt: skip
         _add(checked, checked.ran.findings, keys)
-    judge = Judge(build, found, calls=wanted.calls, seed=wanted.seed)
-    _add(checked, judge.run(lambda fraction: progress("call", fraction)), keys)
-    _add(checked, judge.broken_properties(), keys)
-    checked.functions = [_function(exercised, found, checked.ran) for exercised in judge.exercised]
+    call_checker = CallChecker(build, found, calls=wanted.calls, seed=wanted.seed)
+    _add(checked, call_checker.run(lambda fraction: progress("call", fraction)), keys)
+    _add(checked, call_checker.broken_properties(), keys)
+    checked.functions = [_function(tried, found, checked.ran) for tried in call_checker.checked]
     checked.faults = build.fired
     progress("done", 1.0)
     return checked
@@ -117,22 +117,22 @@ def _add(checked: Checked, findings: Iterable[Finding], keys: dict[Key, Finding]
     return keys
 
 
-def _function(exercised: CheckedFunction, found: Roles, ran: ProgramOutcome | None) -> CalledFunction:
-    function = exercised.function
-    reason = exercised.reason
+def _function(tried: CheckedFunction, found: Roles, ran: ProgramOutcome | None) -> CalledFunction:
+    function = tried.function
+    reason = tried.reason
     if ran is not None and (function is found.main or function in found.tasks):
         reason = f"{reason}; the program ran for {ran.virtual_s:g} s" + (f", then ended: {ran.cut}" if ran.cut else "")
     notes = []
-    if exercised.guessed:
-        notes.append(f"the C does not tell how much {' and '.join(exercised.guessed)} may point to: a guess")
-    if exercised.strayed:
-        notes.append(f"{exercised.strayed} of them say nothing: they left what was guessed")
-    if exercised.fault:
-        notes.append(f"one of them ended in {exercised.fault}")
-    if exercised.endless:
+    if tried.guessed:
+        notes.append(f"the C does not tell how much {' and '.join(tried.guessed)} may point to: a guess")
+    if tried.left_guess:
+        notes.append(f"{tried.left_guess} of them say nothing: they left what was guessed")
+    if tried.fault:
+        notes.append(f"one of them ended in {tried.fault}")
+    if tried.endless:
         notes.append("it does not return: its loop is written without an end")
-    elif exercised.cut:
-        notes.append(f"{exercised.cut} of them ended: they compute for too long")
+    elif tried.cut:
+        notes.append(f"{tried.cut} of them ended: they compute for too long")
     return CalledFunction(
-        function.name, function.where.file, function.line, exercised.calls, reason or "; ".join(notes), not reason
+        function.name, function.where.file, function.line, tried.calls, reason or "; ".join(notes), not reason
     )

@@ -21,15 +21,15 @@ from hil.drivers.stale import AgeWatch, watched
 from hil.drivers.waiting import (
     EndedParties,
     in_last_loop,
-    meant_endless,
+    is_intended,
+    loop_without_end,
     retried,
     retries,
-    vain_loop,
     waits_for_others,
     waits_for_tasks,
 )
 from hil.image import Build, Image
-from hil.machine import FirmwareStopped, fault_of_ours
+from hil.machine import FirmwareStopped, internal_error
 from hil.testing.stops import STOPS, announced
 
 #: The stack of a task that no statement creates, in words.
@@ -83,9 +83,9 @@ def run_program(
     that fall silent (`stale`).
     """
     ran = _run(build, roles, for_s, progress, patient=False, board_named=board_named)
-    if any(f.rule == "endless-loop" and meant_endless(f, roles) for f in ran.findings):
+    if any(f.rule == "endless-loop" and is_intended(f, roles) for f in ran.findings):
         ran = _run(build, roles, for_s, progress, patient=True, board_named=board_named)
-    kept = tuple(f for f in ran.findings if not meant_endless(f, roles))
+    kept = tuple(f for f in ran.findings if not is_intended(f, roles))
     return replace(ran, findings=(*kept, *(_stale(build, roles, for_s) if silence else ())))
 
 
@@ -143,7 +143,7 @@ def _run(
     except STOPS as why:
         stop = why
     except Exception as why:
-        stop = FirmwareStopped(fault_of_ours(why))
+        stop = FirmwareStopped(internal_error(why))
     closed = image.board.clock.now  # beyond the end, if a poll was waited for
     with suppress(*STOPS):
         image.close()
@@ -154,9 +154,9 @@ def _run(
                 f"{busy.task} polls what only tasks change, and no task runs before it ends", object=busy.object,
                 how="dynamic", task=busy.task,
             )  # fmt: skip
-    nobody = _nobody(image)
+    ended_parties = _ended_parties(image)
     _retried(image, stood, roles)
-    vain = vain_loop(stood.frames, roles, nobody)
+    vain = loop_without_end(stood.frames, roles, ended_parties)
     if vain is not None:
         image.board.findings.report_at(
             vain[0], "endless-poll", f"main waits for {vain[1]}, and no interrupt that could change it ever occurs",
@@ -175,7 +175,7 @@ def _run(
     weighed = tuple(
         replace(finding, how="generated")
         if alone
-        or (waits_for_others(finding, roles, nobody) and not waits_for_tasks(finding, roles))
+        or (waits_for_others(finding, roles, ended_parties) and not waits_for_tasks(finding, roles))
         or (not board_named and of_unused_part(finding, starts, selects))
         else finding
         for finding in found
@@ -197,7 +197,7 @@ def _retried(image: Image, stood: EndPosition, roles: Roles) -> None:
             i2c.report_retry(Place(at.file, at.line, function.name, function.c_file, at.column))
 
 
-def _nobody(image: Image) -> EndedParties:
+def _ended_parties(image: Image) -> EndedParties:
     """The interrupt routines and devices that can end no wait any more, at the end of a run."""
     board = image.board
     blocks = [f"I2c{letter.lower()}Regs" for letter in I2C_PIE]

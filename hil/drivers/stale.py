@@ -209,7 +209,7 @@ class ValueSources:
         self._within.discard(function.path)
         return frozenset.intersection(*found) if found else _NOTHING
 
-    def wanted(self) -> tuple[set[str], set[str]]:
+    def relevant(self) -> tuple[set[str], set[str]]:
         """The objects whose age matters, and the input registers of their values.  Both empty: no output has any."""
         everything: dict[str, set[str]] = {}
         for function in self._functions.values():
@@ -271,21 +271,21 @@ class SourceTracking:
     def use(self, birth: int, now: int, value: int) -> None:
         """The output gets `value`, computed from data that came in at `birth`."""
         if birth != self.birth:
-            self.judge(now)
+            self.close_use(now)
             if birth > self.birth:
                 self.pace = max(self.pace, birth - self.birth)
             self.birth, self.new, self.uses = birth, self.new + 1, 0
         self.last, self.value = now, value
         self.uses += 1
 
-    def goes_on(self, now: int) -> bool:
+    def is_in_use(self, now: int) -> bool:
         """Whether the present value acts on the outside and is still in use."""
         return self.new >= _NEW and bool(self.value) and now - self.last <= _LOST * self.pace
 
-    def judge(self, now: int) -> None:
+    def close_use(self, now: int) -> None:
         """The use of the present value is over.  Note it if it was too old and used to the end."""
         age = self.last - self.birth
-        if self.oldest is None and self.goes_on(now) and age >= _PACES * self.pace > 0 and self.uses > _LOST:
+        if self.oldest is None and self.is_in_use(now) and age >= _PACES * self.pace > 0 and self.uses > _LOST:
             self.oldest = self.birth, self.last, self.uses, self.value, self.pace
 
 
@@ -401,14 +401,14 @@ class AgeWatch:
                 line.disturb(lambda frame: ())
         for seen in self.followed.values():
             old = now - seen.birth > _LOST * seen.pace or now - self._cut <= _LOST * seen.pace
-            if old and seen.oldest is None and seen.goes_on(now):
+            if old and seen.oldest is None and seen.is_in_use(now):
                 return latest
         return now
 
     def report(self) -> list[Finding]:
         """A finding for each output that followed a value that was too old."""
         for (_, _, source), seen in self.followed.items():
-            seen.judge(self._clock.now)
+            seen.close_use(self._clock.now)
             if seen.oldest is None:
                 continue
             birth, last, uses, value, pace = seen.oldest
@@ -430,7 +430,7 @@ def watched(
 ) -> list[Finding]:  # fmt: skip
     """The findings of a separate run.  `run(prepare)` passes a new image to `prepare`, then runs the program on it."""
     flow = ValueSources(roles.functions)
-    objects, inputs = flow.wanted()
+    objects, inputs = flow.relevant()
     if not objects:
         return []
     found: list[Finding] = []

@@ -74,11 +74,11 @@ class _Units:
         for file in {function.where.file for function in functions} | {v.declaration.file for v in objects}:
             for declared in declarations(file):
                 if declared.word == "unit":
-                    self._take(declared, functions, objects)
+                    self._read_declaration(declared, functions, objects)
         for function in functions:
             self._infer(function)
 
-    def _take(self, declared: UserDeclaration, functions: list[Function], objects: list[Variable]) -> None:
+    def _read_declaration(self, declared: UserDeclaration, functions: list[Function], objects: list[Variable]) -> None:
         words = declared.text.split()
         if not 1 <= len(words) <= 2:
             raise declared.wrong(f"{declared.text!r} is not a unit" if words else "the unit is missing")
@@ -110,7 +110,7 @@ class _Units:
         """The places in one function where units are mixed."""
         self._found = []
 
-        def say(where: Where, message: str, what: str) -> None:
+        def report(where: Where, message: str, what: str) -> None:
             place = Place(function.where.file, where.line, function.name, function.c_file, where.column)
             self._found.append(UnitMismatch(place, message, what))
 
@@ -118,38 +118,40 @@ class _Units:
             for root in roots(s):
                 for part in parts(root):
                     if isinstance(part, Expr):
-                        self._look(part, part.where if part.where.line else s.where, say)
-            self._look_at_statement(s, function, say)
+                        self._check_expression(part, part.where if part.where.line else s.where, report)
+            self._check_statement(s, function, report)
         return self._found
 
-    def _look(self, e: Expr, where: Where, say: Callable[[Where, str, str], None]) -> None:
+    def _check_expression(self, e: Expr, where: Where, report: Callable[[Where, str, str], None]) -> None:
         match e:
             case Binary(op="+" | "-" as op, left=left, right=right) | Compare(op=op, left=left, right=right):
                 one, other = self._unit(left), self._unit(right)
                 if one and other and one != other:
                     what = f"{source_text(left)} {op} {source_text(right)}"
-                    say(where, f"{source_text(left)} is in {one}, {source_text(right)} in {other}", what)
+                    report(where, f"{source_text(left)} is in {one}, {source_text(right)} in {other}", what)
             case Call(function=callee, arguments=arguments):
                 for parameter, value in zip(callee.parameters, arguments, strict=False):
-                    self._goes(value, self.variables.get(parameter, ""), where, say,
+                    self._check_target(value, self.variables.get(parameter, ""), where, report,
                                f"parameter {parameter.declaration.name} of {callee.name}")  # fmt: skip
 
-    def _look_at_statement(self, s: Stmt, function: Function, say: Callable[[Where, str, str], None]) -> None:
+    def _check_statement(self, s: Stmt, function: Function, report: Callable[[Where, str, str], None]) -> None:
         match s:
             case Return(value=Expr() as value):
-                self._goes(value, self.results.get(function.path, ""), s.where, say, f"the result of {function.name}")
+                self._check_target(
+                    value, self.results.get(function.path, ""), s.where, report, f"the result of {function.name}"
+                )
             case Assign(target=LValue(root=Variable() as root) as target, value=value):
                 name = target.text or root.declaration.name
-                self._goes(value, self.variables.get(root, ""), s.where, say, name)
+                self._check_target(value, self.variables.get(root, ""), s.where, report, name)
             case Declare(variable=variable, value=Expr() as value):
-                self._goes(value, self.variables.get(variable, ""), s.where, say, variable.declaration.name)
+                self._check_target(value, self.variables.get(variable, ""), s.where, report, variable.declaration.name)
 
-    def _goes(
-        self, value: Expr, wanted: str, where: Where, say: Callable[[Where, str, str], None], target: str
+    def _check_target(
+        self, value: Expr, wanted: str, where: Where, report: Callable[[Where, str, str], None], target: str
     ) -> None:
         unit = self._unit(value)
         if wanted and unit and wanted != unit:
-            say(where, f"{source_text(value)} is in {unit}, {target} in {wanted}", target)
+            report(where, f"{source_text(value)} is in {unit}, {target} in {wanted}", target)
 
     def _unit(self, e: Expr) -> str:
         """The unit of a value; empty if it is not known."""

@@ -61,22 +61,22 @@ class EndedParties:
     refused: Collection[str] = ()
 
 
-NOBODY: Final = EndedParties()
+NONE_ENDED: Final = EndedParties()
 
 
-def waits_for_others(finding: Finding, roles: Roles, nobody: EndedParties = NOBODY) -> bool:
+def waits_for_others(finding: Finding, roles: Roles, ended: EndedParties = NONE_ENDED) -> bool:
     """Whether a finding is about an endless loop that something outside of its function can end.
 
     A loop that is written without an end, as `for (;;)`, in a function that never returns is endless on purpose.
     """
     if finding.rule not in WAITING or finding.place is None:
         return False
-    if meant_endless(finding, roles):
+    if is_intended(finding, roles):
         return True
-    return loop_waits(finding.place, roles, main=finding.task == "main", nobody=nobody)
+    return loop_waits(finding.place, roles, main=finding.task == "main", ended=ended)
 
 
-def meant_endless(finding: Finding, roles: Roles) -> bool:
+def is_intended(finding: Finding, roles: Roles) -> bool:
     """Whether a finding is about an endless loop that is written without an end."""
     place = finding.place
     if finding.rule not in WAITING or place is None:
@@ -85,17 +85,17 @@ def meant_endless(finding: Finding, roles: Roles) -> bool:
     return any(without_end(loop) for loop in loops)
 
 
-def loop_waits(place: Place, roles: Roles, *, main: bool = False, nobody: EndedParties = NOBODY) -> bool:
+def loop_waits(place: Place, roles: Roles, *, main: bool = False, ended: EndedParties = NONE_ENDED) -> bool:
     """Whether a place lies in a loop that something outside of its function can end.
 
     While `main` waits, only functions run that the chip or the kernel enters.
     """
     by_path = {function.path: function for function in roles.functions}
-    meanwhile = set(_entered(roles, by_path, nobody.silent)) if main else set(roles.functions)
+    meanwhile = set(_entered(roles, by_path, ended.silent)) if main else set(roles.functions)
     for function in roles.functions:
         for loop in _loops_at(function, place):
-            looked_at = list(_looked_at(loop, by_path))
-            if any(_outside(node, nobody.refused) for node in looked_at):
+            looked_at = list(_read_by_loop(loop, by_path))
+            if any(_outside(node, ended.refused) for node in looked_at):
                 return True
             variables = {v for v in looked_at if isinstance(v, Variable) and v.kind == "global"}
             if any(variables & roles.writes[other.path] for other in meanwhile if main or other is not function):
@@ -131,13 +131,13 @@ def retried(loops: Collection[tuple[str, int]], block: str, roles: Roles) -> tup
     return None
 
 
-def vain_loop(frames: Sequence[Place], roles: Roles, nobody: EndedParties) -> tuple[Place, str] | None:
+def loop_without_end(frames: Sequence[Place], roles: Roles, ended: EndedParties) -> tuple[Place, str] | None:
     """A loop of `main` that only interrupt routines could end, while none of them runs any more.
 
     Returns where the loop begins, and an object that it tests; None if `main` is in no such loop.
     """
     by_path = {function.path: function for function in roles.functions}
-    for place in frames if nobody.silent else ():
+    for place in frames if ended.silent else ():
         for loop in (loop for function in roles.functions for loop in _loops_at(function, place)):
             tested = parts(loop.test)
             objects = [part.root for part in tested if isinstance(part, LValue) and isinstance(part.root, Variable)]
@@ -147,7 +147,7 @@ def vain_loop(frames: Sequence[Place], roles: Roles, nobody: EndedParties) -> tu
             own = _written_within(loop, roles, by_path)
             if own is None or own & set(objects) or any(variable.kind != "global" for variable in objects):
                 continue
-            if not loop_waits(start, roles, main=True, nobody=nobody):
+            if not loop_waits(start, roles, main=True, ended=ended):
                 return start, objects[0].name
     return None
 
@@ -182,7 +182,7 @@ def waits_for_tasks(finding: Finding, roles: Roles) -> bool:
         for loop in _loops_at(function, place):
             if not polls(loop):
                 continue
-            looked_at = list(_looked_at(loop, by_path))
+            looked_at = list(_read_by_loop(loop, by_path))
             variables = {v for v in looked_at if isinstance(v, Variable) and v.kind == "global"}
             outside = any(isinstance(node, RegisterRef | RegisterAt) for node in looked_at)
             by_others = any(
@@ -218,7 +218,7 @@ def blocks_of_loop(place: Place, functions: Iterable[Function]) -> set[str]:
     return {register.block for register in registers if isinstance(register, RegisterRef)}
 
 
-def looks_outside(function: Function, by_path: dict[str, Function]) -> bool:
+def reads_outside(function: Function, by_path: dict[str, Function]) -> bool:
     """Whether a function, or one that it calls, reads data from outside of the chip."""
     return any(_outside(node) for other in reached(function, by_path) for node in _registers(within(other.body)))
 
@@ -243,7 +243,7 @@ def _last_line(loop: While) -> int:
     return max((s.line for s in statements([loop])), default=loop.line)
 
 
-def _looked_at(loop: Stmt, by_path: dict[str, Function]) -> Iterable[Any]:
+def _read_by_loop(loop: Stmt, by_path: dict[str, Function]) -> Iterable[Any]:
     """The registers and variables that a loop reads, also those in functions that it calls."""
     below = list(within([loop]))
     functions = {other.path: other for first in called([loop]) for other in reached(first, by_path)}

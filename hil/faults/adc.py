@@ -33,13 +33,13 @@ class _OfInput(Effect):
 
     def begin(self) -> None:
         """It begins."""
-        self.ends_with(self.board.adc[self.adc].inject_fault(self.spoilt))
+        self.on_end(self.board.adc[self.adc].inject_fault(self.faulty_code))
 
     @abstractmethod
-    def spoilt(self, soc: int, channel: int, code: int) -> int:
+    def faulty_code(self, soc: int, channel: int, code: int) -> int:
         """What becomes of a code."""
 
-    def told(self, soc: int, before: int, after: int) -> int:
+    def reported(self, soc: int, before: int, after: int) -> int:
         """A code, and what becomes of it."""
         if after != before:
             self.fired(self.board.blocks[f"Adc{self.adc.lower()}ResultRegs"].registers[f"ADCRESULT{soc}"])
@@ -49,12 +49,12 @@ class _OfInput(Effect):
 class BitStuck(_OfInput):
     """One bit of the codes of an input."""
 
-    def spoilt(self, soc: int, channel: int, code: int) -> int:
+    def faulty_code(self, soc: int, channel: int, code: int) -> int:
         """What becomes of a code."""
         if channel != self.channel:
             return code
         bit = 1 << self.whole("bit")
-        return self.told(soc, code, code | bit if self.whole("value") else code & ~bit)
+        return self.reported(soc, code, code | bit if self.whole("value") else code & ~bit)
 
 
 class ChannelOpen(_OfInput):
@@ -62,12 +62,12 @@ class ChannelOpen(_OfInput):
 
     _held = 0
 
-    def spoilt(self, soc: int, channel: int, code: int) -> int:
+    def faulty_code(self, soc: int, channel: int, code: int) -> int:
         """What becomes of a code."""
         if channel != self.channel:
             self._held = code
             return code
-        return self.told(soc, code, self._held)
+        return self.reported(soc, code, self._held)
 
 
 class InputHeld(_OfInput):
@@ -75,24 +75,24 @@ class InputHeld(_OfInput):
 
     _held: int | None = None
 
-    def spoilt(self, soc: int, channel: int, code: int) -> int:
+    def faulty_code(self, soc: int, channel: int, code: int) -> int:
         """What becomes of a code."""
         if channel != self.channel:
             return code
         if self._held is None:
             self._held = code
-        return self.told(soc, code, self._held)
+        return self.reported(soc, code, self._held)
 
 
 class InputShorted(_OfInput):
     """An input is shorted to one voltage."""
 
-    def spoilt(self, soc: int, channel: int, code: int) -> int:
+    def faulty_code(self, soc: int, channel: int, code: int) -> int:
         """What becomes of a code."""
         if channel != self.channel:
             return code
         top = _full_scale(self.board, self.adc)
-        return self.told(soc, code, min(top, int(self.number("volts") / self.board.vrefhi_v * (top + 1))))
+        return self.reported(soc, code, min(top, int(self.number("volts") / self.board.vrefhi_v * (top + 1))))
 
 
 def _full_scale(board: Board, adc: str) -> int:
@@ -108,9 +108,9 @@ class ReferenceDrift(Effect):
     def begin(self) -> None:
         """It begins."""
         self._began = self.clock.now
-        self.ends_with(self.board.adc[self.text("adc")].inject_fault(self._spoilt))
+        self.on_end(self.board.adc[self.text("adc")].inject_fault(self._drifted_code))
 
-    def _spoilt(self, soc: int, _channel: int, code: int) -> int:
+    def _drifted_code(self, soc: int, _channel: int, code: int) -> int:
         over = self.number("over") * SYSCLK_HZ
         share = 1.0 if over <= 0.0 else min(1.0, (self.clock.now - self._began) / over)
         adc = self.text("adc")
@@ -126,7 +126,7 @@ class ConverterDead(Effect):
 
     def begin(self) -> None:
         """It begins."""
-        self.ends_with(self.board.adc[self.text("adc")].stop_converting())
+        self.on_end(self.board.adc[self.text("adc")].stop_converting())
         self.fired(self.board.blocks[f"Adc{self.text('adc').lower()}Regs"].registers["ADCINTFLG"])
 
 

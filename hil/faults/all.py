@@ -21,7 +21,7 @@ def unsuitable(machine: FaultTarget) -> dict[str, str]:
     reasons = {}
     for name, kind in FAULTS.items():
         try:
-            kind.effect.suits(machine)
+            kind.effect.check_machine(machine)
         except ValueError as error:
             reasons[name] = str(error)
     return reasons

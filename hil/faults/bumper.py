@@ -28,7 +28,7 @@ class _OfBumper(Effect):
         self.contact = Wire("contact", pull=1)
 
     @classmethod
-    def suits(cls, machine: FaultTarget) -> None:
+    def check_machine(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a board without a touch sensor."""
         _bumper(machine.board)
 
@@ -36,7 +36,7 @@ class _OfBumper(Effect):
         """From now on the pin is the fault's."""
         self.contact.drive(_DRIVER, 0 if self.pressed_pin else None)
         self.bumper.pin = self.contact
-        self.ends_with(self._back)
+        self.on_end(self._back)
 
     @property
     def pressed_pin(self) -> bool:
@@ -68,7 +68,7 @@ class BumperStuck(_OfBumper):
         """It begins."""
         self.take()
         self.put(self.text("state") == "pressed")
-        self.ends_with(self.contact.changed.connect(self.compare))
+        self.on_end(self.contact.changed.connect(self.compare))
         self.compare()
 
 

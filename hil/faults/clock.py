@@ -29,19 +29,19 @@ class OscillatorDrift(OfLine):
         own_time = [each for each in (getattr(self.machine, "world", None), *devices) if hasattr(each, "set_second")]
         for each in own_time:
             each.set_second(SYSCLK_HZ * (1.0 + self.number("percent") / 100.0))
-            self.ends_with(partial(each.set_second, float(SYSCLK_HZ)))
+            self.on_end(partial(each.set_second, float(SYSCLK_HZ)))
         if own_time:
             self.fired()
         pc = self.board.pc
         assert pc is not None
-        self.ends_with(self.board.serial_pins[pc.tx_gpio].disturb(self._outward))
+        self.on_end(self.board.serial_pins[pc.tx_gpio].disturb(self._stretched_frames))
 
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
         """From the PC: its bits are longer for a chip that runs faster."""
         self.hit()
         return (self._stretched(frame, 1.0 + self.number("percent") / 100.0),)
 
-    def _outward(self, frame: SerialFrame) -> Iterable[SerialFrame]:
+    def _stretched_frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
         self.fired()
         return (self._stretched(frame, 1.0 / (1.0 + self.number("percent") / 100.0)),)
 
@@ -60,10 +60,10 @@ class TaskSlow(Effect):
         """It begins."""
         self._ready = self._due = False
         trace, clock = self.board.trace, self.clock
-        self.ends_with(trace.listen(self._scheduled, "ready", "switch", each_tick=False))
+        self.on_end(trace.listen(self._scheduled, "ready", "switch", each_tick=False))
         self._kernel = clock.server
         clock.serve_with(self._serve)
-        self.ends_with(self._restore)
+        self.on_end(self._restore)
 
     def _restore(self) -> None:
         # Somebody else may have taken the CPU over meanwhile: the program has ended.
@@ -88,7 +88,7 @@ class TaskSlow(Effect):
             return
         self._due = False
         self.fired()
-        self.mounted.meet()
+        self.mounted.note_access()
         self.clock.delay(round(self.number("us") * CYCLES_PER_US))
 
 

@@ -102,7 +102,7 @@ class Effect(ABC):
     """What a kind of fault does.  Made when it is mounted; raises ValueError for a board that has not what it needs."""
 
     def __init__(self, mounted: MountedFault) -> None:
-        self.suits(mounted.machine)
+        self.check_machine(mounted.machine)
         self.mounted = mounted
         self.machine = mounted.machine
         self.board: Board = mounted.machine.board
@@ -111,7 +111,7 @@ class Effect(ABC):
         self._ends: list[Callable[[], None]] = []
 
     @classmethod  # noqa: B027
-    def suits(cls, machine: FaultTarget) -> None:
+    def check_machine(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a machine that has not what this kind needs, whatever the parameters."""
 
     @abstractmethod
@@ -123,7 +123,7 @@ class Effect(ABC):
         while self._ends:
             self._ends.pop()()
 
-    def ends_with(self, mend: Callable[[], None]) -> None:
+    def on_end(self, mend: Callable[[], None]) -> None:
         """What its end undoes, the last first."""
         self._ends.append(mend)
 
@@ -145,7 +145,7 @@ class Effect(ABC):
         """A parameter that is a text."""
         return str(self.mounted.fault.values[name])
 
-    def by_chance(self) -> bool:
+    def chosen_by_rate(self) -> bool:
         """Whether it is to happen this time, where `rate` is a probability."""
         rate = self.number("rate")
         return rate >= 1.0 or self.rng.random() < rate
@@ -181,14 +181,14 @@ class RandomTimes:
     def __init__(self, effect: Effect, rate_hz: float, action: Callable[[], None]) -> None:
         self._effect, self._rate_hz, self._action = effect, rate_hz, action
         self._event: Event | None = None
-        effect.ends_with(self._stop)
+        effect.on_end(self._stop)
 
     def plan(self) -> None:
         """The next one."""
         cycles = max(1, round(self._effect.rng.expovariate(self._rate_hz) * SYSCLK_HZ))
-        self._event = self._effect.clock.after(cycles, self._happen)
+        self._event = self._effect.clock.after(cycles, self._fire)
 
-    def _happen(self) -> None:
+    def _fire(self) -> None:
         self._action()
         self.plan()
 
@@ -208,7 +208,7 @@ class MountedFault:
         self.phase = Phase.WAITS
         self._start = start_cycles
         self._times: list[float] = []
-        self._met: FirstAccess | None = None
+        self._first_access: FirstAccess | None = None
         self._tapped: set[Cell] = set()
         self._watching: Callable[[], None] | None = None
         self._effect: Effect = fault.kind.effect(self)
@@ -217,7 +217,7 @@ class MountedFault:
 
     def report(self) -> FaultOutcome:
         """When it fired, how often, and who met it first."""
-        return FaultOutcome(self.fault, tuple(self._times), self.count, self._met)
+        return FaultOutcome(self.fault, tuple(self._times), self.count, self._first_access)
 
     def remove(self) -> None:
         """End it, and hear of nothing more.  Its report stays."""
@@ -264,24 +264,24 @@ class MountedFault:
 
     def watch(self, cells: Iterable[Cell]) -> None:
         """The first read of one of `cells` from now on meets it."""
-        if self._met is None and self.phase is not Phase.REMOVED:
+        if self._first_access is None and self.phase is not Phase.REMOVED:
             for cell in cells:
                 if cell not in self._tapped:
                     self._tapped.add(cell)
                     cell.tap(self._accessed, reads=True)
 
     def _accessed(self, _cell: Cell, access: str, _word: int, _mask: int) -> None:
-        if access == "read" and self._met is None:
-            self.meet()
+        if access == "read" and self._first_access is None:
+            self.note_access()
 
-    def meet(self) -> None:
+    def note_access(self) -> None:
         """The statement that executes now meets it."""
-        if self._met is None:
+        if self._first_access is None:
             places = self.machine.findings.here(1)
             place, function = "", ""
             if places:
                 place, function = f"{relative_path(places[0].file)}:{places[0].numbers}", places[0].function
-            self._met = FirstAccess(place, function, self.machine.findings.context(), self._since_start_s())
+            self._first_access = FirstAccess(place, function, self.machine.findings.context(), self._since_start_s())
             # Not now: who is told of an access is not changed while it is told.
             self.machine.clock.after(0, self._untap)
 
@@ -293,7 +293,7 @@ class MountedFault:
     @property
     def met(self) -> bool:
         """Whether somebody met it."""
-        return self._met is not None
+        return self._first_access is not None
 
 
 def mount(fault: Fault, machine: Machine | FaultTarget, *, from_now: bool = False) -> MountedFault:

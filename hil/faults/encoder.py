@@ -38,7 +38,7 @@ class _OfWheel(Effect):
             self.counts = [registers[each] for each in ("QPOSCNT", "QPOSLAT", "QPOSILAT", "QPOSSLAT")]
 
     @classmethod
-    def suits(cls, machine: FaultTarget) -> None:
+    def check_machine(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a board without wheels."""
         if not machine.board.find(NxtMotor):
             raise ValueError("this board has no motor with an encoder")
@@ -53,7 +53,7 @@ class _OfEdges(_OfWheel):
         shaft = QuadratureWire(f"{pins.name} at the shaft")
         shaft.moved.connect(lambda edges, start, end: pins.move(self.edges(edges), start, end))
         self.motor.encoder = shaft
-        self.ends_with(lambda: setattr(self.motor, "encoder", pins))
+        self.on_end(lambda: setattr(self.motor, "encoder", pins))
 
     @abstractmethod
     def edges(self, edges: int) -> int:
@@ -67,7 +67,7 @@ class EdgeLost(_OfEdges):
         """What comes of a movement."""
         left = 0
         for _ in range(abs(edges)):
-            if self.by_chance():
+            if self.chosen_by_rate():
                 self.fired(*self.counts)
             else:
                 left += 1
@@ -91,9 +91,9 @@ class _WheelOnFloorFault(_OfWheel):
         self.world: Any = getattr(self.machine, "world", None)
 
     @classmethod
-    def suits(cls, machine: FaultTarget) -> None:
+    def check_machine(cls, machine: FaultTarget) -> None:
         """Raises ValueError for wheels that roll nowhere."""
-        super().suits(machine)
+        super().check_machine(machine)
         if getattr(machine, "world", None) is None:
             raise ValueError("this board is in no world")
 
@@ -101,7 +101,7 @@ class _WheelOnFloorFault(_OfWheel):
         """From now on; undone at the end."""
         self.world.sync_now()
         self.world.robot.hamper(**how)
-        self.ends_with(self._free)
+        self.on_end(self._free)
 
     def _free(self) -> None:
         self.world.sync_now()
@@ -118,7 +118,7 @@ class WheelSlips(_WheelOnFloorFault):
     def begin(self) -> None:
         """It begins."""
         self.hamper(**{f"slip_{self.text('side')}": self.number("percent") / 100.0})
-        self.ends_with(self.motor.encoder.moved.connect(self.moved))
+        self.on_end(self.motor.encoder.moved.connect(self.moved))
 
 
 class WheelBlocked(_WheelOnFloorFault):
@@ -129,7 +129,7 @@ class WheelBlocked(_WheelOnFloorFault):
         self.hamper(**{f"hold_{self.text('side')}_nm": _HOLD_NM})
         bridge = self.motor.bridge
         for wire in (bridge.in1, bridge.in2):
-            self.ends_with(wire.duty_changed.connect(self._driven))
+            self.on_end(wire.duty_changed.connect(self._driven))
         self._driven()
 
     def _driven(self) -> None:

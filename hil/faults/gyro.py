@@ -38,7 +38,7 @@ class _OfGyro(Effect):
         self.received: Cell = self.board.blocks[f"Spi{letter.lower()}Regs"].registers["SPIRXBUF"]
 
     @classmethod
-    def suits(cls, machine: FaultTarget) -> None:
+    def check_machine(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a board without a gyro on an SPI."""
         _bus(machine.board, _gyro(machine.board))
 
@@ -50,13 +50,13 @@ class _OfGyro(Effect):
         slave = _on(self.bus, self.gyro)
         before = slave if isinstance(slave, TamperedSlave) else TamperedSlave(self.bus, self.gyro)
         before.add(with_answer, cut=cut)
-        self.ends_with(lambda: before.remove(with_answer))
+        self.on_end(lambda: before.remove(with_answer))
 
     def turns(self, change: Callable[[tuple[float, float, float]], tuple[float, float, float]]) -> None:
         """Have what turns it be changed, until the end."""
         source = self.gyro.rate_source
         self.gyro.set_rate_source(lambda cycles: change(source(cycles)))
-        self.ends_with(lambda: self.gyro.set_rate_source(source))
+        self.on_end(lambda: self.gyro.set_rate_source(source))
 
 
 def _gyro(board: Board) -> L3G4200D:
@@ -164,7 +164,7 @@ class WhoAmI(_OfGyro):
         """It begins."""
         self._address = self._bits = -1
         select = self.board.pins[int(self._part.pins["CS"].removeprefix("GPIO"))]
-        self.ends_with(select.changed.connect(self._selected))
+        self.on_end(select.changed.connect(self._selected))
         self.tamper(self._read)
 
     def _selected(self, _level: int) -> None:

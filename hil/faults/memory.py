@@ -48,9 +48,9 @@ class BitFlip(Effect):
         linked = self.machine.firmware.linked
         touch = linked.namespace.get("_c_touch")
         if linked.options.watch and callable(touch):
-            self._told = touch
+            self._reported = touch
             linked.watch_with(self._touched)
-            self.ends_with(lambda: linked.watch_with(touch))
+            self.on_end(lambda: linked.watch_with(touch))
 
     def _flip(self) -> None:
         memory = self.machine.firmware.linked.runtime.memory
@@ -62,8 +62,8 @@ class BitFlip(Effect):
         if self._flipped and obj.base + word == self.address:
             self._flipped = False
             if not write:
-                self.mounted.meet()
-        self._told(obj, word, write)
+                self.mounted.note_access()
+        self._reported(obj, word, write)
 
 
 KINDS = (

@@ -21,7 +21,7 @@ class _OfRadio(Effect):
         self.air = next(iter(self.board.find(XBeeLink).values())).air
 
     @classmethod
-    def suits(cls, machine: FaultTarget) -> None:
+    def check_machine(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a board without radios."""
         if not machine.board.find(XBeeLink):
             raise ValueError("this board has no radio (--xbee)")
@@ -36,7 +36,7 @@ class _OfRadio(Effect):
             return lost or own_lost, delay + own_delay
 
         self.air.interference = both
-        self.ends_with(lambda: setattr(self.air, "interference", before))
+        self.on_end(lambda: setattr(self.air, "interference", before))
 
     @abstractmethod
     def packet(self) -> tuple[bool, int]:
@@ -48,7 +48,7 @@ class PacketLoss(_OfRadio):
 
     def packet(self) -> tuple[bool, int]:
         """Whether a packet is lost, and how much later it comes."""
-        lost = self.by_chance()
+        lost = self.chosen_by_rate()
         if lost:
             self.fired()
         return lost, 0
@@ -59,7 +59,7 @@ class PacketLatency(_OfRadio):
 
     def packet(self) -> tuple[bool, int]:
         """Whether a packet is lost, and how much later it comes."""
-        if not self.by_chance():
+        if not self.chosen_by_rate():
             return False, 0
         self.fired()
         return False, round(self.number("ms") * CYCLES_PER_MS)

@@ -39,14 +39,14 @@ class OfLine(Effect):
             self.received = [self.board.blocks[f"Sci{signal[-1].lower()}Regs"].registers["SCIRXBUF"]]
 
     @classmethod
-    def suits(cls, machine: FaultTarget) -> None:
+    def check_machine(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a board without a line to a PC."""
         if machine.board.pc is None:
             raise ValueError(f"{type(machine.board).__name__} has no line to a PC")
 
     def begin(self) -> None:
         """It begins."""
-        self.ends_with(self.line.disturb(self.frames))
+        self.on_end(self.line.disturb(self.frames))
 
     @abstractmethod
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
@@ -66,7 +66,7 @@ class BitFlipped(OfLine):
 
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
         """What becomes of a frame."""
-        if not self.by_chance():
+        if not self.chosen_by_rate():
             return (frame,)
         bit = self.whole("bit")
         self.hit()
@@ -78,7 +78,7 @@ class ByteLost(OfLine):
 
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
         """What becomes of a frame."""
-        if not self.by_chance():
+        if not self.chosen_by_rate():
             return (frame,)
         self.hit()
         return ()
@@ -92,7 +92,7 @@ class ByteDoubled(OfLine):
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
         """What becomes of a frame."""
         self._put(frame, twice=False)
-        if self.by_chance():
+        if self.chosen_by_rate():
             self._put(frame, twice=True)
         return ()
 
@@ -114,7 +114,7 @@ class NoiseBurst(OfLine):
 
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
         """What becomes of a frame."""
-        if not self._left and self.by_chance():
+        if not self._left and self.chosen_by_rate():
             self._left = self.whole("bytes")
         if not self._left:
             return (frame,)
@@ -133,7 +133,7 @@ class LineStall(OfLine):
         """It begins."""
         self._held: list[SerialFrame] = []
         super().begin()
-        self.ends_with(self._release)
+        self.on_end(self._release)
         # Ends are undone from the last: the line is free first.
         self._ends.reverse()
 
@@ -159,7 +159,7 @@ class HeldLow(OfLine):
         """It begins."""
         super().begin()
         self.line.hold_low(True)
-        self.ends_with(lambda: self.line.hold_low(False))
+        self.on_end(lambda: self.line.hold_low(False))
         self.hit()
 
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:

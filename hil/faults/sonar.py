@@ -44,7 +44,7 @@ class _OfSensor(Effect):
         self.asked: Callable[[str, int], Echo | None] = self.sensor.range_source
 
     @classmethod
-    def suits(cls, machine: FaultTarget) -> None:
+    def check_machine(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a board without sonars."""
         if not machine.board.find(SonarRing):
             raise ValueError("this board has no sonars")
@@ -53,7 +53,7 @@ class _OfSensor(Effect):
         """The sensor hears what `source` says, until the end; `asked` tells what it would."""
         self.asked = self.sensor.range_source
         self.sensor.set_range_source(source)
-        self.ends_with(lambda: self.sensor.set_range_source(self.asked))
+        self.on_end(lambda: self.sensor.set_range_source(self.asked))
 
     def pinged(self) -> None:
         """The reading of this ping is another one than it would be."""

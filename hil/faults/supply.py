@@ -47,7 +47,7 @@ class SupplySag(Effect):
         self.motors = list(self.board.find(NxtMotor).values())
 
     @classmethod
-    def suits(cls, machine: FaultTarget) -> None:
+    def check_machine(cls, machine: FaultTarget) -> None:
         """Raises ValueError for a board without motors."""
         if not machine.board.find(NxtMotor):
             raise ValueError("this board has no motors")
@@ -59,9 +59,9 @@ class SupplySag(Effect):
     def supply(self, volts: float) -> None:
         """All motors get so much, until the end."""
         for motor in self.motors:
-            self.ends_with(supplied(motor, volts))
+            self.on_end(supplied(motor, volts))
             for wire in (motor.bridge.in1, motor.bridge.in2):
-                self.ends_with(wire.duty_changed.connect(self._driven))
+                self.on_end(wire.duty_changed.connect(self._driven))
         self._driven()
 
     def _driven(self) -> None:
@@ -76,14 +76,14 @@ class BrownOut(SelectLost):
         """It begins."""
         if self.number("volts") < _GYRO_V:
             super().begin()
-            self.ends_with(self.gyro.reset)
+            self.on_end(self.gyro.reset)
             self.gyro.reset()
             self.fired(self.received)
         for motor in self.board.find(NxtMotor).values():
-            self.ends_with(supplied(motor, _GONE_V))
+            self.on_end(supplied(motor, _GONE_V))
         for ring in self.board.find(SonarRing).values():
             ring.set_power(False)
-            self.ends_with(partial(ring.set_power, True))
+            self.on_end(partial(ring.set_power, True))
         self.fired(*(cell for _, adc, channel in sensors(self.board).values() for cell in self.results(adc, channel)))
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from emulator.signals import SerialFrame
     from hil.faults.effect import FaultTarget
 
-LOOK_CYCLES: Final = 10 * CYCLES_PER_MS
+SAMPLE_CYCLES: Final = 10 * CYCLES_PER_MS
 _POSE: Final = re.compile(r"(x|y|heading)\s*([<>])\s*(-?\d+(?:\.\d+)?)")
 _WORDS: Final = "frame N, order NAME, finding RULE, pose x>MM (x, y in mm, heading in degrees; > or <)"
 _CARRIAGE_RETURN: Final = 0x0D
@@ -123,9 +123,9 @@ class _Pose(_OneShot):
         self._clock = machine.clock
         self._what, self._limit = found[1], float(found[3])
         self._compare = operator.gt if found[2] == ">" else operator.lt
-        self._event = self._clock.after(0, self._look)
+        self._event = self._clock.after(0, self._sample)
 
-    def _look(self) -> None:
+    def _sample(self) -> None:
         if not self._on:
             return
         pose = self._world.pose
@@ -133,4 +133,4 @@ class _Pose(_OneShot):
         if self._compare(value, self._limit):
             self.happened()
         else:
-            self._event = self._clock.after(LOOK_CYCLES, self._look)
+            self._event = self._clock.after(SAMPLE_CYCLES, self._sample)

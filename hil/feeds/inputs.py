@@ -27,11 +27,11 @@ from hil.feeds.course import Constant, Course
 
 Undo = Callable[[], None]
 #: (cycles, value): what a sensor has seen.
-Told = Callable[[int, float], object]
+OnValue = Callable[[int, float], object]
 
 _EDGE_RAD: Final = 2.0 * pi / EDGES_PER_REVOLUTION
 #: An encoder moves at least this often, as in the world: its edges come to who did not ask.
-_LOOK_CYCLES: Final = 10 * CYCLES_PER_MS
+_SAMPLE_CYCLES: Final = 10 * CYCLES_PER_MS
 
 #: Units that a column may have instead of its input's: that unit, how much it is of it, and what is added.
 #: CHOICE: the count of an encoder stands for the middle between two edges.
@@ -56,7 +56,7 @@ class Input(ABC):
     def feed(self, course: Course) -> Undo:
         """Have it see a course from now on; what is returned gives it back to the physics."""
 
-    def log(self, told: Told) -> Undo | None:
+    def log(self, on_value: OnValue) -> Undo | None:
         """Tell what it sees from now on, to the cycle; None: it cannot be told."""
         return None
 
@@ -99,13 +99,13 @@ class YawRate(Input):
         """The rate, taken at each sample."""
         return self._turned_by(lambda _source: lambda cycles: (0.0, 0.0, course.at(cycles)))
 
-    def log(self, told: Told) -> Undo:
+    def log(self, on_value: OnValue) -> Undo:
         """The rate of each sample."""
 
         def of(source: Rates) -> Rates:
             def rates(cycles: int) -> tuple[float, float, float]:
                 x, y, z = source(cycles)
-                told(cycles, z)
+                on_value(cycles, z)
                 return x, y, z
 
             return rates
@@ -165,18 +165,18 @@ class Shaft(Input):
         assert self.motor is not None
         return _FedShaft(self.board, self.motor, course).end
 
-    def log(self, told: Told) -> Undo:
+    def log(self, on_value: OnValue) -> Undo:
         """Each edge, at its time."""
         assert self.pins is not None
         edge = 0
-        told(self.board.clock.now, 0.5 * _EDGE_RAD)
+        on_value(self.board.clock.now, 0.5 * _EDGE_RAD)
 
         def moved(edges: int, start: int, end: int) -> None:
             nonlocal edge
             sense, count = (1, edges) if edges > 0 else (-1, -edges)
             for index in range(1, count + 1):
                 edge += sense
-                told(start + (end - start) * index // count, (edge + 0.5) * _EDGE_RAD)
+                on_value(start + (end - start) * index // count, (edge + 0.5) * _EDGE_RAD)
 
         return self.pins.moved.connect(moved)
 
@@ -198,7 +198,7 @@ class _FedShaft:
         # It begins where the encoder stands: only what it turns from there counts.
         self._shaft.angle_rad = self._angle_rad - self._edge * _EDGE_RAD
         self._deaf = self._pins.looked_at.connect(self._advance)
-        self._event: Event | None = self._clock.after(_LOOK_CYCLES, self._look)
+        self._event: Event | None = self._clock.after(_SAMPLE_CYCLES, self._sample)
 
     def end(self) -> None:
         """The motor's shaft is seen again, from where the encoder stands."""
@@ -207,9 +207,9 @@ class _FedShaft:
         self._clock.cancel(self._event)
         self._motor.encoder = self._pins
 
-    def _look(self) -> None:
+    def _sample(self) -> None:
         self._advance()
-        self._event = self._clock.after(_LOOK_CYCLES, self._look)
+        self._event = self._clock.after(_SAMPLE_CYCLES, self._sample)
 
     def _advance(self) -> None:
         now, course = self._clock.now, self._course
@@ -247,12 +247,12 @@ class TouchInput(Input):
 
         return undo
 
-    def log(self, told: Told) -> Undo:
+    def log(self, on_value: OnValue) -> Undo:
         """Each press, and its end."""
         sensor, clock = self.sensor, self.board.clock
         assert sensor is not None
-        told(clock.now, float(sensor.pressed))
-        return sensor.pressed_changed.connect(lambda pressed: told(clock.now, float(pressed)))
+        on_value(clock.now, float(sensor.pressed))
+        return sensor.pressed_changed.connect(lambda pressed: on_value(clock.now, float(pressed)))
 
 
 @dataclass

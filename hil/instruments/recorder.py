@@ -19,7 +19,7 @@ from hil.faces import face_values
 from hil.feeds.inputs import inputs
 from hil.files import GrowingFile, growing
 from hil.instruments.levels import Levels, frame_levels, spi_levels
-from hil.instruments.trace_file import FROM_PC, LOOK_CYCLES, TO_PC, TraceWriter
+from hil.instruments.trace_file import FROM_PC, SAMPLE_CYCLES, TO_PC, TraceWriter
 from hil.instruments.variables import variables
 from hil.reports.excerpt import excerpt
 from hil.running import RunningBoard
@@ -169,7 +169,7 @@ class Recorder:
             for name, value in look():
                 self._now("faces", name, value)
 
-        self._regularly(LOOK_CYCLES, "faces", look)
+        self._regularly(SAMPLE_CYCLES, "faces", look)
         self._stops.append(tell_the_end)
 
     def _begin_scene(self) -> None:
@@ -185,7 +185,7 @@ class Recorder:
             seen = len(stage.happened)
             return stage.tell().items()
 
-        self._regularly(LOOK_CYCLES, "scene", look)
+        self._regularly(SAMPLE_CYCLES, "scene", look)
 
     def _regularly(self, cycles: int, channel: str, look: Callable[[], Iterable[tuple[str, Any]]]) -> None:
         """Tell names and values, once time passes and each so many cycles, when they have changed."""

@@ -30,7 +30,7 @@ _LONGEST: Final = 1_000_000
 Event = tuple[int, str, str, Any]
 
 #: Between two looks at what does not tell by itself that it has changed.
-LOOK_CYCLES: Final = 50 * CYCLES_PER_MS
+SAMPLE_CYCLES: Final = 50 * CYCLES_PER_MS
 #: Names of `RecordedTrace.about`: the pins of a line to a PC.
 TO_PC: Final = "pin to the PC"
 FROM_PC: Final = "pin from the PC"

@@ -18,7 +18,7 @@ from hil.client.decode import FrameDecoder
 from hil.client.plot import place, sonar_points
 from hil.instruments.serial_lines import Lines, ReceivedLine
 from hil.instruments.timeline import Span, TaskState, TaskTimeline
-from hil.instruments.trace_file import FROM_PC, LOOK_CYCLES, TO_PC
+from hil.instruments.trace_file import FROM_PC, SAMPLE_CYCLES, TO_PC
 from hil.reports.excerpt import readable
 from hil.reports.html import markdown
 from hil.reports.model import rule_of
@@ -92,14 +92,14 @@ class Replay:
         self._lanes: dict[str, dict[str, tuple[array[int], array[int]]]] = {}
         self._spans = 0
         self._lines = Lines()
-        self._said: list[ReceivedLine] = []
+        self._line_rows: list[ReceivedLine] = []
         self._findings: list[tuple[int, str, Mapping[str, Any]]] = []
         self._signals: dict[tuple[str, str], _Signal] = {}
         self._paths = {name: _Series("x", "y", "h") for name in ("true", "odometry", "robot", "believed")}
         self._sonars: dict[str, _Series] = {}
         self._scene: dict[str, Any] = {}
         #: Of what is told as a whole each time: moments and values.
-        self._told: dict[str, list[tuple[int, Any]]] = {"posts": [], "state": [], "bumper": [], "happened": []}
+        self._sampled: dict[str, list[tuple[int, Any]]] = {"posts": [], "state": [], "bumper": [], "happened": []}
         #: What there was too much of for a page, and when that was.
         self._full: dict[str, int] = {}
 
@@ -112,7 +112,7 @@ class Replay:
             case "serial":
                 line = self._lines.take(cycles, name, value)
                 if line is not None:
-                    self._say(line)
+                    self._add_line(line)
             case "findings":
                 self._findings.append((cycles, name, value))
             case "pose":
@@ -141,10 +141,10 @@ class Replay:
         self._spans += len(spans)
         spans.clear()
 
-    def _say(self, line: ReceivedLine) -> None:
-        if len(self._said) < MOST_LINES:
+    def _add_line(self, line: ReceivedLine) -> None:
+        if len(self._line_rows) < MOST_LINES:
             if line.content.strip():
-                self._said.append(line)
+                self._line_rows.append(line)
         else:
             self._full.setdefault("lines of the serial pins", line.end)
 
@@ -157,8 +157,8 @@ class Replay:
             series.add(cycles, (-1.0 / UNITS if each is None else each for each in value))
         elif what == "mount":
             self._scene.setdefault("mounts", {})[which] = value
-        elif what in self._told:
-            self._told[what].append((cycles, value))
+        elif what in self._sampled:
+            self._sampled[what].append((cycles, value))
         else:
             self._scene[what] = value
 
@@ -185,7 +185,7 @@ class Replay:
         return {
             "hz": SYSCLK_HZ,
             "units": UNITS,
-            "look": LOOK_CYCLES,
+            "look": SAMPLE_CYCLES,
             "end": self._end,
             "about": {name: text for name, text in self.about.items() if name not in (TO_PC, FROM_PC)},
             "full": [[what, cycles] for what, cycles in self._full.items()],
@@ -245,8 +245,8 @@ class Replay:
 
     def _spoken(self) -> dict[str, Any]:
         """Lines on serial pins: when each ended, which way it went, what it says."""
-        pins = list(dict.fromkeys(line.pin for line in self._said))
-        said = sorted(self._said, key=lambda line: line.end)
+        pins = list(dict.fromkeys(line.pin for line in self._line_rows))
+        said = sorted(self._line_rows, key=lambda line: line.end)
         return {
             "t": differences(line.end for line in said),
             "pin": [pins.index(line.pin) for line in said],
@@ -277,13 +277,13 @@ class Replay:
                 "ahead": body.body_ahead_m, "radius": body.body_radius_m, "track": body.track_m,
                 "wheel": body.wheel_radius_m,
             },
-            **{what: [list(each) for each in told] for what, told in self._told.items()},
+            **{what: [list(each) for each in told] for what, told in self._sampled.items()},
         }  # fmt: skip
 
     def _cloud(self, x_m: float, y_m: float, heading_rad: float) -> _Series:
         """What the frames to the PC say that the sonars saw, in the world's frame."""
         cloud, decoder = _Series("x", "y"), FrameDecoder()
-        for line in self._said:
+        for line in self._line_rows:
             if line.pin == self.about.get(TO_PC):
                 for frame in decoder.feed(line.content):
                     for point in place(sonar_points(frame), x_m, y_m, heading_rad):

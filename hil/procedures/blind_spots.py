@@ -95,13 +95,13 @@ def both() -> list[BlindSpots]:
 
 def sentence(found: Sequence[BlindSpots]) -> str:
     """What it means for the robot."""
-    def told(one: BlindSpots) -> str:
+    def line_of(one: BlindSpots) -> str:
         ahead = [(a, b) for a, b in one.lost() if max(abs(a), abs(b)) <= 90]
         if not ahead:
             return f"{one.name} lose none"
         return f"{one.name} lose every wall at {' and '.join(f'{a} to {b}' for a, b in ahead)} degrees"
 
-    return f"Of walls whose perpendicular lies within 90 degrees of straight ahead, {'; '.join(map(told, found))}."
+    return f"Of walls whose perpendicular lies within 90 degrees of straight ahead, {'; '.join(map(line_of, found))}."
 
 
 def plot(path: str | Path, found: Sequence[BlindSpots]) -> None:

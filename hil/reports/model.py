@@ -115,7 +115,7 @@ class ReportEntry:
     by: tuple[str, ...] = ()
 
     @property
-    def standing(self) -> str:
+    def state_word(self) -> str:
         """In one word: "accepted" by the source, else its state."""
         return "accepted" if self.accepted else self.state
 
@@ -161,7 +161,7 @@ class Report:
         entries = []
         asked = []
         for finding, as_known, named in zip(listed, present, by or [()] * len(listed), strict=True):
-            severity = policy.weigh(finding)
+            severity = policy.severity_of(finding)
             if severity is None:
                 continue
             state = "" if baseline is None else "unchanged" if as_known.fingerprint in baseline else "new"
@@ -177,7 +177,7 @@ class Report:
         return cls(run, tuple(entries), policy, off, tuple(idle(checked, asked)), absent, proof, drive)
 
     @property
-    def tells_times(self) -> bool:
+    def has_times(self) -> bool:
         """Whether something in it happened at a time."""
         return any(entry.finding.how != "static" for entry in self.entries)
 

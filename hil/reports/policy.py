@@ -24,7 +24,7 @@ from emulator.rules import RULES, Severity
 from hil.files import parse_toml, read_text
 
 TABLE: Final = "tool.c2000-hil"
-#: `Finding.how` of what a call with generated arguments has shown (`hil.drivers.judge`).
+#: `Finding.how` of what a call with generated arguments has shown (`hil.drivers.call_checker`).
 GENERATED: Final = "generated"
 _SEVERITIES: Final = {severity.value: severity for severity in Severity}
 
@@ -113,7 +113,7 @@ class Policy:
         rule = RULES.get(rule_id)
         return Severity.WARNING if rule is None else rule.severity
 
-    def weigh(self, finding: Finding) -> Severity | None:
+    def severity_of(self, finding: Finding) -> Severity | None:
         """How bad a finding is here; None: turned off.
 
         What only a call with generated arguments has shown is a note: the contract of the function may exclude it.

@@ -134,7 +134,7 @@ def as_a_compiler(report: Report) -> Iterator[str]:
     """The findings as a compiler prints its own, `FILE:LINE:COLUMN: SEVERITY: MESSAGE [RULE]`: editors read that."""
     for entry in report.worst_first:
         finding = entry.finding
-        if entry.standing in ("accepted", "unchanged"):
+        if entry.state_word in ("accepted", "unchanged"):
             continue
         place = finding.place
         where = "hil" if place is None else f"{relative_path(place.file)}:{place.line}:{place.column or 1}"
@@ -168,7 +168,7 @@ def last_line(report: Report) -> str:
 
 
 def _style(entry: ReportEntry) -> str | None:
-    return "dim" if entry.standing in ("accepted", "unchanged") else None
+    return "dim" if entry.state_word in ("accepted", "unchanged") else None
 
 
 def _panel(number: int, entry: ReportEntry) -> Panel:

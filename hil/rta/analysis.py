@@ -266,14 +266,14 @@ def most_computation_ns(task_set: TaskSet, name: str, protocol: Protocol = Proto
     """
     task = next(task for task in task_set.tasks if task.name == name)
 
-    def kept(computation_ns: int) -> bool:
+    def holds_with(computation_ns: int) -> bool:
         longer = replace(task, computation_ns=computation_ns)
         changed = tuple(longer if other is task else other for other in task_set.tasks)
         return all(response.in_time for response in analyse(replace(task_set, tasks=changed), protocol))
 
-    if not kept(task.computation_ns):
+    if not holds_with(task.computation_ns):
         return None
-    return _largest(kept, task.computation_ns, task.deadline_ns + 1)
+    return _largest(holds_with, task.computation_ns, task.deadline_ns + 1)
 
 
 def most_growth(task_set: TaskSet, protocol: Protocol = Protocol.INHERITANCE) -> float | None:
@@ -284,7 +284,7 @@ def most_growth(task_set: TaskSet, protocol: Protocol = Protocol.INHERITANCE) ->
             Section(s.gate, -(-s.time_ns * thousandths // 1000), longer(s.inner, thousandths)) for s in sections
         )
 
-    def kept(thousandths: int) -> bool:
+    def holds_with(thousandths: int) -> bool:
         tasks = tuple(
             replace(
                 task, computation_ns=-(-task.computation_ns * thousandths // 1000),
@@ -294,17 +294,17 @@ def most_growth(task_set: TaskSet, protocol: Protocol = Protocol.INHERITANCE) ->
         )  # fmt: skip
         return all(response.in_time for response in analyse(replace(task_set, tasks=tasks), protocol))
 
-    if not task_set.tasks or not kept(1000):
+    if not task_set.tasks or not holds_with(1000):
         return None
     fullest = max(task.computation_ns / task.deadline_ns for task in task_set.tasks)
-    return _largest(kept, 1000, int(1000 / fullest) + 2) / 1000
+    return _largest(holds_with, 1000, int(1000 / fullest) + 2) / 1000
 
 
-def _largest(kept: Callable[[int], bool], low: int, high: int) -> int:
+def _largest(holds_with: Callable[[int], bool], low: int, high: int) -> int:
     """The last whole number from `low` (kept) to below `high` (not kept) that is kept."""
     while high - low > 1:
         middle = (low + high) // 2
-        if kept(middle):
+        if holds_with(middle):
             low = middle
         else:
             high = middle

@@ -227,10 +227,10 @@ def expectations(table: Table) -> list[Table]:
         name = f"it does not drive on {fault['kind']} ({n})"
         found.append({"name": name, "quantity": "driving", "most": 0, "during": during})
         # A frame comes every 250 ms; the number of another fault may stand in the place of this one's.
-        told = min([last, *stops_s])
-        if len(faults) == 1 and told - first > 0.8 and fault["kind"] != "radio-loss":
+        on_run = min([last, *stops_s])
+        if len(faults) == 1 and on_run - first > 0.8 and fault["kind"] != "radio-loss":
             found.append({"name": f"it tells {fault['kind']} ({n})", "frame": _frame(fault, held),
-                          "during": [during[0], round(told, 2)], "least": 1})  # fmt: skip
+                          "during": [during[0], round(on_run, 2)], "least": 1})  # fmt: skip
     return found
 
 
@@ -335,14 +335,14 @@ def _run(seed: int, number: int, faithful: bool) -> _Ran:
 
 def campaign(
     runs: int, *, seed: int = 1, jobs: int = 1, faithful: bool = False,
-    told: Callable[[FailedRun | None], object] = lambda failed: None,
+    on_run: Callable[[FailedRun | None], object] = lambda failed: None,
 ) -> Campaign:  # fmt: skip
-    """Run `runs` runs, `jobs` at a time; after Ctrl-C return those that have ended.  `told` is called as each ends."""
+    """Run `runs` runs, `jobs` at a time; after Ctrl-C return those that have ended.  `on_run` is called as one ends."""
     ended: list[_Ran] = []
     with suppress(KeyboardInterrupt), closing(_each(runs, seed, jobs, faithful)) as each:
         for ran in each:
             ended.append(ran)
-            told(ran[1])
+            on_run(ran[1])
     ended.sort(key=lambda ran: ran[0])
     failed = tuple(failed for _, failed, _ in ended if failed is not None)
     found = merged_by((f"run {number}", finding) for number, _, findings in ended for finding in findings)

@@ -32,7 +32,7 @@ LASTS_S: Final = 4.0
 BEYOND_S: Final = 3.0
 AGAIN_S: Final = 2.0
 #: The time in s between two samples.
-LOOK_S: Final = 0.01
+SAMPLE_S: Final = 0.01
 #: The time in s between two references of a console.
 REPEAT_S: Final = 0.1
 #: The speed in m/s of a mission on a free way, which is also the console's order.
@@ -158,7 +158,7 @@ class RobotSample:
     heading_rad: float
 
     @property
-    def stands(self) -> bool:
+    def is_still(self) -> bool:
         """Whether it neither drives nor turns."""
         return abs(self.v_m_s) < STANDS_M_S and abs(self.w_rad_s) < STANDS_RAD_S
 
@@ -188,13 +188,13 @@ def drive(row: SingleFault | None, *, tele: bool = False, xbee: bool = False, se
     with closing(Bench(Setup(seed=seed, fixes=("all",), faults=faults, xbee=xbee, watch=watch), traced=False)) as bench:
         bench.boot()
         begin = bench.world.pose
-        for step in range(round((FAULT_S + LASTS_S + BEYOND_S + AGAIN_S) / LOOK_S)):
+        for step in range(round((FAULT_S + LASTS_S + BEYOND_S + AGAIN_S) / SAMPLE_S)):
             for data in _orders(step, tele):
                 bench.feed(data)
-            bench.run_for(LOOK_S)
+            bench.run_for(SAMPLE_S)
             robot, pose, firmware = bench.world.robot, bench.world.pose, bench.firmware.main_robot
             looks.append(RobotSample(
-                (step + 1) * LOOK_S, robot.v_m_s, robot.w_rad_s, RESET if bench.ended else int(firmware.Seen),
+                (step + 1) * SAMPLE_S, robot.v_m_s, robot.w_rad_s, RESET if bench.ended else int(firmware.Seen),
                 not firmware.bumper,
                 pose.x_m - begin.x_m, pose.y_m - begin.y_m, pose.heading_rad,
             ))  # fmt: skip
@@ -204,12 +204,12 @@ def drive(row: SingleFault | None, *, tele: bool = False, xbee: bool = False, se
 
 def _orders(step: int, tele: bool) -> list[bytes]:
     """The orders that the PC sends at a sample."""
-    stop, again = (round(s / LOOK_S) for s in (FAULT_S + LASTS_S + BEYOND_S, FAULT_S + LASTS_S + BEYOND_S + 0.5))
+    stop, again = (round(s / SAMPLE_S) for s in (FAULT_S + LASTS_S + BEYOND_S, FAULT_S + LASTS_S + BEYOND_S + 0.5))
     if step == stop:
         return [order("stop")]
     if step in (0, again):
         return [order("tele" if tele else "mission")]
-    repeats = tele and step % round(REPEAT_S / LOOK_S) == 0 and not stop < step < again
+    repeats = tele and step % round(REPEAT_S / SAMPLE_S) == 0 and not stop < step < again
     return [set_reference(SPEED_M_S, 0.0)] if repeats else []
 
 
@@ -256,7 +256,7 @@ def measured(row: SingleFault, run: FaultRun, sound: FaultRun) -> MeasuredFault:
     end_s = FAULT_S + min(fault.lasts_s, LASTS_S)
     noticed, noticed_ms = _noticed(run, sound)
     does, does_ms = _does(run, sound)
-    goes_on, goes_on_ms = _goes_on(run, does, does_ms, end_s)
+    goes_on, goes_on_ms = _driving_after(run, does, does_ms, end_s)
     return MeasuredFault(row, run.fired, noticed, noticed_ms, does, does_ms, goes_on, goes_on_ms, run.collisions)
 
 
@@ -274,12 +274,12 @@ def _does(run: FaultRun, sound: FaultRun) -> tuple[str, float | None]:
     """How the robot's behaviour differs from the drive without a fault, while the fault lasts; and when."""
     looks, others = (each.between(FAULT_S, FAULT_S + LASTS_S) for each in (run, sound))
     speed = others[0].v_m_s
-    held = round(HELD_S / LOOK_S)
-    still = [look.stands for look in looks]
-    stands = next((look for n, look in enumerate(looks) if all(still[n : n + held])), None)
-    if stands is not None:
-        backs = any(look.v_m_s < -BACKS_M_S for look in looks if look.time_s > stands.time_s)
-        return "stops" + (", then goes back" if backs else ""), _after(stands)
+    held = round(HELD_S / SAMPLE_S)
+    still = [look.is_still for look in looks]
+    is_still = next((look for n, look in enumerate(looks) if all(still[n : n + held])), None)
+    if is_still is not None:
+        backs = any(look.v_m_s < -BACKS_M_S for look in looks if look.time_s > is_still.time_s)
+        return "stops" + (", then goes back" if backs else ""), _after(is_still)
     seen: list[tuple[float, str]] = []
     slow = [look for look in looks if look.v_m_s < SLOWER * speed]
     if len(slow) > held:
@@ -296,7 +296,7 @@ def _after(look: RobotSample) -> float:
     return round(1000 * (look.time_s - FAULT_S))
 
 
-def _goes_on(run: FaultRun, does: str, does_ms: float | None, end_s: float) -> tuple[str, float | None]:
+def _driving_after(run: FaultRun, does: str, does_ms: float | None, end_s: float) -> tuple[str, float | None]:
     """How the robot drives after the fault, and when it does so."""
     if does_ms is None:
         return "", None
@@ -308,7 +308,7 @@ def _goes_on(run: FaultRun, does: str, does_ms: float | None, end_s: float) -> t
     by_itself = _drives(run, max(end_s, FAULT_S + does_ms / 1000), over_s, enough)
     if by_itself is not None:
         return "drives on", round(1000 * (by_itself - end_s))
-    again = _drives(run, over_s + 0.5, run.looks[-1].time_s + LOOK_S, speed * DRIVES)
+    again = _drives(run, over_s + 0.5, run.looks[-1].time_s + SAMPLE_S, speed * DRIVES)
     return ("drives when told to stand and to drive", None) if again is not None else ("stands", None)
 
 
@@ -376,15 +376,15 @@ def mission(name: str, world: WorldMap, *, seed: int = 1) -> Mission:
         bench.boot()
         bench.world.bumper_changed.connect(pressed.append)
         bench.feed(order("mission"))
-        for step in range(round(MISSION_S / LOOK_S)):
-            bench.run_for(LOOK_S)
+        for step in range(round(MISSION_S / SAMPLE_S)):
+            bench.run_for(SAMPLE_S)
             room = world.room(bench.world.pose.x_m, bench.world.pose.y_m)
             nearest = min(nearest, room)
             # It has its speed after a second.
-            if slows is None and step * LOOK_S > 1.0 and bench.world.robot.v_m_s < SLOWER * SPEED_M_S:
+            if slows is None and step * SAMPLE_S > 1.0 and bench.world.robot.v_m_s < SLOWER * SPEED_M_S:
                 slows = room
             ways.append(bench.world.travelled_m)
             if number := int(bench.firmware.main_robot.Seen):
                 seen[SEEN[number]] = None
-        goes_on_m = ways[-1] - ways[-1 - round(5.0 / LOOK_S)]
+        goes_on_m = ways[-1] - ways[-1 - round(5.0 / SAMPLE_S)]
         return Mission(name, slows, nearest, bench.world.robot.collisions, sum(pressed), tuple(seen), goes_on_m)

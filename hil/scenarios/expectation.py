@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from hil.bench import Bench
 
 #: How often something is looked at that must hold for a time.
-LOOK_S: Final = 0.05
+SAMPLE_S: Final = 0.05
 #: How often is looked for a hit, and what counts as one: forward, with something within 40 cm for so long in the front
 #: sonar.  Its next reading comes within 147 ms, TaskNAVIGATION within 50 ms, TaskSERVO within 25 ms; then the wheels
 #: brake within 0.2 s.
-_HIT_LOOK_S: Final = 0.01
+_HIT_SAMPLE_S: Final = 0.01
 _HIT_IN: Final = 40.0 / 2.54
 _HIT_SEEN_S: Final = 0.5
 _HIT_M_S: Final = 0.02
@@ -149,8 +149,8 @@ class ExpectationWatch:
         each, clock = self._expectations[index], self._bench.clock
         now_s = (clock.now - self._start) / SYSCLK_HZ
         self._looks[index].append((now_s, self._value(each)))
-        if now_s + LOOK_S <= each.during[1]:
-            clock.after(round(LOOK_S * SYSCLK_HZ), _SampledCheck(self, index))
+        if now_s + SAMPLE_S <= each.during[1]:
+            clock.after(round(SAMPLE_S * SYSCLK_HZ), _SampledCheck(self, index))
 
     def _byte(self, byte: int, cycles: int) -> None:
         self._decoded += len(list(self._decoder.feed(bytes((byte,)))))
@@ -319,7 +319,7 @@ class _HitCounter:
             self.count += seen and self._speed_m_s > _HIT_M_S and bench.status().state == "MISSION"
             self._collisions = robot.collisions
         self._speed_m_s = robot.v_m_s
-        bench.clock.after(round(_HIT_LOOK_S * SYSCLK_HZ), self)
+        bench.clock.after(round(_HIT_SAMPLE_S * SYSCLK_HZ), self)
 
 
 class _StallCounter:
@@ -339,7 +339,7 @@ class _StallCounter:
                 self._since[motor] = clock.now
             else:
                 self.longest_s = max(self.longest_s, (clock.now - since) / SYSCLK_HZ)
-        clock.after(round(_HIT_LOOK_S * SYSCLK_HZ), self)
+        clock.after(round(_HIT_SAMPLE_S * SYSCLK_HZ), self)
 
 
 def _driven(motor: NxtMotor) -> float:

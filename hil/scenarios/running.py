@@ -171,22 +171,22 @@ def _plot(path: Path, bench: Bench, scenario: Scenario) -> None:
 
 
 def run_files(
-    paths: Sequence[Path], *, jobs: int = 1, told: Callable[[int], None] = lambda index: None,
+    paths: Sequence[Path], *, jobs: int = 1, on_file: Callable[[int], None] = lambda index: None,
     progress: Callable[[int, float], None] = lambda index, fraction: None,
 ) -> Iterator[ScenarioOutcome]:  # fmt: skip
     """Run files, `jobs` at a time, each in a process of its own if several; outcomes come in the order of the files.
 
-    `told` hears of each that has ended, in whatever order.  Raises ValueError, OSError as `run_file`.
+    `on_file` hears of each that has ended, in whatever order.  Raises ValueError, OSError as `run_file`.
     """
     if jobs <= 1 or len(paths) <= 1:
         for index, path in enumerate(paths):
             outcome = run_file(path, progress=lambda fraction, index=index: progress(index, fraction))  # type: ignore[misc]
-            told(index)
+            on_file(index)
             yield outcome
         return
     with workers(jobs) as pool:
         futures: list[Future[ScenarioOutcome]] = [pool.submit(run_file, path) for path in paths]
         for index, future in enumerate(futures):
-            future.add_done_callback(lambda _future, index=index: told(index))  # type: ignore[misc]
+            future.add_done_callback(lambda _future, index=index: on_file(index))  # type: ignore[misc]
         for future in futures:
             yield future.result()

@@ -85,43 +85,43 @@ class SoakResult:
 
 def soak(
     most_s: float, *, seed: int = 1, fixes: tuple[str, ...] = ("all",), world: str = WORLD, xbee: bool = True,
-    told: Callable[[SoakResult], object] = lambda soaked: None,
+    on_progress: Callable[[SoakResult], object] = lambda soaked: None,
 ) -> SoakResult:  # fmt: skip
-    """Let a robot drive for so much virtual time, or until Ctrl-C.  `told` hears after each round how it stands.
+    """Let a robot drive for so much virtual time, or until Ctrl-C.  `on_progress` hears after each round how it stands.
 
     The same arguments give the same result, to the byte.  Raises ValueError for a setup that there is not; what this
     tool does wrong comes through.
     """
-    return _Soak(Setup(world=world, seed=seed, fixes=fixes, xbee=xbee), most_s, told).run()
+    return _Soak(Setup(world=world, seed=seed, fixes=fixes, xbee=xbee), most_s, on_progress).run()
 
 
 class _Soak:
     def __init__(self, setup: Setup, most_s: float, tell: Callable[[SoakResult], object]) -> None:
         self._setup = setup
         self._most_s = most_s
-        self._tell = tell
+        self._on_progress = tell
         self._over = False
         self._next_count_s = EVERY_S
         self._rng = Random(f"{setup.seed}:soak")
-        self._told = SoakResult(setup.seed, setup.fixes)
+        self._result = SoakResult(setup.seed, setup.fixes)
         self._uart, self._trace = hashlib.sha256(), hashlib.sha256()
 
     def run(self) -> SoakResult:
         """Until the time is over."""
-        told, setup = self._told, self._setup
+        on_progress, setup = self._result, self._setup
         try:
             while not self._over:
-                told.switched_on += 1
+                on_progress.switched_on += 1
                 self._until_it_is_switched_off(setup)
                 # Another robot: its noise is not the same again.
                 setup = replace(setup, seed=setup.seed + 1)
         except KeyboardInterrupt:
-            told.interrupted = True
-        told.uart_sha256, told.trace_sha256 = self._uart.hexdigest(), self._trace.hexdigest()
-        return told
+            on_progress.interrupted = True
+        on_progress.uart_sha256, on_progress.trace_sha256 = self._uart.hexdigest(), self._trace.hexdigest()
+        return on_progress
 
     def _until_it_is_switched_off(self, setup: Setup) -> None:
-        told, before_s = self._told, self._told.seconds
+        on_progress, before_s = self._result, self._result.seconds
         bench = Bench(setup)
         bench.uart_sent.connect(self._sent)
         try:
@@ -130,59 +130,59 @@ class _Soak:
             back = True
             while back and not self._over:
                 back = self._round(bench)
-                told.seconds = before_s + seconds(bench.clock.now)
+                on_progress.seconds = before_s + seconds(bench.clock.now)
                 self._count_objects()
-                self._over = told.seconds >= self._most_s
-                self._tell(told)
+                self._over = on_progress.seconds >= self._most_s
+                self._on_progress(on_progress)
         except FirmwareStopped as reason:
-            told.seconds = before_s + seconds(bench.clock.now)
-            told.ended.append(f"{told.seconds:.3f} s: {reason}")
+            on_progress.seconds = before_s + seconds(bench.clock.now)
+            on_progress.ended.append(f"{on_progress.seconds:.3f} s: {reason}")
         except KeyboardInterrupt:
-            told.seconds = before_s + seconds(bench.clock.now)
-            told.interrupted = self._over = True
+            on_progress.seconds = before_s + seconds(bench.clock.now)
+            on_progress.interrupted = self._over = True
         finally:
             bench.close()
-        told.travelled_m += bench.world.travelled_m
-        told.collisions += bench.world.robot.collisions
+        on_progress.travelled_m += bench.world.travelled_m
+        on_progress.collisions += bench.world.robot.collisions
         here = (replace(each, time_cycles=each.time_cycles + round(before_s * SYSCLK_HZ)) for each in bench.findings)
-        told.findings = merged([*told.findings, *here])
+        on_progress.findings = merged([*on_progress.findings, *here])
         self._uart.update(bench.uart_sha256.encode("ascii"))
         self._trace.update(bench.trace_sha256.encode("ascii"))
 
     def _count_objects(self) -> None:
-        if self._told.seconds >= self._next_count_s:
+        if self._result.seconds >= self._next_count_s:
             self._next_count_s += EVERY_S
             gc.collect()
-            self._told.objects.append((self._told.seconds, len(gc.get_objects())))
+            self._result.objects.append((self._result.seconds, len(gc.get_objects())))
 
     def _sent(self, byte: int, _cycles: int) -> None:
-        self._told.frames += byte == _FRAME_BEGINS
+        self._result.frames += byte == _FRAME_BEGINS
 
     def _order(self, bench: Bench, data: bytes) -> None:
-        self._told.orders += 1
+        self._result.orders += 1
         bench.feed(data)
 
     def _round(self, bench: Bench) -> bool:
         """A drive, a fault, and whether the robot comes back."""
-        rng, told = self._rng, self._told
+        rng, on_progress = self._rng, self._result
         bench.run_for(rng.uniform(*QUIET_S))
         fault = self._fault(bench)
         try:
             mounted = mount(fault, bench, from_now=True)
         except ValueError:
-            told.not_here.add(fault.kind.name)
+            on_progress.not_here.add(fault.kind.name)
             return True
-        told.mounted[fault.kind.name] += 1
+        on_progress.mounted[fault.kind.name] += 1
         for _ in range(rng.randrange(4)):
             bench.run_for(fault.lasts_s / 4)
             self._order(bench, self._anything())
         bench.run_for(fault.lasts_s)
         mounted.remove()
         report = mounted.report()
-        told.fired[fault.kind.name] += report.count > 0
-        told.met[fault.kind.name] += report.met is not None
+        on_progress.fired[fault.kind.name] += report.count > 0
+        on_progress.met[fault.kind.name] += report.met is not None
         if bench.ended:
-            told.ended.append(f"{told.seconds:.3f} s: the watchdog has reset the chip, after {fault}")
+            on_progress.ended.append(f"{on_progress.seconds:.3f} s: the watchdog has reset the chip, after {fault}")
             return False
         return self._comes_back(bench, fault) and fault.kind.name not in _LASTING
 
@@ -213,7 +213,7 @@ class _Soak:
             bench.run_for(1.0)
             if bench.world.travelled_m - begin_m > BACK_M:
                 return True
-        self._told.stranded.append(f"{self._told.seconds:.3f} s: after {fault}")
+        self._result.stranded.append(f"{self._result.seconds:.3f} s: after {fault}")
         return False
 
 

@@ -34,7 +34,7 @@ from hil.terminal.robot import EmulatedRobot
 from hil.terminal.tele import Arrow
 
 #: Between two looks at line and robot.
-LOOK_S: Final = 0.1
+REFRESH_S: Final = 0.1
 #: The robot sends every 250 ms: after this it is said to be silent.
 SILENT_S: Final = 1.5
 #: Lines that the list of frames remembers: more than any screen has.
@@ -118,7 +118,7 @@ class TerminalApp(App[None]):
         self._first = first
         #: Why there will be no line.
         self.failure = ""
-        self._said = ""
+        self._message = ""
         self._frame: OdometryFrame | None = None
         self._frame_s = 0.0
         self._began_s = time.monotonic()
@@ -150,7 +150,7 @@ class TerminalApp(App[None]):
     def on_mount(self) -> None:
         """Start the updates; handle signals so that the console leaves cleanly."""
         self._look()
-        self.set_interval(LOOK_S, self._look)
+        self.set_interval(REFRESH_S, self._look)
         # Windows' loop has no signal handlers, nor has one outside the main thread.
         with contextlib.suppress(NotImplementedError, RuntimeError, ValueError):
             for number in _signals():
@@ -207,7 +207,7 @@ class TerminalApp(App[None]):
             traffic = self.link.traffic
             parts.append(f"frames {traffic.frames} bad {traffic.malformed}")
             parts += [f"refused {traffic.refused}"] if traffic.refused else []
-        parts += [self._said] if self._said else []
+        parts += [self._message] if self._message else []
         parts += [self.link.port] if self.link is not None else []
         return " | ".join(parts)
 
@@ -248,18 +248,18 @@ class TerminalApp(App[None]):
 
     def action_order(self, keyword: str) -> None:
         """An order of one word."""
-        self._say(self.link is not None and self.link.order(keyword), keyword)
+        self._set_message(self.link is not None and self.link.order(keyword), keyword)
 
     def action_stop(self) -> None:
         """Send STOP before everything that is queued."""
-        self._say(self.link is not None and self.link.stop(), "stop")
+        self._set_message(self.link is not None and self.link.stop(), "stop")
 
     def action_tele(self) -> None:
         """Arrows drive from now on; again: it ends with a stop."""
         if self.link is not None and self.link.tele is not None:
             self.action_stop()
         else:
-            self._say(self.link is not None and self.link.begin_tele(), "tele: arrows drive")
+            self._set_message(self.link is not None and self.link.begin_tele(), "tele: arrows drive")
 
     def action_rest(self) -> None:
         """V = W = 0, in telemanipulation."""
@@ -282,14 +282,14 @@ class TerminalApp(App[None]):
             setr = parse_order(f"set {event.value}")
         except ValueError as error:
             shown = event.value.strip()
-            self._said = str(error) if len(shown.replace(",", " ").split()) == 2 else f"not V W: {shown[:20]!r}"
+            self._message = str(error) if len(shown.replace(",", " ").split()) == 2 else f"not V W: {shown[:20]!r}"
             return
         event.input.clear()
         self.action_leave()
-        self._say(self.link is not None and self.link.set_reference(setr), setr.decode("ascii").strip("#\r"))
+        self._set_message(self.link is not None and self.link.set_reference(setr), setr.decode("ascii").strip("#\r"))
 
-    def _say(self, done: bool, what: str) -> None:
-        self._said = what if done else f"not sent: {what}"
+    def _set_message(self, done: bool, what: str) -> None:
+        self._message = what if done else f"not sent: {what}"
         _update(self._status_line, self._status())
 
     # The rest

@@ -18,7 +18,7 @@ from hil.serial_port import SerialPort, open_port
 from hil.session import Session
 
 #: Between two looks at the findings.
-LOOK_S: Final = 0.25
+REFRESH_S: Final = 0.25
 #: A robot that is told to end does so after its present slice.
 GRACE_S: Final = 5.0
 
@@ -50,7 +50,7 @@ class EmulatedRobot:
         self._setup = setup
         self._machine = machine
         self._pacer = Pacer(pace)
-        self._look_s = 0.0
+        self._refreshed_s = 0.0
         self._wanted = True
         self._thread = threading.Thread(target=self._live, name="emulated robot", daemon=True)
         self._thread.start()
@@ -94,8 +94,8 @@ class EmulatedRobot:
         if not self._wanted:
             session.stop()
         now_s = time.monotonic()
-        if now_s >= self._look_s:
-            self._look_s = now_s + LOOK_S
+        if now_s >= self._refreshed_s:
+            self._refreshed_s = now_s + REFRESH_S
             self.findings = tuple(session.machine.findings)
 
 

@@ -122,7 +122,7 @@ class Case:
 
     def not_modelled(self) -> list[str]:
         """What the boards used that this emulator does not have, each once: registers, functions, parts."""
-        used = (f for f in self.findings if f.rule == "unmodelled" and self.policy.weigh(f) is not None)
+        used = (f for f in self.findings if f.rule == "unmodelled" and self.policy.severity_of(f) is not None)
         return list(dict.fromkeys(".".join(f.object.split(".")[:2]) or f.message for f in used))
 
     def counted(self) -> list[ReportEntry]:

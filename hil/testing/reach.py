@@ -61,7 +61,7 @@ class Reach:
         """Who calls which function, and who writes which object, in these modules."""
         return WriterAnalysis(self._modules, set())
 
-    def goes_elsewhere(self, part: Any) -> bool:
+    def calls_outside(self, part: Any) -> bool:
         """Whether a part of a function calls a function outside of the firmware."""
         if not isinstance(part, Call):
             return False
@@ -149,13 +149,13 @@ class Reach:
             pointers = routine.uses_pointers and self.registers_pointed_at
             if routine.moves or pointers or register.block in routine.written | self._read_with_effect(routine):
                 return True
-        return self.under_way(register.block)
+        return self.executing(register.block)
 
     def _read_with_effect(self, routine: _Routine) -> set[str]:
         """The blocks of the registers that the routine reads with a side effect."""
         return {b for b, name in routine.read if not self._board.register(b, name).looked_at}
 
-    def under_way(self, block: str) -> bool:
+    def executing(self, block: str) -> bool:
         """Whether an event is scheduled that may change a register of a block."""
         if self._dma_listens():
             return True
@@ -245,7 +245,7 @@ def _line(number: int) -> int:
 
 def _anything(reach: Reach, part: Any) -> bool:
     """Whether a part of a routine is a call that may do anything; the run-time library writes by pointers at most."""
-    if isinstance(part, Call) and reach.goes_elsewhere(part):
+    if isinstance(part, Call) and reach.calls_outside(part):
         name = part.function.name
         return name in reach.replaced or part.function.path in reach.threads.functions or not hasattr(Rts, name)
     return isinstance(part, CallPointer)

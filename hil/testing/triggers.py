@@ -22,7 +22,7 @@ from hil.testing.uart import Uart
 Fire = Callable[[Any], None]
 Disarm = Callable[[], None]
 #: How often a condition is looked at, in cycles.
-LOOK_CYCLES: Final = SYSCLK_HZ // 10_000
+SAMPLE_CYCLES: Final = SYSCLK_HZ // 10_000
 
 
 class Subscription:
@@ -251,7 +251,7 @@ class Found(Trigger):
 
 
 class Holds(Trigger):
-    """A condition of the test's own holds, looked at every `LOOK_CYCLES`.  Gives what it returned."""
+    """A condition of the test's own holds, looked at every `SAMPLE_CYCLES`.  Gives what it returned."""
 
     def __init__(self, board: Board, condition: Callable[[], Any], text: str) -> None:
         self._clock = board.clock
@@ -268,7 +268,7 @@ class Holds(Trigger):
             if value:
                 fire(value)
             else:
-                pending = self._clock.after(LOOK_CYCLES, look)
+                pending = self._clock.after(SAMPLE_CYCLES, look)
 
         look()
         return lambda: self._clock.cancel(pending)

@@ -86,7 +86,7 @@ class PollingLoop:
             [Evaluate(loop.where, loop.test)], self._functions
         )
         self.delays = any(isinstance(part, Call) and part.function.name in DELAYS for part in within(self._body))
-        self._exits = list(self._looked_at())
+        self._exits = list(self._dependencies())
         self._unclear = self._is_unclear()
 
     @property
@@ -120,8 +120,8 @@ class PollingLoop:
         """What could have ended it, a sentence each."""
         registers = {register_text(part): part for part in self._exits if isinstance(part, RegisterRef)}
         for text, register in registers.items():
-            under_way = self._reach.under_way(register.block)
-            quiet = "" if under_way else ", and nothing is under way on the chip that could change it"
+            executing = self._reach.executing(register.block)
+            quiet = "" if executing else ", and nothing is under way on the chip that could change it"
             yield f"it waits for {text}, which is {self._value(register)}{quiet}"
         for variable in dict.fromkeys(part for part in self._exits if isinstance(part, Variable)):
             yield from self._about(variable)
@@ -141,7 +141,7 @@ class PollingLoop:
         yield from _decisions(self.loop.body)
         yield from _decisions(self.loop.step)
 
-    def _looked_at(self) -> Iterator[Any]:
+    def _dependencies(self) -> Iterator[Any]:
         """The registers and objects that the conditions depend on, directly or through what they are computed from."""
         waiting: list[Any] = list(self._conditions())
         called = [s for function in self._inside[1:] for s in statements(function.body)]
@@ -175,7 +175,7 @@ class PollingLoop:
             elif isinstance(part, CallPointer):
                 yield part
 
-    def _goes_on(self, variable: Variable) -> bool:
+    def _makes_progress(self, variable: Variable) -> bool:
         """Whether the loop computes an object's next value from its present one: such a loop makes progress."""
         if variable.kind != "global" and variable not in {*self.function.locals, *self.function.parameters}:
             return False  # a called function begins anew each time
@@ -193,7 +193,7 @@ class PollingLoop:
             if isinstance(part, RegisterRef):
                 if part.block != _PINS and not self._board.register(part.block, part.register).looked_at:
                     return True
-            elif not isinstance(part, Variable) or self._goes_on(part):
+            elif not isinstance(part, Variable) or self._makes_progress(part):
                 return True
         if self.turn_cycles > _LONG:
             return True
@@ -202,7 +202,7 @@ class PollingLoop:
                 return True
             if isinstance(s, Assign) and not (isinstance(s.target, LValue) and isinstance(s.target.root, Variable)):
                 return True
-        return any(isinstance(part, CallPointer) or self._reach.goes_elsewhere(part) for part in within(self._body))
+        return any(isinstance(part, CallPointer) or self._reach.calls_outside(part) for part in within(self._body))
 
     # --- in words ----------------------------------------------------------------------------------------------------
 

@@ -97,7 +97,7 @@ class FaceRow:
 
     def show(self, value: float | None) -> None:
         """What it is now; None: the part does not tell."""
-        text = "" if value is None else said(value, self._face.unit)
+        text = "" if value is None else value_text(value, self._face.unit)
         if self._now.text != text:
             self._now.text = text
         if value is not None and value != self._shown and time.monotonic() >= self._held_until_s:
@@ -129,7 +129,7 @@ class FaceRow:
         self._put(self._part, self._face, float(value))
 
 
-def said(value: float, unit: str) -> str:
+def value_text(value: float, unit: str) -> str:
     """A value with its unit; of a face that is yes or no (`1 = pressed`) which of them."""
     yes = unit.removeprefix("1 = ")
     if yes != unit and value in (0.0, 1.0):

@@ -265,9 +265,9 @@ class _Head:
             self._pace.visible = False
 
     def _titles(self, now: Snapshot) -> Iterable[str]:
-        return [title for title, _ in self._said(now)]
+        return [title for title, _ in self._status(now)]
 
-    def _said(self, now: Snapshot) -> Sequence[tuple[str, str]]:
+    def _status(self, now: Snapshot) -> Sequence[tuple[str, str]]:
         return (("board", self._engine.kind.__name__),) if self._stage is None else self._stage.status(now)
 
     def _tile(self, title: str) -> ui.element:
@@ -278,16 +278,16 @@ class _Head:
 
     def update(self, now: Snapshot) -> None:
         """20 times a second."""
-        self._say("time", f"{now.time_s:.3f} s")
-        for title, value in self._said(now):
-            self._say(title, value)
+        self._set_tile("time", f"{now.time_s:.3f} s")
+        for title, value in self._status(now):
+            self._set_tile(title, value)
         kept = now.mode is not Mode.RUNNING or now.pace is None or now.reached >= PACE_KEPT * now.pace
         # It comes and goes slowly: what stands beside it shall not jump at each hiccup.
         self._unkept = max(self._unkept - 1, 0) if kept else min(self._unkept + 1, UNKEPT)
         if self._unkept in (0, UNKEPT) and self._pace.visible is not bool(self._unkept):
             self._pace.visible = bool(self._unkept)
         if self._pace.visible:
-            self._say("pace", f"{now.reached:.2f}, {now.lag_ms:.0f} ms late")
+            self._set_tile("pace", f"{now.reached:.2f}, {now.lag_ms:.0f} ms late")
         findings = self._engine.findings
         if len(findings) != self._counted:
             self._counted = len(findings)
@@ -297,7 +297,7 @@ class _Head:
             css = _CHIP.get(now.mode, "wait")
             self._mode.classes(add=css, remove=" ".join({"run", "wait", "bad"} - {css}))
 
-    def _say(self, title: str, value: str) -> None:
+    def _set_tile(self, title: str, value: str) -> None:
         label = self._tiles[title]
         if label.text != value:
             label.text = value

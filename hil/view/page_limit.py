@@ -18,13 +18,13 @@ from starlette.responses import HTMLResponse
 #: CHOICE: pages at once.  Six take half a core of the server; browsers on the same computer need more than that.
 MOST_PAGES: Final = 6
 #: How often a page that found no room asks again, in seconds.
-ASK_AGAIN_S: Final = 5
+RETRY_S: Final = 5
 _SENTENCE: Final = (
     f"This view has {MOST_PAGES} pages open and no room for one more: close one of them, and the view appears here."
 )
 _TOO_MANY: Final = f"""<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>one page too many - c2000-hil</title>
-<meta name="viewport" content="width=device-width"><meta http-equiv="refresh" content="{ASK_AGAIN_S}">
+<meta name="viewport" content="width=device-width"><meta http-equiv="refresh" content="{RETRY_S}">
 <style>:root {{ color-scheme: light dark; font: 1.2rem system-ui, sans-serif }} main {{ margin: 20vh auto; width: 80% }}
 </style></head><body><main role="status">{_SENTENCE}</main></body></html>
 """
@@ -51,7 +51,7 @@ class PageLimit:
         if self._has_room_for(new):
             return self._build()
         new.delete()
-        return HTMLResponse(_TOO_MANY, status_code=503, headers={"Retry-After": str(ASK_AGAIN_S)})
+        return HTMLResponse(_TOO_MANY, status_code=503, headers={"Retry-After": str(RETRY_S)})
 
     def _has_room_for(self, new: Client) -> bool:
         Client.prune_instances(client_age_threshold=self._loading_s)  # asked for, and nobody came

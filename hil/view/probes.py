@@ -33,7 +33,7 @@ from emulator.c28x.ctypes import part_name, scalars
 from emulator.clock import CYCLES_PER_MS
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from hil.board import Board, Part
-from hil.instruments.variables import Look, variable
+from hil.instruments.variables import VariableReader, variable
 from hil.running import RunningBoard
 from hil.view.checkpoints import RewindableRun
 from hil.view.words import DecodedWord, SpiTransfer, character
@@ -56,7 +56,7 @@ class Probes:
         self._values: dict[str, deque[Sample]] = {}
         #: Of what is words: also when each began, and what it means.
         self._words: dict[str, deque[DecodedWord]] = {}
-        self._looks: dict[str, Look] = {}
+        self._looks: dict[str, VariableReader] = {}
         #: What ends to hear a wire.
         self._stops: dict[str, Callable[[], None]] = {}
         self._run: RewindableRun | None = None
@@ -277,7 +277,7 @@ def pin_number(name: str) -> int:
     return int(digits) if digits != name and digits.isdecimal() else -1
 
 
-def look_at(run: RewindableRun, name: str) -> Look:
+def look_at(run: RewindableRun, name: str) -> VariableReader:
     """How to look at a variable, register, field, face of a part or quantity of the world.  Raises ValueError."""
     bench = run.bench
     world = {} if run.stage is None else run.stage.signals

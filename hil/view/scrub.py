@@ -68,10 +68,10 @@ def _timed(findings: Iterable[Finding], marks: Iterable[Mark]) -> Iterator[tuple
         yield mark.cycles, mark
 
 
-def neighbour(findings: Iterable[Finding], now_cycles: int, way: int) -> Finding | None:
-    """The finding next after (`way` 1) or before (-1) a time."""
-    later = [each for each in findings if (each.time_cycles - now_cycles) * way > 0]
-    return min(later, key=lambda each: way * each.time_cycles, default=None)
+def neighbour(findings: Iterable[Finding], now_cycles: int, direction: int) -> Finding | None:
+    """The finding next after (`direction` 1) or before (-1) a time."""
+    later = [each for each in findings if (each.time_cycles - now_cycles) * direction > 0]
+    return min(later, key=lambda each: direction * each.time_cycles, default=None)
 
 
 class ScrubBar:
@@ -103,8 +103,8 @@ class ScrubBar:
             self._slider.on("change", self._chosen)
             self._end = ui.label(f"{self._end_s} s").classes("soft value")
 
-    def _jump_button(self, icon: str, way: int, meaning: str) -> None:
-        button = ui.button(icon=icon, on_click=lambda: self.jump(way))
+    def _jump_button(self, icon: str, direction: int, meaning: str) -> None:
+        button = ui.button(icon=icon, on_click=lambda: self.jump(direction))
         with button.props(f'no-caps dense outline aria-label="{meaning}"').classes("jump"):
             ui.tooltip(meaning)
 
@@ -118,7 +118,7 @@ class ScrubBar:
         at = self._at.time_cycles if self._at is not None else self._engine.snapshot.cycles
         found = neighbour(self._findings, at, way)
         if found is None:
-            ui.notify("no finding after this time" if way > 0 else "no finding before this time")
+            ui.notify("no finding after this time" if direction > 0 else "no finding before this time")
             return
         self.go_to(found)
 

@@ -36,7 +36,7 @@ PONG_S: Final = 3.0
 #: How often a serial port is looked at.
 TURN_S: Final = 0.05
 
-Say = Callable[[str], None]
+PrintLine = Callable[[str], None]
 #: Told what ends the server; returns nothing.
 OnStop = Callable[[Callable[[], None]], None]
 
@@ -66,7 +66,7 @@ def run_view(
     *,
     host: str = HOST,
     port: int = PORT,
-    say: Say = print,
+    print_line: PrintLine = print,
     on_stop: OnStop | None = None,
     read: Mapping[str, Any] | None = None,
     policy: Policy | None = None,
@@ -89,7 +89,7 @@ def run_view(
         load_map(setup.world)  # a wrong map is said here, not on the page
     with contextlib.closing(listen(host, port)) as door:
         try:
-            serve_view(engine, door, host, say=say, on_stop=ends)
+            serve_view(engine, door, host, print_line=print_line, on_stop=ends)
         finally:
             engine.close()
     if engine.error is not None:
@@ -98,16 +98,16 @@ def run_view(
 
 
 def serve_view(
-    engine: Engine, door: socket.socket, host: str, *, say: Say = print, on_stop: OnStop | None = None
+    engine: Engine, door: socket.socket, host: str, *, print_line: PrintLine = print, on_stop: OnStop | None = None
 ) -> None:
     """Start an emulated board and serve its page, until somebody ends it."""
     from hil.view.page import machine_page
 
-    _serve(lambda: machine_page(engine), door, host, say, on_stop, begin=engine.start)
+    _serve(lambda: machine_page(engine), door, host, print_line, on_stop, begin=engine.start)
 
 
 def serve_console(
-    port_url: str, *, host: str = HOST, port: int = PORT, say: Say = print, on_stop: OnStop | None = None
+    port_url: str, *, host: str = HOST, port: int = PORT, print_line: PrintLine = print, on_stop: OnStop | None = None
 ) -> SerialPortLine:
     """Serve the console's page for the robot behind a serial port (device name or pyserial URL), then stop the robot.
 
@@ -122,7 +122,7 @@ def serve_console(
     try:
         with contextlib.closing(listen(host, port)) as door:
             nicegui_app.timer(TURN_S, line.turn)
-            _serve(lambda: console_page(line), door, host, say, on_stop)
+            _serve(lambda: console_page(line), door, host, print_line, on_stop)
     finally:
         line.close()
     return line
@@ -133,7 +133,7 @@ def _nothing() -> None:
 
 
 def _serve(
-    build: Callable[[], Any], door: socket.socket, host: str, say: Say, on_stop: OnStop | None,
+    build: Callable[[], Any], door: socket.socket, host: str, print_line: PrintLine, on_stop: OnStop | None,
     begin: Callable[[], None] = _nothing,
 ) -> None:  # fmt: skip
     """Until the server is told to stop; `begin` is called once it has started."""
@@ -189,5 +189,5 @@ def _serve(
     if on_stop is not None:
         on_stop(stop)
     shown = f"[{host}]" if ":" in host else host
-    say(f"view: http://{shown}:{number}/" + (f"?token={token}" if token else ""))
+    print_line(f"view: http://{shown}:{number}/" + (f"?token={token}" if token else ""))
     server.run(sockets=[door])

@@ -19,7 +19,7 @@ _GROUPS: Final = {
 }  # fmt: skip
 
 
-def way_to(name: str, label: str, blocks: Iterable[str]) -> tuple[str, ...]:
+def path_to(name: str, label: str, blocks: Iterable[str]) -> tuple[str, ...]:
     """The groups in which a signal stands, from the outermost on, and what it is called there."""
     for begin, group in _GROUPS.items():
         if name.startswith(begin):
@@ -60,7 +60,7 @@ def tree_of(labels: Mapping[str, str], blocks: Sequence[str]) -> Branch:
     root = Branch("", "")
     known = set(blocks)
     for name, label in labels.items():
-        at, way = root, way_to(name, label, known)
+        at, way = root, path_to(name, label, known)
         for depth, title in enumerate(way):
             key = name if depth == len(way) - 1 else GROUP + " ".join(way[: depth + 1])
             if way[0] == "Registers" and depth == 2:

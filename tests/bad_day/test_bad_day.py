@@ -77,8 +77,8 @@ def _defect() -> int:
         (lambda: _defect(), "status 70"),
         (lambda: os.kill(os.getpid(), signal.SIGKILL), "signal 9"),
         (lambda: len(bytearray(400 << 20)) * 0, "MB"),
-        (lambda: hil.cli.complain("x y " * 2000) or 2, "endless"),
-        (lambda: hil.cli.complain("late") or sum(range(200_000_000)) * 0 + 2, "s of CPU"),
+        (lambda: hil.cli.print_error("x y " * 2000) or 2, "endless"),
+        (lambda: hil.cli.print_error("late") or sum(range(200_000_000)) * 0 + 2, "s of CPU"),
     ],
 )
 def test_the_walk_sees_what_is_wrong(does: Callable[[], int], found: str) -> None:

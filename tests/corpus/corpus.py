@@ -130,7 +130,7 @@ def check(driver: Driver, text: str) -> Result:
     policy = Policy()
     rows: dict[bool, list[tuple[int, str, str]]] = {True: [], False: []}
     for finding in findings:
-        severity = policy.weigh(finding)
+        severity = policy.severity_of(finding)
         if severity is not None:
             rows[severity is not Severity.NOTE].append((_line(finding, file), finding.rule, finding.message))
     return Result(tuple(rows[True]), tuple(rows[False]))

@@ -92,7 +92,7 @@ class Output:
     def become(self, level: int | None) -> None:
         self.now = level
         if self.wire.watched:
-            self.wire.tell(level)
+            self.wire.report_level(level)
 
 
 def test_a_computed_level_is_asked_when_somebody_looks() -> None:

@@ -56,6 +56,6 @@ def test_nor_does_it_end_a_command_that_has_more_to_show() -> None:
             os.kill(os.getpid(), signal.SIGTERM)
             assert stopped == [1]
         assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
-        assert signal.SIGHUP not in ending.meant()
+        assert signal.SIGHUP not in ending.ending_signals()
     finally:
         signal.signal(signal.SIGHUP, was)

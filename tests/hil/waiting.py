@@ -9,14 +9,14 @@ from typing import TypeVar
 #: A test that waits longer has failed; nothing is asserted about times below it.
 PATIENCE_S = 60.0
 #: Between two looks.  What is waited for sends no event to a test.
-LOOK_S = 0.02
+SAMPLE_S = 0.02
 
 T = TypeVar("T")
 
 
 def rest() -> None:
     """Let the others run."""
-    time.sleep(LOOK_S)
+    time.sleep(SAMPLE_S)
 
 
 def eventually(look: Callable[[], T], turn: Callable[[], object] = rest, *, what: str = "") -> T:

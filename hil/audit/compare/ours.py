@@ -55,12 +55,12 @@ def seen(specimen: Specimen) -> bool:
         board.kernel.start(firmware.function(f"{specimen.name}.run"))
         board.kernel.run_until(round(RUN_S * SYSCLK_HZ))
         board.kernel.shutdown()
-        return any(_meant(finding, specimen) for finding in board.findings)
-    if any(_meant(finding, specimen) for finding in board.findings):
+        return any(_is_expected(finding, specimen) for finding in board.findings)
+    if any(_is_expected(finding, specimen) for finding in board.findings):
         return True
 
     def look(finding: Finding) -> None:
-        if _meant(finding, specimen):
+        if _is_expected(finding, specimen):
             raise _SpecimenDone
 
     board.findings.found.connect(look)
@@ -71,7 +71,7 @@ def seen(specimen: Specimen) -> bool:
     return False
 
 
-def _meant(finding: Finding, specimen: Specimen) -> bool:
+def _is_expected(finding: Finding, specimen: Specimen) -> bool:
     line = specimen.line(".py")
     return finding.rule == specimen.rule and any(
         place.line == line and Path(place.file).stem == specimen.name for place in finding.call_path

@@ -89,7 +89,7 @@ class PointCloud:
                 del points[: -MOST_POINTS // 2]
 
 
-def way_of(frames: Sequence[OdometryFrame]) -> list[Point]:
+def believed_path(frames: Sequence[OdometryFrame]) -> list[Point]:
     """Where the frames say the robot was."""
     return [(frame.x_mm / 1e3, frame.y_mm / 1e3) for frame in frames]
 
@@ -99,7 +99,7 @@ def loaded(view: Viewport, frames: Sequence[OdometryFrame], pose: Pose) -> str:
     some = frames[:: 1 + 3 * len(frames) // MOST_POINTS]
     points = [point for frame in some for point in sonar_points(frame)]
     return draw.dots(view, place(points, *pose), "cloud-loaded") + draw.path(
-        view, place(way_of(some), *pose), "trail-loaded"
+        view, place(believed_path(some), *pose), "trail-loaded"
     )
 
 
@@ -328,7 +328,7 @@ class FrameMap:
     def show_loaded(self, frames: list[OdometryFrame]) -> None:
         """A trajectory from a file."""
         self._loaded = frames
-        self._fit([*way_of(frames), *(point for frame in frames for point in sonar_points(frame))])
+        self._fit([*believed_path(frames), *(point for frame in frames for point in sonar_points(frame))])
         self._draw_loaded()
 
     def update(self) -> None:

@@ -90,7 +90,7 @@ def believed_pose(bench: Bench) -> Pose | None:
     )  # fmt: skip
 
 
-def told(bench: Bench) -> dict[str, Any]:
+def trace_values(bench: Bench) -> dict[str, Any]:
     """The scene as a trace has it: names and values of `hil.instruments.scene`, to a tenth of a millimetre."""
     scene = scene_of(bench)
     status = scene.status

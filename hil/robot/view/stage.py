@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any, Final
 
 from hil.bench import Bench
-from hil.robot.view.scene import Scene, Trails, scene_of, told, trails_of
+from hil.robot.view.scene import Scene, Trails, scene_of, trace_values, trails_of
 from hil.view.stage import Hand
 from hil.world.robot_params import Pose
 
@@ -71,7 +71,7 @@ class Stage:
 
     def tell(self) -> Mapping[str, Any]:
         """The scene as plain data."""
-        return told(self._bench)
+        return trace_values(self._bench)
 
     def _quantity(self, name: str) -> float:
         return float(getattr(self._bench.world.robot, name))

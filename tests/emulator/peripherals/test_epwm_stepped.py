@@ -204,7 +204,7 @@ def test_shadow_loads_at_any_time_equal_the_stepped_counter(
             assert regs.TBSTS.bit.CTRDIR == stepped.rising
         if not stepped.waiting:
             # Nothing waits but the mark that reading TBCTR and TBSTS leaves for a poll.
-            assert [event.__name__ for event in bench.clock.waiting() if event.__name__ != "_look_again"] == []
+            assert [event.__name__ for event in bench.clock.waiting() if event.__name__ != "_check_again"] == []
             assert bench.a.duty == pytest.approx(stepped.steady_high() / (2 * stepped.length()), abs=1e-12)
         if change.name == "end":
             continue

@@ -128,7 +128,7 @@ def test_odometry_of_a_driven_path_is_the_driven_path(
 def test_each_period_of_the_odometry_has_its_way_and_its_direction(
     corrected: Drivers, heading: float, drive: SpeedStep
 ) -> None:
-    holds(properties.odometry_way(corrected.rig, heading, drive))
+    holds(properties.odometry_distance(corrected.rig, heading, drive))
     holds(properties.odometry_course(corrected.rig, heading, drive))
 
 

@@ -112,7 +112,7 @@ def test_malformed_bytes_change_nothing(
 @given(orders=driven, after=st.integers(0, 1500).map(lambda ms: ms / 1000))
 def test_a_stop_stops_from_every_state_at_any_time(corrected: Bench, orders: list[bytes], after: float) -> None:
     holds(properties.stop_is_neutral(settled(corrected), orders, after))
-    holds(properties.stop_way(settled(corrected), orders, after))
+    holds(properties.stopping_distance(settled(corrected), orders, after))
 
 
 @few

@@ -94,8 +94,8 @@ def test_the_browser_is_opened_where_there_is_a_desktop(
             self.begin()
 
     monkeypatch.setattr("threading.Thread", Now)
-    show.say_and_open("view: http://127.0.0.1:8080/")
-    show.say_and_open("the robot stopped")
+    show.print_and_open("view: http://127.0.0.1:8080/")
+    show.print_and_open("the robot stopped")
     assert opened == ["http://127.0.0.1:8080/"]
     assert capsys.readouterr().out == "view: http://127.0.0.1:8080/\nthe robot stopped\n"
 

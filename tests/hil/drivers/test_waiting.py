@@ -75,7 +75,7 @@ def told(folder: Path, text: str) -> list[Finding]:
     policy, rules = Policy(), ("endless-poll", "endless-loop", "watchdog-in-vain", "watchdog-reset")
     return [
         finding for finding in check_files(wanted).findings
-        if finding.rule in rules and policy.weigh(finding) is not Severity.NOTE
+        if finding.rule in rules and policy.severity_of(finding) is not Severity.NOTE
     ]  # fmt: skip
 
 

@@ -37,7 +37,7 @@ from hil.bench import Bench
 from hil.cli.run import summarize
 from hil.cli.show import print_json
 from hil.drivers.check import DriverFiles, check_files
-from hil.machine import FAULT_OF_OURS, FirmwareStopped, Setup
+from hil.machine import INTERNAL_ERROR, FirmwareStopped, Setup
 from hil.pacing import Pacer
 from hil.reports.html import html
 from hil.reports.json_report import as_dict
@@ -186,7 +186,7 @@ def _robot(name: str, file: Path) -> list[str]:
     Returns why it ended early.
     """
     setup = Setup(watch=True, static=True)
-    own = c_files.Own({f"firmware_model.{name}": str(file)})
+    own = c_files.UserFiles({f"firmware_model.{name}": str(file)})
     with patch.object(c_files, "own", lambda firmware: own):
         bench = Bench(setup)
     session = Session(bench, None, Pacer(None))
@@ -242,7 +242,7 @@ def failure(seed: int, language: str) -> str:
             return "" if PLACE.match(str(error)) else f"{type(error).__name__}: {error}: {_where(error)}"
         except Exception as error:
             return f"{type(error).__name__}: {error}: {_where(error)}"
-    return next((text for text in said if FAULT_OF_OURS in text), "")
+    return next((text for text in said if INTERNAL_ERROR in text), "")
 
 
 def _where(error: BaseException) -> str:

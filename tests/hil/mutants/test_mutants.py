@@ -14,7 +14,7 @@ import pytest
 
 from emulator.device_functions import DeviceFunctions
 from hil.cli import invoke
-from hil.machine import FAULT_OF_OURS
+from hil.machine import INTERNAL_ERROR
 from tests.hil.mutants import fuzz
 
 pytest.importorskip("pycparser")
@@ -36,7 +36,7 @@ def faulty(monkeypatch: pytest.MonkeyPatch) -> str:
     monkeypatch.setattr(DeviceFunctions, "DelayUs", broken)
     monkeypatch.setattr(DeviceFunctions, "DELAY_US", broken, raising=False)
     monkeypatch.delenv("HIL_TRACEBACK", raising=False)
-    return f"{FAULT_OF_OURS} in test_mutants.py:"
+    return f"{INTERNAL_ERROR} in test_mutants.py:"
 
 
 @pytest.mark.parametrize("language", fuzz.LANGUAGES)

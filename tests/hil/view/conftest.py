@@ -31,8 +31,8 @@ class View:
         command = [sys.executable, "-m", "hil", "run", "--view", "--view-port", "0", *options]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         assert self.process.stdout is not None
-        self.said = self.process.stdout.readline()
-        self.address = self.said.removeprefix("view: ").strip()
+        self.value_text = self.process.stdout.readline()
+        self.address = self.value_text.removeprefix("view: ").strip()
 
     def end(self) -> tuple[int, str, str]:
         """Ctrl-C; the exit status, what it came to, and what was said on stderr."""

@@ -43,7 +43,7 @@ def websocket(address: str, **headers: str) -> int:
 
 
 def test_it_listens_on_loopback_and_gives_the_page(view: View) -> None:
-    assert re.fullmatch(r"view: http://127\.0\.0\.1:\d+/\n", view.said)
+    assert re.fullmatch(r"view: http://127\.0\.0\.1:\d+/\n", view.value_text)
     answer = get(view.address)
     assert answer.status == 200
     assert "nicegui" in answer.body
@@ -66,8 +66,8 @@ def test_foreign_hosts_and_origins_are_refused_for_pages_and_websockets(view: Vi
 def test_elsewhere_than_on_loopback_it_needs_the_token_that_it_prints() -> None:
     needs_view()
     view = View("--world", "room", "--view-host", "0.0.0.0")
-    found = re.fullmatch(r"view: http://0\.0\.0\.0:(\d+)/\?token=(\S{20,})\n", view.said)
-    assert found is not None, view.said
+    found = re.fullmatch(r"view: http://0\.0\.0\.0:(\d+)/\?token=(\S{20,})\n", view.value_text)
+    assert found is not None, view.value_text
     address = f"http://127.0.0.1:{found[1]}/"
     assert get(address).status == 403
     assert get(address, "/?token=guessed").status == 403

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from hil.view.signal_tree import MOST, found, tree_of, way_to
+from hil.view.signal_tree import MOST, found, path_to, tree_of
 
 BLOCKS = ("AdcaRegs", "GpioCtrlRegs")
 LABELS = {
@@ -30,7 +30,7 @@ LABELS = {
     ],
 )
 def test_a_signal_stands_in_its_group(name: str, label: str, way: tuple[str, ...]) -> None:
-    assert way_to(name, label, BLOCKS) == way
+    assert path_to(name, label, BLOCKS) == way
 
 
 def test_a_register_is_a_signal_and_the_group_of_its_fields() -> None:

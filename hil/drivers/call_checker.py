@@ -37,9 +37,9 @@ from hil.drivers.places import anchored, of_parts
 from hil.drivers.properties import Property, PropertyTest, broken_contracts, contracted, properties
 from hil.drivers.roles import Roles, deciding, globals_of, reached
 from hil.drivers.values import GUESSED, NotGenerated, Parameter, Value, arguments, moderate, number, parameters
-from hil.drivers.waiting import WAITING, blocks_of_loop, looks_outside, loop_waits, meant_endless, waits_for_others
+from hil.drivers.waiting import WAITING, blocks_of_loop, is_intended, loop_waits, reads_outside, waits_for_others
 from hil.image import Build, Image, is_static
-from hil.machine import fault_of_ours
+from hil.machine import internal_error
 from hil.reports.model import rule_of
 from hil.testing.guard import guard
 from hil.testing.stops import STOPS
@@ -127,7 +127,7 @@ class CheckedFunction:
     #: Calls that were ended because they computed for too long.
     cut: int = 0
     #: Calls without reports, because they accessed memory outside of an object whose size is a guess.
-    strayed: int = 0
+    left_guess: int = 0
     #: Parameters of which the C does not tell how many elements they point to.
     guessed: tuple[str, ...] = ()
     #: Whether it never returns, by the way it is written.
@@ -162,7 +162,7 @@ class CallOutcome:
     #: Whether it is in a loop that is endless by the way it is written.
     endless: bool = False
     #: Whether it accessed memory outside of an object whose size is a guess.  Then its findings prove nothing.
-    strayed: bool = False
+    left_guess: bool = False
     #: The return value.
     result: Any = None
 
@@ -175,10 +175,10 @@ class BestCircumstances:
     proven: dict[Key, Finding] = field(default_factory=dict)
     before: tuple[Step, ...] = ()
     #: The budget ended before all circumstances were tried.
-    doubted: bool = False
+    incomplete: bool = False
 
 
-class Judge:
+class CallChecker:
     """Calls the functions of a build.  `limit_s` is the virtual time that a call may take."""
 
     def __init__(self, build: Build, roles: Roles, *, calls: int, seed: int, limit_s: float = 5.0) -> None:
@@ -188,7 +188,7 @@ class Judge:
         self.seed = seed
         self.limit_s = limit_s
         self.found: dict[Key, Finding] = {}
-        self.exercised: list[CheckedFunction] = []
+        self.checked: list[CheckedFunction] = []
         self._files, self._others = build.files, build.others
         self._own = {function.path: function for function in roles.functions}
         self.callables: list[Candidate] = []
@@ -201,12 +201,12 @@ class Judge:
                     self.callables.append(Candidate(function, self._parameters(function)))
                 except NotGenerated as why:
                     reason = str(why)
-            self.exercised.append(CheckedFunction(function, reason=reason))
+            self.checked.append(CheckedFunction(function, reason=reason))
             if not reason:
-                self.exercised[-1].guessed = tuple(p.name for p in self.callables[-1].parameters if p.guessed)
+                self.checked[-1].guessed = tuple(p.name for p in self.callables[-1].parameters if p.guessed)
         self._before: dict[str, tuple[tuple[Step, ...], bool]] = {}
-        self._by_path = {e.function.path: e for e in self.exercised}
-        self.exercised = [e for e in self.exercised if e.function.where.file in self._files]
+        self._by_path = {e.function.path: e for e in self.checked}
+        self.checked = [e for e in self.checked if e.function.where.file in self._files]
         self._useless: set[tuple[str, ...]] = set()
         self._deciders: dict[str, set[str]] = {}
         self._budget = TimeBudget(CALLS)
@@ -237,7 +237,7 @@ class Judge:
                 self._by_path[candidate.function.path].reason = f"{self._ended()}: check fewer files at once"
                 continue
             self._reserve = self._budget.left - self._budget.left // (len(self.callables) - index)
-            self._judge(candidate)
+            self._check_candidate(candidate)
         self._reserve = 0
         if not self._budget.over:
             self._walk()
@@ -267,11 +267,11 @@ class Judge:
             seed = f"{self.seed}:{function.path}:properties"
             tested = PropertyTest(function, candidate.parameters, results, objects, seed)
             for one, example in tested.broken():
-                yield self._told(function, f"{function.name} is declared {_as_declared(one)}: {example}", one)
+                yield self._report(function, f"{function.name} is declared {_as_declared(one)}: {example}", one)
         for place, message, _ in broken_contracts(self.roles.functions):
             yield Finding("declared-property", message, place.function, "", place, (place,), "", 0, how="static")
 
-    def _told(self, function: Function, message: str, one: Property) -> Finding:
+    def _report(self, function: Function, message: str, one: Property) -> Finding:
         where = function.where
         place = Place(where.file, where.line, function.name, function.c_file, where.column)
         declared = f"declared in line {one.declared.line}: hil: {one.declared.word} {one.declared.text}".rstrip()
@@ -315,13 +315,13 @@ class Judge:
         prepared.close()
         return found if len(found) == len(lists) else None
 
-    def _late(self) -> bool:
+    def _share_is_used(self) -> bool:
         """Whether the present function has used its share of the budget up."""
         return self._budget.over or self._budget.left < self._reserve
 
     # One function
 
-    def _judge(self, candidate: Candidate) -> None:
+    def _check_candidate(self, candidate: Candidate) -> None:
         lists = arguments(candidate.parameters, self.calls, f"{self.seed}:{candidate.function.path}")
         probes = lists[:PROBES]
         best = self._best(candidate, probes, started=False)
@@ -329,15 +329,15 @@ class Judge:
         if started:  # the `main` for these files may have called InitSysCtrl, which switches all clocks on
             for key, finding in best.proven.items():
                 if finding.rule == "clock-gated":
-                    self._keep(key, replace(finding, how="generated"))
+                    self._add_finding(key, replace(finding, how="generated"))
             best = self._best(candidate, probes, started=True)
         self._started |= started
         self._before[candidate.function.path] = best.before, started
         for key, finding in best.proven.items():
-            weighed = self._weighed(candidate, finding)
-            self._keep(key, replace(weighed, how="generated") if best.doubted else weighed)
+            weighed = self._as_note(candidate, finding)
+            self._add_finding(key, replace(weighed, how="generated") if best.incomplete else weighed)
         self._try_all(candidate, best.before, lists, started=started)
-        if best.before and self.roles.main is None and not self._late():
+        if best.before and self.roles.main is None and not self._share_is_used():
             self._too_early(candidate, probes[0], started=started)
 
     def _too_early(self, candidate: Candidate, values: tuple[Value, ...], *, started: bool) -> None:
@@ -346,7 +346,7 @@ class Judge:
         assert prepared is not None
         for key, finding in self._one(prepared, candidate, values).findings.items():
             if finding.rule == "null-dereference":
-                self._keep(key, replace(finding, how="generated"))
+                self._add_finding(key, replace(finding, how="generated"))
         prepared.close()
 
     def _best(self, candidate: Candidate, probes: Sequence[tuple[Value, ...]], *, started: bool) -> BestCircumstances:
@@ -357,8 +357,8 @@ class Judge:
         deciders = [c for c in self.callables if c.function.path in self._decided_by(candidate)]
         hopeless = not started and not any(self._switches(c, _CLOCKS) for c in deciders)
         for before in self._circumstances(candidate):
-            if best is not None and self._late():
-                return replace(best, doubted=True)  # what has been found may be due to the circumstances
+            if best is not None and self._share_is_used():
+                return replace(best, incomplete=True)  # what has been found may be due to the circumstances
             proven = self._proven(candidate, before, probes, started=started)
             if proven is None:
                 continue
@@ -389,7 +389,7 @@ class Judge:
             for key, finding in outcome.findings.items():
                 *details, last = finding.details
                 last = f"{last}, and after calls of the other functions"
-                self._keep(key, replace(finding, how="generated", details=(*details, last)))
+                self._add_finding(key, replace(finding, how="generated", details=(*details, last)))
             if not outcome.ended:
                 waiting.remove(candidate)
                 prepared.close()
@@ -435,7 +435,7 @@ class Judge:
         def steps(chosen: Iterable[Candidate], size: int) -> tuple[Step, ...]:
             return tuple((c, moderate(c.parameters, size)) for c in chosen)
 
-        def ways() -> Iterator[tuple[Step, ...]]:
+        def possible() -> Iterator[tuple[Step, ...]]:
             ready = self._initialising(candidate, _SIZES[0])
             for size in _SIZES:
                 yield self._initialising(candidate, size)
@@ -445,7 +445,7 @@ class Judge:
                 yield (*ready, *steps([other], 1))
                 yield steps([other], 1)
 
-        for way in ways():
+        for way in possible():
             name = tuple(step.text(values) for step, values in way)
             if name not in seen and not (name and name in self._useless):
                 seen.add(name)
@@ -456,7 +456,7 @@ class Judge:
     ) -> dict[Key, Finding] | None:
         """The findings that come with every argument list; None if a call before does not return."""
         common: dict[Key, Finding] | None = None
-        telling = _telling(candidate)
+        telling = _is_certain(candidate)
         by_constant: dict[Key, Finding] = {}
         for values in probes:
             prepared = self._prepared(before, settle=True, started=started)
@@ -467,12 +467,12 @@ class Judge:
             self._by_path[candidate.function.path].calls += 1
             self._by_path[candidate.function.path].cut += outcome.cut
             if outcome.cut:
-                if self._patience_ended(candidate):
+                if self._budget_ended(candidate):
                     break
                 continue
-            if outcome.strayed:
+            if outcome.left_guess:
                 continue
-            serious = {key: f for key, f in outcome.findings.items() if _serious(f)}
+            serious = {key: f for key, f in outcome.findings.items() if _counts_fully(f)}
             if telling(values):
                 by_constant.update(serious)
             common = serious if common is None else {key: f for key, f in common.items() if key in serious}
@@ -480,7 +480,7 @@ class Judge:
                 break
         return {**(common or {}), **by_constant}
 
-    def _patience_ended(self, candidate: Candidate) -> bool:
+    def _budget_ended(self, candidate: Candidate) -> bool:
         """Whether too many calls of a function computed for too long, so that it is not called any more."""
         return self._by_path[candidate.function.path].cut > _CUTS
 
@@ -489,21 +489,21 @@ class Judge:
     ) -> None:  # fmt: skip
         """Call it with every argument list.  Calls follow each other on one image as long as they return."""
         prepared: PreparedImage | None = None
-        exercised = self._by_path[candidate.function.path]
+        checked = self._by_path[candidate.function.path]
         cuts = 0
         again = len(lists) == 1 and not self._prepares(candidate)
         turns = list(lists) * (self.calls if again else 1)
         for values in turns:
             prepared = prepared or self._prepared(before, settle=False, started=started)
-            if prepared is None or cuts > 1 or self._late() or self._patience_ended(candidate):
+            if prepared is None or cuts > 1 or self._share_is_used() or self._budget_ended(candidate):
                 break
             outcome = self._one(prepared, candidate, values)
-            exercised.calls += 1
-            exercised.endless |= outcome.endless
-            exercised.strayed += outcome.strayed
+            checked.calls += 1
+            checked.endless |= outcome.endless
+            checked.left_guess += outcome.left_guess
             for key, finding in outcome.findings.items():
-                self._keep(key, replace(finding, how="generated"))
-            exercised.cut += outcome.cut
+                self._add_finding(key, replace(finding, how="generated"))
+            checked.cut += outcome.cut
             if not outcome.ended:
                 cuts += 1
                 prepared.close()
@@ -544,7 +544,7 @@ class Judge:
         outcome = CallOutcome(ready=shared)
         clock = image.board.clock
         before = computed(image)
-        watch = self._patience(image, candidate)
+        watch = self._limit_polls(image, candidate)
         try:
             outcome.result = image.call(candidate.function.path, made)
             if settle:
@@ -556,7 +556,7 @@ class Judge:
         except STOPS as stop:
             outcome.ended, outcome.endless = False, isinstance(stop, Idling)
         except Exception as error:
-            outcome.ended, self._by_path[candidate.function.path].fault = False, fault_of_ours(error)
+            outcome.ended, self._by_path[candidate.function.path].fault = False, internal_error(error)
         finally:
             watch()
             self._budget.spend(computed(image) - before)
@@ -565,25 +565,25 @@ class Judge:
             called += f", after {prepared.before}"
         for finding in image.board.findings:
             key = key_of(finding)
-            if meant_endless(finding, self.roles):
+            if is_intended(finding, self.roles):
                 outcome.endless = True
-            elif finding.count > earlier.get(key, 0) and _strays(finding):
-                outcome.strayed = True
+            elif finding.count > earlier.get(key, 0) and _leaves_guess(finding):
+                outcome.left_guess = True
             elif finding.how != "static" and finding.count > earlier.get(key, 0):
                 here = anchored(finding, self._files, self._others)
                 if here is not None:
                     outcome.findings[key_of(here)] = replace(here, details=(*here.details, called))
-        if outcome.strayed:  # it has changed what lies beside, too
+        if outcome.left_guess:  # it has changed what lies beside, too
             outcome.findings, outcome.ended = {}, False
         return outcome
 
-    def _patience(self, image: Image, candidate: Candidate) -> Callable[[], None]:
+    def _limit_polls(self, image: Image, candidate: Candidate) -> Callable[[], None]:
         """End a call that computes for too long with TooLong.  Returns a function that ends this watch."""
         findings, clock = image.board.findings, image.board.clock
         since, began = computed(image), clock.now
         waiting: list[Any] = []
 
-        def look() -> None:
+        def stop_if_endless() -> None:
             waiting.clear()
             if computed(image) - since > self._budget.call:
                 path = findings.path(findings.position.at, findings.position.calls)
@@ -599,9 +599,9 @@ class Judge:
                         call_path=path[loops[0] :],
                     )  # fmt: skip
                 raise TooLong
-            waiting.append(clock.after(SYSCLK_HZ // 200, look))
+            waiting.append(clock.after(SYSCLK_HZ // 200, stop_if_endless))
 
-        look()
+        stop_if_endless()
 
         def end() -> None:
             for event in waiting:
@@ -609,7 +609,7 @@ class Judge:
 
         return end
 
-    def _weighed(self, candidate: Candidate, finding: Finding) -> Finding:
+    def _as_note(self, candidate: Candidate, finding: Finding) -> Finding:
         """A finding that does not depend on the arguments: unchanged, or as a note if other files may explain it."""
         whole = self.roles.main is not None
         if (
@@ -659,13 +659,13 @@ class Judge:
         for other in self.roles.functions:
             if other in own or not state & self.roles.writes[other.path]:
                 continue
-            if other.path not in callable_ or looks_outside(other, self._own):
+            if other.path not in callable_ or reads_outside(other, self._own):
                 return True
             if finding.rule == "uninitialised" and not INITIALISES.search(other.name):
                 return True
         return False
 
-    def _keep(self, key: Key, finding: Finding) -> None:
+    def _add_finding(self, key: Key, finding: Finding) -> None:
         if self.roles.main is not None and finding.rule in _UNPOWERED:
             return
         known = self.found.get(key)
@@ -687,12 +687,12 @@ def _family(block: str) -> str:
     return block.replace("ResultRegs", "Regs").lower()
 
 
-def _serious(finding: Finding) -> bool:
+def _counts_fully(finding: Finding) -> bool:
     """Whether a finding can count fully: severe enough, and about the chip or the program."""
     return not of_parts(finding) and rule_of(finding.rule).severity is not Severity.NOTE
 
 
-def _strays(finding: Finding) -> bool:
+def _leaves_guess(finding: Finding) -> bool:
     """Whether a finding is about an access outside of an object whose size is a guess."""
     return finding.rule in _OUTSIDE and f" {GUESSED}." in finding.message
 
@@ -702,7 +702,7 @@ def _blocks() -> dict[str, BlockType]:
     return {name: block_type(registers) for name, registers in instances().items()}
 
 
-def _telling(candidate: Candidate) -> Callable[[Sequence[Value]], bool]:
+def _is_certain(candidate: Candidate) -> Callable[[Sequence[Value]], bool]:
     """Whether an argument list holds only constants that a contract surely allows.
 
     The greatest constant of an enumeration is often their number, and a negative one stands for none of them.
