@@ -80,7 +80,7 @@ class CanFrame:
     def __post_init__(self) -> None:
         bits = EXTENDED_BITS if self.extended else STANDARD_BITS
         if not 0 <= self.identifier < 1 << bits:
-            raise ValueError(f"identifier {self.identifier:#x}: want {bits} bits")
+            raise ValueError(f"identifier {self.identifier:#x}: expected {bits} bits")
         if self.dlc is None:
             object.__setattr__(self, "dlc", len(self.data))
         code = self.length_code
@@ -276,7 +276,7 @@ class CanBus:
     def disturb(self, frames: int = 1, bit: int = 20) -> None:
         """Invert bit number `bit` of each of the next `frames` frames, as a disturbance on the line does."""
         if bit < 1 or frames < 0:
-            raise ValueError(f"spoil bit {bit} of {frames} frames: want a bit behind the start of frame")
+            raise ValueError(f"spoil bit {bit} of {frames} frames: expected a bit behind the start of frame")
         self._disturbed += [bit] * frames
 
     @property
@@ -415,7 +415,7 @@ class CanPart:
 
     def __init__(self, bit_rate: int = 500_000, *, acknowledges: bool = True) -> None:
         if not 0 < bit_rate <= 1_000_000:
-            raise ValueError(f"{bit_rate} bits a second: want 1 to 1000000")
+            raise ValueError(f"{bit_rate} bits a second: expected 1 to 1000000")
         self.bit_cycles = round(SYSCLK_HZ / bit_rate)
         self.acknowledges = acknowledges
         self.frames: list[CanFrame] = []

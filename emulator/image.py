@@ -69,7 +69,7 @@ class LinkedFunction:
         except RecursionError:
             runtime.unwind(sp)
             position.at, position.calls = at, calls
-            message = f"{self._function.path}: calls within calls without an end, deeper than any stack"
+            message = f"{self._function.path}: unbounded recursion: the calls nest deeper than any stack"
             raise RecursionError(message) from None
         except BaseException:  # a trap, an endless poll
             runtime.unwind(sp)

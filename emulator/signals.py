@@ -651,7 +651,7 @@ class I2cBus:
     def attach(self, address: int, target: I2cTarget) -> None:
         """Connect `target` to the bus with its 7-bit `address`.  Raises ValueError for one that no device can have."""
         if not FIRST_I2C_ADDRESS <= address <= LAST_I2C_ADDRESS:
-            raise ValueError(f"I2C address {address:#04x}: want {FIRST_I2C_ADDRESS:#04x}..{LAST_I2C_ADDRESS:#04x}")
+            raise ValueError(f"I2C address {address:#04x}: expected {FIRST_I2C_ADDRESS:#04x}..{LAST_I2C_ADDRESS:#04x}")
         self._targets.append((address, target))
 
     def take(self, taken: bool) -> None:

@@ -111,7 +111,7 @@ def _regular(file: str) -> str:
     if not os.path.exists(file):
         raise ValueError(f"{file}: there is no such file or folder")
     if not file.lower().endswith(".c") or not os.path.isfile(file):
-        raise ValueError(f"{file}: want a C file (*.c), or a folder with C files of the robot")
+        raise ValueError(f"{file}: expected a C file (*.c), or a folder with C files of the robot")
     return file
 
 

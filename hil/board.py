@@ -140,7 +140,7 @@ class Part:
         if not face.low <= value <= face.high:
             raise ValueError(f"{self.name}.{name} = {value:g}: must be {face.range or 'a number of'} {face.unit}")
         if not self.is_set(name):
-            raise ValueError(f"{self.name}.{name} is only seen, not set: the part works it out")
+            raise ValueError(f"{self.name}.{name} can only be read: the part computes it")
 
     def put(self, name: str, value: float) -> None:
         """Set a face.  Raises ValueError as `check` does."""
@@ -338,7 +338,7 @@ class Board(System):
                     known = ", ".join(f"{bus}-{x}" for x in letters)
                     raise ValueError(f"{cls.__name__}.{what}: no {bus}-{letter}: this chip has {known}")
                 if len(pins) != len(signals):
-                    raise ValueError(f"{cls.__name__}.{what}[{letter!r}]: want the pins of {', '.join(signals)}")
+                    raise ValueError(f"{cls.__name__}.{what}[{letter!r}]: expected the pins of {', '.join(signals)}")
                 wired += [(what, pin) for pin in pins]
         for what, pin in wired:
             if not 0 <= pin < GPIO_COUNT:
@@ -353,7 +353,7 @@ class Board(System):
         for gpio in (tx_gpio, rx_gpio):
             if gpio not in self.serial_pins:
                 reached = ", ".join(map(str, sorted(self.serial_pins)))
-                raise ValueError(f"{name} at GPIO{gpio}: no SCI reaches it, but GPIO {reached}")
+                raise ValueError(f"{name} at GPIO{gpio}: no SCI reaches this pin; it reaches GPIO {reached}")
         lines = self.serial_pins[tx_gpio], self.serial_pins[rx_gpio]
         line = WireLink(self.clock, *lines, baud=baud, report=self.reports)
         self.pc = Pc(tx_gpio, rx_gpio, baud, line)
@@ -460,5 +460,5 @@ def _only_board(file: Path) -> type[Board]:
     ]
     if len(found) != 1:
         names = ", ".join(item.__name__ for item in found) or "none"
-        raise ValueError(f"board {file}: want one class made from hil.board.Board, found {names}")
+        raise ValueError(f"board {file}: expected one class made from hil.board.Board, found {names}")
     return found[0]

@@ -163,12 +163,12 @@ def build(root: Path = ROOT, store: Path = STORE, progress: Callable[[float], No
         _try_tools(work)
         extensions = translate(root, work)
         if any(digest(root / name) != known for name, known in sources.items()):
-            raise BuildError("a source changed during the build: once more, please")
+            raise BuildError("a source changed during the build: run hil build again")
         _compile(extensions, work, made, progress)
         names = [name.removesuffix(".py").replace("/", ".") for name in modules]
         files = {e.name: _file(made, e.name) for e in extensions}
         if missing := set(names) - set(files):
-            raise BuildError(f"mypyc left out {', '.join(sorted(missing))}")
+            raise BuildError(f"mypyc did not compile {', '.join(sorted(missing))}")
         manifest = {"sources": sources, "modules": files}
         (made / "manifest.json").write_text(json.dumps(manifest, indent=1), "utf-8")
         clean(store)

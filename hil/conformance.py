@@ -71,7 +71,7 @@ def read_golden(path: str | Path) -> Golden:
     except OSError as error:
         raise ValueError(f"{path}: cannot be read: {error.strerror or error}") from None
     if not (isinstance(data, dict) and isinstance(data.get("meta"), dict) and isinstance(data.get("vectors"), list)):
-        raise ValueError(f'{path}: not golden vectors: want an object with "meta" and "vectors"')
+        raise ValueError(f'{path}: not golden vectors: expected an object with "meta" and "vectors"')
     function = data["meta"].get("function")
     if not isinstance(function, str):
         raise ValueError(f"{path}: meta.function is missing: it names the C function")

@@ -40,7 +40,7 @@ def has(package: str) -> bool:
         return False
 
 
-def want(package: str) -> None:
+def require(package: str) -> None:
     """Raise ModuleNotFoundError with the line of `hint` unless the package is installed."""
     if not has(package):
         raise ModuleNotFoundError(hint(package), name=package)

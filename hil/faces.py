@@ -13,7 +13,7 @@ from typing import Final
 
 from hil.board import Board
 
-FORM: Final = "want [TIME:]PART.FACE=VALUE"
+FORM: Final = "expected [TIME:]PART.FACE=VALUE"
 _TIMED: Final = re.compile(r"(\d+(?:\.\d*)?|\.\d+):(.*)", re.DOTALL)
 
 #: Part, face, what it is now; None: the part does not tell.

@@ -169,7 +169,7 @@ def check_target(path: str | Path) -> None:
     if not target.parent.is_dir():
         raise ValueError(f"{path}: there is no folder {target.parent}")
     if target.is_dir():
-        raise ValueError(f"{path}: it is a folder, want the name of a file")
+        raise ValueError(f"{path}: it is a folder; expected the name of a file")
 
 
 def _target(path: str | Path) -> Path:
@@ -177,7 +177,7 @@ def _target(path: str | Path) -> Path:
     try:
         return Path(path).resolve()
     except (RuntimeError, OSError) as error:  # RuntimeError before Python 3.13
-        raise OSError(errno.ELOOP, "links that lead to each other", str(path)) from error
+        raise OSError(errno.ELOOP, "the links form a loop", str(path)) from error
 
 
 def _reached(path: str | Path) -> int:

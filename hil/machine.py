@@ -107,7 +107,7 @@ class Setup:
             settings = {"world": setup, **settings}
             setup = None
         elif not isinstance(setup, Setup | None):
-            raise TypeError(f"{setup!r}: want a Setup, or the name of a world")
+            raise TypeError(f"{setup!r}: expected a Setup, or the name of a world")
         known = {field.name: field.default for field in fields(cls)}
         for name, value in settings.items():
             if name not in known:
@@ -119,7 +119,7 @@ class Setup:
             elif wanted is tuple and isinstance(value, list):
                 settings[name] = tuple(value)
             elif not isinstance(value, wanted) or (wanted is int and isinstance(value, bool)):
-                raise TypeError(f"{name}={value!r}: want {_WANTED[wanted]}")
+                raise TypeError(f"{name}={value!r}: expected {_WANTED[wanted]}")
         return replace(setup or cls(), **settings)
 
     def as_dict(self) -> dict[str, Any]:

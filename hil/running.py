@@ -149,9 +149,9 @@ class RunningBoard:
     def run_for(self, duration_s: float) -> None:
         """Run for a stretch of virtual time.  Raises ValueError for none, and before it was powered up."""
         if not 0.0 <= duration_s < inf:
-            raise ValueError(f"run_for({duration_s!r}): want seconds, 0 or more")
+            raise ValueError(f"run_for({duration_s!r}): expected seconds, 0 or more")
         if not self._booted:
-            raise ValueError("it has not been powered up yet: boot() comes first")
+            raise ValueError("the board is not powered up: call boot() first")
         self.run_until(self.clock.now + round(duration_s * SYSCLK_HZ))
 
     def close(self) -> None:
@@ -203,7 +203,7 @@ class RunningBoard:
                 raise ValueError(f"feed({data!r}): a text must be ASCII; give other bytes as bytes")
             data = data.encode("ascii")
         elif not isinstance(data, bytes | bytearray | memoryview):
-            raise TypeError(f"feed({data!r}): want bytes or text, as in feed('#MISN\\r')")
+            raise TypeError(f"feed({data!r}): expected bytes or text, as in feed('#MISN\\r')")
         if self.board.pc is None:
             raise ValueError(f"{type(self.board).__name__} has no line to a PC")
         self.board.pc.line.feed(bytes(data))
@@ -313,7 +313,7 @@ def _linked(board: Board, setup: Setup, *, coverage: Coverage | None, steps: boo
         asked = {} if project is None else {"header": project.header, "library": project.library}
         return link(board, files, asked=asked, **options)
     if project is None:
-        raise ValueError(f"no firmware belongs to the board {type(board).__name__}: give --firmware DIR (or files)")
+        raise ValueError(f"no firmware is given for the board {type(board).__name__}: give --firmware DIR (or files)")
     return project.link(board, **options)
 
 
@@ -324,6 +324,6 @@ def _main_of(firmware: Firmware, setup: Setup) -> str:
         return found[0]
     files = " ".join(setup.firmware)
     if found:
-        raise ValueError(f"{files}: several functions main: {', '.join(found)}")
+        raise ValueError(f"{files}: main is defined more than once: {', '.join(found)}")
     raise ValueError(f"{files}: no program, it has no main; hil check {files} --board FILE calls its functions")
 

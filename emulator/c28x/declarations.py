@@ -63,7 +63,7 @@ class UserDeclaration:
 
     def wrong(self, why: str) -> ValueError:
         """The error about this declaration, in one line: what is wrong, and its syntax."""
-        return ValueError(f"{self}: {why}: want hil: {WORDS[self.word]}")
+        return ValueError(f"{self}: {why}: expected hil: {WORDS[self.word]}")
 
 
 def declarations(file: str) -> tuple[UserDeclaration, ...]:

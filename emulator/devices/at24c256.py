@@ -44,7 +44,7 @@ class At24c256:
         self, clock: Clock, pins: int = 0, *, write_cycle_ms: float = WRITE_CYCLE_MS, report: DeviceReport | None = None
     ) -> None:
         if not 0 <= pins <= 7:
-            raise ValueError(f"address pins {pins}: want A2, A1, A0 as a number 0..7")
+            raise ValueError(f"address pins {pins}: expected A2, A1, A0 as a number 0..7")
         self._clock = clock
         self._report: DeviceReport = report or DiscardedReports()
         self._cycle_cycles = round(write_cycle_ms * CYCLES_PER_MS)

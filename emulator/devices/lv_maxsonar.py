@@ -126,9 +126,9 @@ class LvMaxSonar:
     ) -> None:
         """`powered_up`: power came on long ago, and the sensor waits for its first command."""
         if not 2.5 <= vcc_v <= 5.5:
-            raise ValueError(f"LV-MaxSonar {name}: supply {vcc_v} V; want 2.5 to 5.5 V")
+            raise ValueError(f"LV-MaxSonar {name}: supply {vcc_v} V; expected 2.5 to 5.5 V")
         if not 0.9 <= period_factor <= 1.1:
-            raise ValueError(f"LV-MaxSonar {name}: period factor {period_factor}; want 0.9 to 1.1")
+            raise ValueError(f"LV-MaxSonar {name}: period factor {period_factor}; expected 0.9 to 1.1")
         self.clock = clock
         self.name = name
         self.rx = rx

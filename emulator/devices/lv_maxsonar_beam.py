@@ -57,7 +57,7 @@ def object_range_m(diameter_m: float, vcc_v: float = 3.3) -> float:
     CHOICE: straight in the logarithm of the diameter and in the supply between the plotted figures, held at the ends.
     """
     if diameter_m <= 0.0:
-        raise ValueError(f"diameter {diameter_m} m of an object in the beam: want more than 0")
+        raise ValueError(f"diameter {diameter_m} m of an object in the beam: expected more than 0")
     supply = min(1.0, max(0.0, (vcc_v - 3.3) / (5.0 - 3.3)))
     x = math.log(diameter_m / INCH_M)
     points = [(math.log(d), low + (high - low) * supply) for d, high, low in OBJECT_RANGE]

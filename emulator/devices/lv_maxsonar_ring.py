@@ -47,7 +47,7 @@ class SonarRing:
         mark: Callable[[], Mark] | None = None,
     ) -> None:
         if len(analogs) < 2:
-            raise ValueError(f"a sonar ring of {len(analogs)}: want at least 2 sensors")
+            raise ValueError(f"a sonar ring of {len(analogs)}: expected at least 2 sensors")
         self.start = start
         self.air = SonarAir(cross_source)
         self.sensors: dict[str, LvMaxSonar] = {}

@@ -25,7 +25,7 @@ class LinePacer:
 
     def __init__(self, clock: Clock, line: SerialLine, baud: int) -> None:
         if baud <= 0:
-            raise ValueError(f"line {line.name}: {baud} baud; want more than 0")
+            raise ValueError(f"line {line.name}: {baud} baud; expected more than 0")
         self._clock = clock
         self._line = line
         self._baud = self._next_baud = baud
@@ -47,7 +47,7 @@ class LinePacer:
     def set_baud(self, baud: int) -> None:
         """Set the speed from the next character on.  The character on the line ends at the old speed."""
         if baud <= 0:
-            raise ValueError(f"line {self._line.name}: {baud} baud; want more than 0")
+            raise ValueError(f"line {self._line.name}: {baud} baud; expected more than 0")
         self._next_baud = baud
 
     def send(self, data: Iterable[int]) -> None:

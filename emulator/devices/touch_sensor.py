@@ -42,7 +42,7 @@ class TouchSensor:
         threshold_v: float = 1.4,
     ) -> None:
         if pull_up_ohm is not None and pull_up_ohm <= 0.0:
-            raise ValueError(f"touch sensor on {pin.name}: pull-up of {pull_up_ohm} ohm; want more than 0, or None")
+            raise ValueError(f"touch sensor on {pin.name}: pull-up of {pull_up_ohm} ohm; expected more than 0, or None")
         self.clock = clock
         self.pin = pin
         self.ideal = ideal

@@ -51,7 +51,7 @@ class XBeeModule:
         report: Callable[[str, str], object] | None = None,
     ) -> None:
         if baud not in NOMINAL_BAUDS:
-            raise ValueError(f"XBee {name}: {baud} baud; want one of {', '.join(map(str, NOMINAL_BAUDS))}")
+            raise ValueError(f"XBee {name}: {baud} baud; expected one of {', '.join(map(str, NOMINAL_BAUDS))}")
         self.clock = clock
         self.name = name
         self.air = air

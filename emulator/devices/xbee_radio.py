@@ -72,7 +72,7 @@ class RadioChannel:
         }
         for name, p in chances.items():
             if not 0.0 <= p <= 1.0:
-                raise ValueError(f"XBee air: {name}={p}; want a probability, 0 to 1")
+                raise ValueError(f"XBee air: {name}={p}; expected a probability, 0 to 1")
         self.clock = clock
         self.ideal = ideal
         self.busy = False

@@ -144,7 +144,7 @@ class Adc:
         `trigger_changed(trigsel, on)` is called when that hardware trigger begins (or ceases) to start conversions.
         """
         if len(interrupts) != 4:
-            raise ValueError(f"{regs.name}: {len(interrupts)} interrupts: want the 4 pulses ADCINT1..4")
+            raise ValueError(f"{regs.name}: {len(interrupts)} interrupts: expected the 4 pulses ADCINT1..4")
         self._clock, self._findings, self._position = clock, cpu.findings, cpu.position
         self._regs, self._result_regs = regs, results
         registers = regs.registers
@@ -290,7 +290,7 @@ class Adc:
     def trigger(self, trigsel: int) -> None:
         """A hardware trigger (TRIGSEL 1..28: CPU timers, ADCEXTSOC, ePWMn SOCA and SOCB).  ValueError for others."""
         if trigsel not in TRIGSELS:
-            raise ValueError(f"{self._regs.name}: hardware trigger {trigsel}: want 1..28")
+            raise ValueError(f"{self._regs.name}: hardware trigger {trigsel}: expected 1..28")
         if self._frozen_at is not None:
             return
         socs = self._socs.triggered_by(trigsel)

@@ -56,11 +56,11 @@ class Converter:
                  random: Random | None) -> None:  # fmt: skip
         """Raises ValueError for a wrong number of pins, a reference that is not positive, or noise without `random`."""
         if len(pins) != 16:
-            raise ValueError(f"{name}: {len(pins)} pins: want the 16 of ADCIN0..15")
+            raise ValueError(f"{name}: {len(pins)} pins: expected the 16 of ADCIN0..15")
         if vrefhi_v <= vreflo_v:
             raise ValueError(f"{name}: VREFHI {vrefhi_v} V must lie above VREFLO {vreflo_v} V")
         if noise_lsb < 0 or (noise_lsb > 0 and random is None):
-            raise ValueError(f"{name}: noise of {noise_lsb} LSB: want 0 or more, and a random.Random for more than 0")
+            raise ValueError(f"{name}: noise of {noise_lsb} LSB: expected 0 or more, and a random.Random above 0")
         self.name = name
         self.pins = tuple(pins)
         self._vrefhi_v, self.vreflo_v, self.span_v = vrefhi_v, vreflo_v, vrefhi_v - vreflo_v

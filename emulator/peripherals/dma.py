@@ -147,7 +147,7 @@ class Dma:
     ) -> None:  # fmt: skip
         """Raises ValueError for a wrong number of interrupts."""
         if len(interrupts) != CHANNELS:
-            raise ValueError(f"{regs.name}: {len(interrupts)} interrupts: want the 6 pulses of the channels")
+            raise ValueError(f"{regs.name}: {len(interrupts)} interrupts: expected the 6 pulses of the channels")
         self._clock, self._cpu, self._regs, self._select = clock, cpu, regs, select
         self._bus_read, self._bus_write, self._region = read, write, region
         self._bridges, self._listen, self._level_is_active, self._known = bridges, listen, level_is_active, known

@@ -40,7 +40,7 @@ _ENTRIES: Final = {entry.id: name for name, entry in PieVectTable.layout.items()
 def vector_id(group: int, n: int) -> int:
     """The vector id of interrupt `group`.`n` (1..12, 1..16): lines 1-8 from 0x20, 9-16 from 0x80.  HDR hw_ints.h."""
     if not (1 <= group <= GROUPS and 1 <= n <= LINES):
-        raise ValueError(f"PIE interrupt {group}.{n}: want group 1..12 and line 1..16")
+        raise ValueError(f"PIE interrupt {group}.{n}: expected group 1..12 and line 1..16")
     return 0x20 + 8 * (group - 1) + n - 1 if n <= 8 else 0x80 + 8 * (group - 1) + n - 9
 
 
@@ -157,7 +157,7 @@ class Pie:
         `begins`: the place of a firmware routine that must acknowledge the interrupt itself.
         """
         if not DIRECT_VECTORS[0] <= vector_id < 0x80 + 8 * GROUPS:
-            raise ValueError(f"PIE vector {vector_id:#x}: want 0xd..0xdf")
+            raise ValueError(f"PIE vector {vector_id:#x}: expected 0xd..0xdf")
         if handler is None:
             self._vectors.pop(vector_id, None)
         else:

@@ -93,7 +93,7 @@ class SysCtrl:
         resc = self._cpusys.registers["RESC"]
         causes = type(resc).fields
         if cause not in causes:
-            raise ValueError(f"reset cause {cause}: want a field of RESC, such as {', '.join(causes)}")
+            raise ValueError(f"reset cause {cause}: expected a field of RESC, such as {', '.join(causes)}")
         before = resc.value
         for block in (self._cpusys, self._clkcfg, self._devcfg, self._analog):
             block.reset()
@@ -201,7 +201,7 @@ class SysCtrl:
     def _mask(block: Block, names: Container[str], register: str, field: str) -> int:
         fields = type(block.registers[register]).fields if register in block.registers else {}
         if field not in fields or register not in names:
-            raise ValueError(f"{block.name}.{register}.{field} is no gate or reset: want one of the header's names")
+            raise ValueError(f"{block.name}.{register}.{field} is no gate or reset: expected one of the header's names")
         return fields[field].mask
 
     # --- register handlers -------------------------------------------------------------------------------------------

@@ -46,7 +46,7 @@ class F:
         lo = rest[0] if isinstance(rest[0], int) else hi
         access, reset, text = rest[-3:]
         if not 0 <= lo <= hi <= 31 or not isinstance(access, Access):
-            raise ValueError(f"field [{hi}:{lo}] {access!r}: want 31 >= hi >= lo >= 0 and an Access")
+            raise ValueError(f"field [{hi}:{lo}] {access!r}: expected 31 >= hi >= lo >= 0 and an Access")
         self.name = ""
         self.hi, self.lo = hi, lo
         self.width = hi - lo + 1

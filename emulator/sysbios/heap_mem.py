@@ -109,7 +109,7 @@ class HeapMemModule:
         self._names = UniqueNames()
         self._default: HeapMem | None = None
         if default_words < HEADER_WORDS:
-            raise ValueError(f"a heap of {default_words} words has no room for a block: want {HEADER_WORDS} at least")
+            raise ValueError(f"a heap of {default_words} words is too small: expected at least {HEADER_WORDS}")
         self._default_words = default_words
 
     @property

@@ -149,7 +149,7 @@ def lines(summary: dict[str, Any], session: Session) -> list[str]:
     time = f"virtual time {summary['virtual_s']:.3f} s in {summary['wall_s']:.3f} s"
     told = [f"{time}: pace {reached:.3f}, {BUILDS[MODE]}"]
     if "status" in summary and summary["status"]["state"] == START_UP:
-        told.append("start-up has not ended: main has not come to BIOS_start")
+        told.append("start-up has not ended: main has not reached BIOS_start")
     if session.pacer.pace is not None:
         told.append(
             f"lag median {lag['median_ms']:.1f} ms, 99 % {lag['p99_ms']:.1f} ms, max {lag['max_ms']:.1f} ms, "

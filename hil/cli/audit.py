@@ -121,7 +121,7 @@ def audit(
         if outcome.error:
             show.print_line(f"{outcome.id}: {outcome.error}", to_stderr=True)
     if interrupted:
-        show.print_line(f"{len(names) - len(outcomes)} of {len(names)} entries were not looked at", to_stderr=True)
+        show.print_line(f"{len(names) - len(outcomes)} of {len(names)} entries were not examined", to_stderr=True)
         raise typer.Exit(EXIT_INTERRUPTED)
     if not all(outcome.shown for outcome in outcomes):
         raise typer.Exit(show.EXIT_FAILED)

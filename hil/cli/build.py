@@ -34,7 +34,7 @@ def build(
     if clean and why:
         raise UserError("--clean removes a build, --why builds none: give one of them")
     if json_output and not why:
-        raise UserError("--json goes with --why")
+        raise UserError("--json needs --why")
     with user_errors():
         if why:
             _why(json_output=json_output)

@@ -15,7 +15,7 @@ from hil.cli import own_c, show
 from hil.cli.board import Option
 from hil.cli.faults import Fault, checked_faults
 from hil.cli.feeds import Feed
-from hil.extras import want
+from hil.extras import require
 from hil.files import check_target
 
 if TYPE_CHECKING:
@@ -177,12 +177,12 @@ def check(
             name=scenario.name if scenario_file else "mission" if order is None else ", ".join(order),
         )
         if update_baseline and policy.baseline is None:
-            raise ValueError("--update-baseline: which file? give --baseline FILE, or baseline in pyproject.toml")
+            raise ValueError("--update-baseline: no file given: give --baseline FILE, or baseline in pyproject.toml")
         for path in (sarif, html, junit, lcov, policy.baseline):
             if path is not None:
                 check_target(path)
         if html is not None:
-            want("matplotlib")
+            require("matplotlib")
         coverage = None if lcov is None else Coverage()
         if drivers:
             wanted = _drivers(drivers, *own_c.read_as(drivers, project, include, define), abi, board)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 import typer
 
 from hil.cli import show
-from hil.extras import want
+from hil.extras import require
 from hil.machine import FirmwareStopped, Setup
 from hil.pacing import Pacer
 from hil.serial_url import PortError
@@ -101,7 +101,7 @@ def console(
 
 def _in_terminal(port: str | None, setup: Setup, *, json_output: bool) -> None:
     """Our own console; it owns the terminal and the signals while it runs."""
-    want("textual")
+    require("textual")
     from hil.terminal.run import run_terminal
 
     summary = run_terminal(port, None if port else setup, machine=show.open_machine, pace=1.0)

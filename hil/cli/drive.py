@@ -78,7 +78,7 @@ def drive(
                     listener.listen(line, BETWEEN_ORDERS_S)
                 listener.listen(line, None if unlimited else for_s or 0.0)
         except serial.SerialTimeoutException:
-            raise ValueError(f"{port}: takes no bytes; is the robot running?") from None
+            raise ValueError(f"{port} accepts no bytes; is the robot running?") from None
         except BrokenPipeError:
             raise  # who reads our output has gone, not the port
         except OSError as error:  # what came until then is still shown

@@ -50,7 +50,7 @@ def export(
                 show.console().print(table)
             return
         if trace is None or target is None:
-            raise show.UserError("want a trace file and a file to write: hil export run.trace run.vcd")
+            raise show.UserError("give a trace file and a file to write: hil export run.trace run.vcd")
         check_target(target)
         found = read(trace)
         if channel:

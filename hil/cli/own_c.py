@@ -74,7 +74,7 @@ def own_c(
     if not firmware:
         for option, value in (("--project", project), ("-I", include), ("-D", define)):
             if value:
-                raise ValueError(f"{option}: it is for C files: give --firmware DIR")
+                raise ValueError(f"{option} needs C files: give --firmware DIR")
         return OwnC()
     if not robot:
         return OwnC(tuple(map(str, firmware)), *read_as(firmware, project, include, define))

@@ -162,7 +162,7 @@ def _play_orders(
     known = setup_of(recording)
     if known is None:
         show.print_line(
-            f"hil: {recording.name}: does not say which robot it was; taking the standard one", to_stderr=True
+            f"hil: {recording.name}: does not name its robot; using the standard one", to_stderr=True
         )
     setup = known or Setup()
     setup = replace(setup, world=setup.world if world is None else world, seed=setup.seed if seed is None else seed)

@@ -151,7 +151,7 @@ def rta(
             _with_bar(robot.run, phasings, quiet=json_output)
             task_set = robot.measured()
             if not task_set.tasks:
-                raise ValueError("no task of the program was seen to be released and to wait again")
+                raise ValueError("no task of the program was released and then waited again")
             starts = robot.start_ups()
             off_by = _off_by(task_set, robot.of_own_c())
             runs.append(_RunKind("firmware", robot.observer, task_set, Protocol.INHERITANCE, phasings, began))
@@ -168,7 +168,7 @@ def rta(
         late = _report(counted, chosen, runs, starts, off_by, not_run, json_output=json_output)
         if plot is not None:
             if not runs:
-                raise ValueError(f"--plot: there is no picture of what was not run: {not_run}")
+                raise ValueError(f"--plot: the task set was not run, so there is nothing to draw: {not_run}")
             _plot(plot, runs[0], task)
     if exceeded or late:
         raise typer.Exit(show.EXIT_FAILED)
@@ -287,7 +287,7 @@ def _report(
     console.print(_table(responses, growth, runs, protocol, off_by))
     if task_set.nested and protocol == "inheritance":
         show.print_line(
-            "A gate is entered within another: GateMutexPri's inheritance gives no bound there but that of none."
+            "A gate is entered within another: for nested gates, GateMutexPri has the bound of no inheritance."
         )
     if circles:
         show.print_line(f"Tasks may wait in a circle for ever: gates {', '.join(circles)}")
@@ -412,7 +412,7 @@ def _plot(path: Path, run: _RunKind, name: str | None) -> None:
         deadline = {task.name: task.deadline_ns for task in run.task_set.tasks}
         name = max(moments, key=lambda n: (run.seen_ns(n) or 0) / deadline[n], default=None)
     if name is None or name not in moments:
-        raise ValueError(f"--task {name}: seen were {', '.join(moments) or 'none'}")
+        raise ValueError(f"--task {name}: the run had no such task; it had {', '.join(moments) or 'none'}")
     draw_moment(
         path, moments[name], priorities={task.name: task.priority for task in run.task_set.tasks},
         gates=run.observer.gate_names, computed_ns=run.responses[name].ready_to_end_ns,

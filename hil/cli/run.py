@@ -381,7 +381,7 @@ def _scenario(file: Path, of_the_file: dict[str, Any], *, view: bool) -> Scenari
 
     for option, value in of_the_file.items():
         if value is not None and value != []:
-            raise ValueError(f"{option}: the scenario says it")
+            raise ValueError(f"{option}: the scenario file sets it; leave the option out")
     scenario, _ = load_scenario(file, Policy())
     if scenario.script and view:
         raise ValueError(f"{file}: --view cannot go back in time with a script; leave --view out")
@@ -401,7 +401,7 @@ def _check_kind(kind: type[Board], of_robots: dict[str, Any]) -> None:
     """Raises ValueError for an option that only means something for a robot."""
     for option, value in of_robots.items():
         if value is not None and value != []:
-            raise ValueError(f"{option}: it is for a robot in its world, and {kind.__name__} has no wheels")
+            raise ValueError(f"{option} needs a robot in its world, and {kind.__name__} has no wheels")
 
 
 def without_line(machine: Machine) -> bool:

@@ -61,7 +61,7 @@ def scenario(
             return
         paths = [*(running.shipped() if shipped else ()), *_of(files or [])]
         if not paths:
-            raise ValueError("which scenario? give FILE..., or --shipped")
+            raise ValueError("no scenario given: give FILE..., or --shipped")
         if junit is not None:
             check_target(junit)
         show.policy()
@@ -150,7 +150,8 @@ def _print(outcomes: list[ScenarioOutcome]) -> None:
     for outcome in outcomes:
         for failure in outcome.failures:
             show.print_line(f"{outcome.name}: {failure}")
-    show.print_line(f"{sum(outcome.passed for outcome in outcomes)} of {len(outcomes)} scenarios as their files say")
+    passed = sum(outcome.passed for outcome in outcomes)
+    show.print_line(f"{passed} of {len(outcomes)} scenarios gave what their files expect")
 
 
 scenario.__doc__ = f"{scenario.__doc__}\n\n{EXAMPLES}"

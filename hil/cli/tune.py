@@ -88,5 +88,5 @@ def _pair(text: str) -> tuple[float, float]:
     try:
         kp, ki = map(float, text.split(","))
     except ValueError:
-        raise ValueError(f"{text}: want two numbers, KP,KI, as in 1,10") from None
+        raise ValueError(f"{text}: expected two numbers, KP,KI, as in 1,10") from None
     return kp, ki

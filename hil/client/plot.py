@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from hil.client.decode import OdometryFrame
-from hil.extras import want
+from hil.extras import require
 from hil.files import check_target, replacing
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def check_plot_file(path: Path, suffixes: Sequence[str] = SUFFIXES) -> None:
     """Raise ValueError, before anything runs, if a picture could not be written there; ModuleNotFoundError without
     Matplotlib.  It is imported here: after Ctrl-C there is a second for the picture, and half of it would go.
     """
-    want("matplotlib")
+    require("matplotlib")
     import hil.client.figure  # noqa: F401
     if path.suffix.lower() not in suffixes:
         raise ValueError(f"{path}: a picture's name ends in {', '.join(suffixes)}")
@@ -95,7 +95,7 @@ def drive_figure(
     title: str = "Drive",
 ) -> Figure:
     """A drive as a figure.  All points in metres, in one frame; `posts` are (x, y, radius)."""
-    want("matplotlib")
+    require("matplotlib")
     from hil.client.figure import ShownFigure
 
     figure = ShownFigure(8, 6)

@@ -124,15 +124,15 @@ def _function(tried: CheckedFunction, found: Roles, ran: ProgramOutcome | None) 
         reason = f"{reason}; the program ran for {ran.virtual_s:g} s" + (f", then ended: {ran.cut}" if ran.cut else "")
     notes = []
     if tried.guessed:
-        notes.append(f"the C does not tell how much {' and '.join(tried.guessed)} may point to: a guess")
+        notes.append(f"the C does not give the size of what {' and '.join(tried.guessed)} points to: it was guessed")
     if tried.left_guess:
-        notes.append(f"{tried.left_guess} of them say nothing: they left what was guessed")
+        notes.append(f"{tried.left_guess} of them are ignored: they accessed memory beyond the guessed size")
     if tried.fault:
         notes.append(f"one of them ended in {tried.fault}")
     if tried.endless:
-        notes.append("it does not return: its loop is written without an end")
+        notes.append("it does not return: it has an endless loop")
     elif tried.cut:
-        notes.append(f"{tried.cut} of them ended: they compute for too long")
+        notes.append(f"{tried.cut} of them were stopped: they computed for too long")
     return CalledFunction(
         function.name, function.where.file, function.line, tried.calls, reason or "; ".join(notes), not reason
     )

@@ -51,7 +51,7 @@ def _regular(file: Path) -> None:
     if not file.exists():
         raise ValueError(f"{file}: there is no such file")
     if not is_driver_name(file):
-        raise ValueError(f"{file}: not a driver file: want {_ENDINGS}, or a folder of them")
+        raise ValueError(f"{file}: not a driver file: expected {_ENDINGS}, or a folder of them")
     status = file.stat()
     if not stat.S_ISREG(status.st_mode):
         raise ValueError(f"{file}: not a plain file")
@@ -74,5 +74,5 @@ def defines(given: Iterable[str]) -> list[str]:
     for define in listed:
         name = define.partition("=")[0]
         if not (name.isidentifier() and name.isascii()):
-            raise ValueError(f"-D {define}: want NAME or NAME=VALUE")
+            raise ValueError(f"-D {define}: expected NAME or NAME=VALUE")
     return listed

@@ -171,9 +171,9 @@ class Fault:
         given = dict(table)
         kind = given.pop("kind", None)
         if not isinstance(kind, str):
-            raise ValueError("kind: it must be said which fault is meant (hil faults)")
+            raise ValueError("kind is missing: name the fault (hil faults lists them)")
         if "for" in given:
-            raise ValueError(f"{kind}: no parameter 'for': in a table it is for_s")
+            raise ValueError(f"{kind}: no parameter 'for': in a table, write for_s")
         if "for_s" in given:
             given["for"] = given.pop("for_s")
         return cls.of(kind, given)
@@ -200,6 +200,6 @@ def parse(text: str) -> Fault:
         if not equals:
             raise ValueError(f"fault {text!r}: {part!r} is not NAME=VALUE")
         if name.strip() in given:
-            raise ValueError(f"fault {text!r}: {name.strip()} is said twice")
+            raise ValueError(f"fault {text!r}: {name.strip()} is given twice")
         given[name.strip()] = value.strip()
     return Fault.of(kind.strip(), given)

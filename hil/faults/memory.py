@@ -26,7 +26,7 @@ class BitFlip(Effect):
         except ValueError:
             return self._of_object(name)
         if not any(low <= address < high for low, high in RAM):
-            raise ValueError(f"word: {address:#x} lies in no RAM")
+            raise ValueError(f"word: {address:#x} is not in RAM")
         return address
 
     def _of_object(self, name: str) -> int:

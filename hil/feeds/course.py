@@ -120,7 +120,7 @@ class GeneratedCourse(Course):
         self._ended = False
         self._draw(-(1 << 62))
         if not self._points:
-            raise ValueError("a generator that yields nothing: want (time_s, value)")
+            raise ValueError("a generator that yields nothing: expected (time_s, value)")
 
     def at(self, cycles: int) -> float:
         """The value at a time."""
@@ -153,7 +153,7 @@ class GeneratedCourse(Course):
             self._check(value, time_s)
             cycles = cycles_of(time_s)
             if points and cycles < points[-1][0]:
-                raise ValueError(f"time {time_s:g} s: it goes back, before it was {points[-1][0] / SYSCLK_HZ:g} s")
+                raise ValueError(f"time {time_s:g} s comes before the previous time, {points[-1][0] / SYSCLK_HZ:g} s")
             points.append((cycles, value))
 
 

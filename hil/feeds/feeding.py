@@ -32,7 +32,9 @@ Source: TypeAlias = (
     float | tuple[Sequence[float], Sequence[float]] | Callable[[float], float] | Iterator[tuple[float, float]] | str
     | Path
 )  # fmt: skip
-FORM: Final = "want [INPUT=]FILE[#COLUMN][,linear], INPUT=[[SECONDS,VALUE],...][,linear], INPUT=NUMBER or INPUT=physics"
+FORM: Final = (
+    "expected [INPUT=]FILE[#COLUMN][,linear], INPUT=[[SECONDS,VALUE],...][,linear], INPUT=NUMBER or INPUT=physics"
+)
 _INPUT: Final = re.compile(r"\s*([^=/\\]*\.\w+|ADCIN\w*)\s*=(.*)", re.DOTALL)
 
 
@@ -94,7 +96,9 @@ def _course(into: Input, source: Any, how: str, unit: str, origin: int) -> Cours
     if isinstance(source, tuple):
         times, values = source
         if len(times) != len(values) or not len(times):
-            raise ValueError(f"feed of {into.name}: {len(times)} times, {len(values)} values: want as many, and some")
+            raise ValueError(
+                f"feed of {into.name}: {len(times)} times, {len(values)} values: expected as many of both, at least 1"
+            )
         column = Column(f"feed of {into.name}", into.name)
         for index, (time_s, value) in enumerate(zip(times, values, strict=True)):
             check(float(value) * factor + offset, time_s)
@@ -187,4 +191,4 @@ def _arrays(name: str, text: str) -> tuple[list[float], list[float]]:
         pairs = json.loads(text)
         return [float(time_s) for time_s, _ in pairs], [float(value) for _, value in pairs]
     except (ValueError, TypeError, RecursionError):
-        raise ValueError(f"feed of {name}: want [[SECONDS,VALUE],...], such as [[0,1.2],[1,2.4]]") from None
+        raise ValueError(f"feed of {name}: expected [[SECONDS,VALUE],...], such as [[0,1.2],[1,2.4]]") from None

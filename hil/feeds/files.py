@@ -49,9 +49,9 @@ class Column:
         return f"{self.file}{line}: column {self.name!r}"
 
     def add(self, time: int, value: float, line: int) -> None:
-        """One more value.  Raises ValueError if the time goes back."""
+        """One more value.  Raises ValueError if the time decreases."""
         if self.times and time < self.times[-1]:
-            raise ValueError(f"{self.file}:{line}: the time goes back; rows must be in the order of time")
+            raise ValueError(f"{self.file}:{line}: the time decreases; rows must be in order of time")
         self.times.append(time)
         self.values.append(value)
         self.lines.append(line)
@@ -81,7 +81,7 @@ def _column(columns: dict[str, Column], path: str, channel: str, name: str) -> C
 def _some(columns: dict[str, Column], path: str) -> list[Column]:
     if not columns:
         said = " ".join(f"--channel {each}" for each in CHANNELS)
-        raise ValueError(f"{path}: nothing that sensors saw: record it with hil run --trace FILE {said}")
+        raise ValueError(f"{path}: no sensor values: record them with hil run --trace FILE {said}")
     return list(columns.values())
 
 
@@ -109,7 +109,7 @@ def _of_table(path: str, rows: Iterator[tuple[int, list[str]]]) -> list[Column]:
         return _of_exported(path, rows)
     time = _TIME.fullmatch(heading[0]) if heading else None
     if time is None or len(heading) < 2:
-        raise ValueError(f"{path}:{first}: want a heading: time_s (or time [ms]), then inputs, such as ADCINA3")
+        raise ValueError(f"{path}:{first}: expected a heading: time_s (or time [ms]), then inputs, such as ADCINA3")
     scale = _SECONDS[time[1] or time[2]]
     columns = []
     for text in heading[1:]:
@@ -119,14 +119,14 @@ def _of_table(path: str, rows: Iterator[tuple[int, list[str]]]) -> list[Column]:
         if not columns[-1].name:
             raise ValueError(f"{path}:{first}: column {len(columns) + 1} has no name")
         if columns[-1].name in [each.name for each in columns[:-1]]:
-            raise ValueError(f"{path}:{first}: two columns {columns[-1].name!r}")
+            raise ValueError(f"{path}:{first}: more than one column {columns[-1].name!r}")
     last = 0
     for number, cells in rows:
         if len(cells) != len(heading):
             raise ValueError(f"{path}:{number}: {len(cells)} cells, and the heading has {len(heading)}")
         cycles = _time(_number(cells[0], f"{path}:{number}: column {heading[0]!r}") * scale, path, number)
         if number > first + 1 and cycles < last:
-            raise ValueError(f"{path}:{number}: column {heading[0]!r}: {cells[0]} goes back; "
+            raise ValueError(f"{path}:{number}: column {heading[0]!r}: {cells[0]} decreases; "
                              "rows must be in the order of time")  # fmt: skip
         last = cycles
         for column, cell in zip(columns, cells[1:], strict=True):

@@ -184,7 +184,7 @@ class VectorBench:
                 setattr(self.fw.main_robot, name, NULL)
             return []
         if pointers != "distinct":
-            raise ValueError(f'pointers is {pointers!r}: want "distinct" or "null"')
+            raise ValueError(f'pointers is {pointers!r}: expected "distinct" or "null"')
         base = self.array("float32", [content] * len(names))
         for i, name in enumerate(names):
             setattr(self.fw.main_robot, name, base.at(i))

@@ -11,7 +11,7 @@ def to_float(bits: str) -> float:
     try:
         return float(struct.unpack(">f", bytes.fromhex(bits))[0])
     except (TypeError, ValueError, struct.error):
-        raise ValueError(f"{bits!r} is not a float: want eight hexadecimal digits") from None
+        raise ValueError(f"{bits!r} is not a float: expected eight hexadecimal digits") from None
 
 
 def to_floats(bits: Iterable[str]) -> list[float]:

@@ -30,6 +30,6 @@ def export(trace: RecordedTrace, target: str | Path) -> None:
     suffix = Path(target).suffix.lower()
     known = FORMATS.get(suffix)
     if known is None:
-        raise ValueError(f"{target}: no format for {suffix or 'a name without suffix'}: want {', '.join(FORMATS)}")
+        raise ValueError(f"{target}: no format for {suffix or 'a name without suffix'}: expected {', '.join(FORMATS)}")
     with replacing(target) as new:
         known[0](new, trace)

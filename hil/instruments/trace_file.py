@@ -105,7 +105,7 @@ def checked(channels: Iterable[str]) -> tuple[str, ...]:
     wanted = list(channels)
     for name in wanted:
         if name not in CHANNELS and name != "all":
-            raise ValueError(f"no channel {name!r}: want all, or some of {', '.join(CHANNELS)}")
+            raise ValueError(f"no channel {name!r}: expected all, or some of {', '.join(CHANNELS)}")
     return tuple(CHANNELS) if "all" in wanted else tuple(name for name in CHANNELS if name in wanted)
 
 
@@ -117,15 +117,15 @@ def read(path: str | Path) -> RecordedTrace:
             raise ValueError(f"{path}:1: no trace of `hil run --trace`, version {VERSION}")
         channels = header.get("channels")
         if not isinstance(channels, list) or not all(channel in CHANNELS for channel in channels):
-            raise ValueError(f"{path}:1: channels: want some of {', '.join(CHANNELS)}")
+            raise ValueError(f"{path}:1: channels: expected some of {', '.join(CHANNELS)}")
         about = header.get("about", {})
         if not isinstance(about, dict) or not all(isinstance(text, str) for text in about.values()):
-            raise ValueError(f"{path}:1: about: want names and texts")
+            raise ValueError(f"{path}:1: about: expected names and texts")
         events: list[Event] = []
         for number, line in enumerate(iter(lambda: file.readline(_LONGEST), b""), 2):
             if not line.endswith(b"\n"):
                 if len(line) >= _LONGEST:
-                    raise ValueError(f"{path}:{number}: longer than {_LONGEST} characters: want one event")
+                    raise ValueError(f"{path}:{number}: longer than {_LONGEST} characters: expected one event")
                 break  # cut off when the run was killed
             events.append(_event(_parsed(line, f"{path}:{number}"), f"{path}:{number}"))
     events.sort(key=lambda event: event[0])
@@ -136,14 +136,14 @@ def _parsed(line: bytes, where: str) -> Any:
     try:
         return json.loads(line)
     except (ValueError, RecursionError):
-        raise ValueError(f"{where}: no JSON: want a trace of `hil run --trace`") from None
+        raise ValueError(f"{where}: no JSON: expected a trace of `hil run --trace`") from None
 
 
 def _event(found: Any, where: str) -> Event:
     match found:
         case [int() as cycles, str() as channel, str() as name, value] if cycles >= 0 and _fits(channel, name, value):
             return cycles, channel, name, value
-    raise ValueError(f"{where}: want [cycle, channel, name, value] as in the reference of the trace file")
+    raise ValueError(f"{where}: expected [cycle, channel, name, value] as in the reference of the trace file")
 
 
 def _fits(channel: str, name: str, value: Any) -> bool:

@@ -156,17 +156,17 @@ def parse(text: str, file: str) -> Table:
     try:
         rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader if any(map(str.strip, row))]
     except csv.Error as error:
-        raise ValueError(f"{file}:{reader.line_num}: {error}: want CSV") from None
+        raise ValueError(f"{file}:{reader.line_num}: {error}: expected CSV") from None
     if not rows or rows[0][1][0] != "distance_cm" or len(rows[0][1]) < 2:
-        raise ValueError(f"{file}:1: want a header like distance_cm,LEFT,FRONT,RIGHT")
+        raise ValueError(f"{file}:1: expected a header like distance_cm,LEFT,FRONT,RIGHT")
     names = rows[0][1][1:]
     if len(set(names)) != len(names) or not all(names):
-        raise ValueError(f"{file}:{rows[0][0]}: want a name of its own for each sonar, not {', '.join(names)}")
+        raise ValueError(f"{file}:{rows[0][0]}: expected a name of its own for each sonar, not {', '.join(names)}")
     distances: list[float] = []
     raw: dict[str, list[float]] = {name: [] for name in names}
     for line, cells in rows[1:]:
         if len(cells) != len(names) + 1:
-            raise ValueError(f"{file}:{line}: {len(cells)} values: want {len(names) + 1}, as in the header")
+            raise ValueError(f"{file}:{line}: {len(cells)} values: expected {len(names) + 1}, as in the header")
         distances.append(_number(cells[0], 1e4, f"{file}:{line}: distance_cm"))
         for name, cell in zip(names, cells[1:], strict=True):
             raw[name].append(_number(cell, 1e7, f"{file}:{line}: {name}") if cell else float("nan"))
@@ -174,7 +174,7 @@ def parse(text: str, file: str) -> Table:
     for name, values in table.raw.items():
         known = np.isfinite(values)
         if len(set(table.distance_cm[known])) < 2 or len(set(values[known])) < 2:
-            raise ValueError(f"{file}: {name}: want at least two distances with different raw values")
+            raise ValueError(f"{file}: {name}: expected at least two distances with different raw values")
     return table
 
 
@@ -184,7 +184,7 @@ def _number(text: str, most: float, where: str) -> float:
     except ValueError:
         value = float("nan")
     if not 0.0 <= value <= most:
-        raise ValueError(f"{where} = {text[:40]}: want a number from 0 to {most:g}")
+        raise ValueError(f"{where} = {text[:40]}: expected a number from 0 to {most:g}")
     return value
 
 

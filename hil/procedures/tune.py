@@ -127,7 +127,7 @@ def respond(
         ("the time", for_s, 0.1, 600.0),
     ):  # fmt: skip
         if not least <= value <= most:
-            raise ValueError(f"{name} {value:g}: want {least:g} to {most:g}")
+            raise ValueError(f"{name} {value:g}: expected {least:g} to {most:g}")
     fixes = ["MAIN-null-integrators", *(["MAIN-pi-period"] if true_step else [])]
     controller = link(RobotBoard(), fixes=[] if faithful else fixes).main_robot
     setup = Setup(seed=seed, realistic=realistic, fixes=() if faithful else _ROBOT)

@@ -40,9 +40,9 @@ def make(folder: Path, language: str = "c") -> list[Path]:
     """
     name = folder.name.replace("-", "_")
     if not _NAME.fullmatch(name):
-        raise ValueError(f"{folder.name!r}: want a name of small letters, digits and - or _, as in pressure-sensor")
+        raise ValueError(f"{folder.name!r}: expected a name of small letters, digits and - or _, as in pressure-sensor")
     if keyword.iskeyword(name) or name in KEYWORDS or name in _TAKEN or name.startswith("test_"):
-        raise ValueError(f"{folder.name!r} means something already, to C, Python or the project: want another name")
+        raise ValueError(f"{folder.name!r} means something already, to C, Python or the project: expected another name")
     if language not in LANGUAGES:
         raise ValueError(f"no language {language!r}: {' or '.join(LANGUAGES)}")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):

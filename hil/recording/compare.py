@@ -117,7 +117,7 @@ def run_of(recording: Recording) -> RecordedRun:
             *whole, order = (order + record.data).split(b"\r")
             run.orders += [(time_s, data + b"\r") for data in whole]
     if decoder.malformed:
-        run.statements.append(f"{recording.name}: {decoder.malformed} frames are no odometry, left out")
+        run.statements.append(f"{recording.name}: {decoder.malformed} malformed frames, left out")
     return run
 
 

@@ -168,7 +168,7 @@ def parse_log(data: bytes, name: str) -> Recording:
     if recording.end_ns is None:
         count = len(recording.records)
         plural = "" if count == 1 else "s"
-        recording.problems.append(f"has no end, it was cut: what is before is used ({count} record{plural})")
+        recording.problems.append(f"is cut off: it has no end record; used is what precedes ({count} record{plural})")
     recording.records.sort(key=lambda record: record.time_ns)
     return recording
 
@@ -199,7 +199,7 @@ def _take(raw: bytes, recording: Recording, crc: int) -> str:
     elif match := _END.fullmatch(line):
         recording.end_ns = _time_ns(match)
         if int(match["crc"], 16) != crc:
-            recording.problems.append("was changed since it was recorded (the check sum of its end does not fit)")
+            recording.problems.append("was changed since it was recorded (the checksum at its end does not match)")
     elif (match := _HEADER.fullmatch(line)) and not recording.records and match["key"] != "end":
         recording.header.setdefault(match["key"], match["text"])
     else:

@@ -50,5 +50,5 @@ def parse_trajectory(data: bytes) -> Trajectory:
             result.frames.append(frame)
     if broken:
         more = f" and {len(broken) - 1} more" if len(broken) > 1 else ""
-        result.problems.append(f"line {broken[0]}{more}: no six numbers, left out")
+        result.problems.append(f"line {broken[0]}{more}: not six numbers, left out")
     return result

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from hil.client.decode import OdometryFrame
 from hil.client.plot import place, sonar_points
-from hil.extras import want
+from hil.extras import require
 from hil.files import replacing
 from hil.machine import PathPoint, RobotMachine
 from hil.world.robot_params import RobotParams
@@ -40,7 +40,7 @@ def save_moving(
 
     `hurried`: use no more than `FEW` pictures.  Returns whether no picture was left out.
     """
-    want("matplotlib")
+    require("matplotlib")
     from PIL.Image import Dither
 
     drawn = _Scene(robot, frames, title)

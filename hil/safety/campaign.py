@@ -227,10 +227,10 @@ def expectations(table: Table) -> list[Table]:
         name = f"it does not drive on {fault['kind']} ({n})"
         found.append({"name": name, "quantity": "driving", "most": 0, "during": during})
         # A frame comes every 250 ms; the number of another fault may stand in the place of this one's.
-        on_run = min([last, *stops_s])
-        if len(faults) == 1 and on_run - first > 0.8 and fault["kind"] != "radio-loss":
+        stop_s = min([last, *stops_s])
+        if len(faults) == 1 and stop_s - first > 0.8 and fault["kind"] != "radio-loss":
             found.append({"name": f"it tells {fault['kind']} ({n})", "frame": _frame(fault, held),
-                          "during": [during[0], round(on_run, 2)], "least": 1})  # fmt: skip
+                          "during": [during[0], round(stop_s, 2)], "least": 1})  # fmt: skip
     return found
 
 

@@ -70,9 +70,9 @@ class Expectation:
         }[kind]  # fmt: skip
         for key in table:
             if key not in ("name", kind, *allowed):
-                raise ValueError(f"{key} means nothing for {kind}: there are {', '.join(allowed)}")
+                raise ValueError(f"{key} is no key of {kind}: there are {', '.join(allowed)}")
         if "at" in table and "during" in table:
-            raise ValueError("at and during: one of them")
+            raise ValueError("give at or during, not both")
         least, most = float(table.get("least", -inf)), float(table.get("most", inf))
         if kind == "quantity" and least == -inf and most == inf:
             raise ValueError("least or most must be given")
@@ -87,7 +87,7 @@ class Expectation:
         if "during" in table:
             first, last = map(float, table["during"])
             if not 0 <= first <= last:
-                raise ValueError(f"during [{first:g}, {last:g}]: from 0 on, forward")
+                raise ValueError(f"during [{first:g}, {last:g}]: expected 0 or more, and the end after the start")
         else:
             first = last = float(table.get("at", inf))
         return cls(
@@ -102,7 +102,7 @@ class Expectation:
         try:
             return cls.of_kind(kind, table)
         except re.error as error:
-            raise ValueError(f"frame: no regular expression ({error})") from None
+            raise ValueError(f"frame: not a regular expression ({error})") from None
 
     @property
     def bounds(self) -> str:

@@ -230,7 +230,7 @@ def _table(
         if name not in table:
             raise Problem(path, f"{name} is missing: {known[name].what}")
     if one_of and sum(name in table for name in one_of) != 1:
-        raise Problem(path, f"one of {', '.join(one_of)} must be given, and only one")
+        raise Problem(path, f"one of {', '.join(one_of)} must be given, exactly one")
 
 
 def _value(key: Key, value: Any, path: Path) -> None:

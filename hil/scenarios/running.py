@@ -80,7 +80,7 @@ class ScenarioOutcome:
                     found.append(f"{check.name}: fails without the corrections, which the file does not say: "
                                  f"{check.seen}")  # fmt: skip
             if leg.stopped and not self.faithful_fails:
-                found.append(f"without the corrections it stopped: {leg.stopped}")
+                found.append(f"without the corrections, the firmware stopped: {leg.stopped}")
         return found
 
     @property

@@ -246,14 +246,14 @@ def _feed(entry: Mapping[str, Any], folder: Path, index: int) -> str:
     name, column = entry.get("input", ""), entry.get("column", "")
     what = next((key for key in ("value", "values", "column") if key in entry), None)
     if not name and what:
-        raise Problem(("feed", index), f"input is missing: what sees the {what}")
+        raise Problem(("feed", index), f"input is missing: name the input that sees the {what}")
     if "value" in entry:
         return f"{name}={float(entry['value'])!r}"
     if "values" in entry:
         values = entry["values"]
         for place, (before, after) in enumerate(pairwise(values), 1):
             if after[0] < before[0]:
-                raise Problem(("feed", index, "values", place), f"{after} after {before}: the time goes back")
+                raise Problem(("feed", index, "values", place), f"{after} after {before}: the time decreases")
         return f"{name}={json.dumps(values)},{entry.get('how', 'hold')}"
     file = folder / entry["file"]
     if not file.is_file():
@@ -266,7 +266,7 @@ def _when(entry: Mapping[str, str], index: int) -> tuple[str, str]:
     try:
         check_when(entry["when"])
         if not entry["when"].strip():
-            raise ValueError("it must be said what is waited for")
+            raise ValueError("nothing to wait for: ")
     except ValueError as error:
         raise Problem(("order", index, "when"), str(error).removeprefix("when: ")) from None
     return entry["when"], entry["send"]
@@ -298,8 +298,8 @@ def _check_setup(scenario: Scenario) -> None:
         if defect not in project.corrections(scenario.setup.fixes):
             raise Problem(("defects",), f"{defect} is not corrected: fixes must name it, or all")
     if scenario.defects and not scenario.faithful_fails:
-        raise Problem(("defects",), "faithful_fails is missing: what does not come true without their corrections")
+        raise Problem(("defects",), "faithful_fails is missing: name what fails without the corrections")
     if scenario.faithful_fails and not scenario.setup.fixes:
-        raise Problem(("faithful_fails",), "it needs fixes: without them the run is the faithful one already")
+        raise Problem(("faithful_fails",), "fixes is missing: without fixes, the run is the faithful one")
     if scenario.ground != GroundOptions():
         scenario.world_map()

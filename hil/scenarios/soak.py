@@ -108,20 +108,20 @@ class _Soak:
 
     def run(self) -> SoakResult:
         """Until the time is over."""
-        on_progress, setup = self._result, self._setup
+        result, setup = self._result, self._setup
         try:
             while not self._over:
-                on_progress.switched_on += 1
+                result.switched_on += 1
                 self._until_it_is_switched_off(setup)
                 # Another robot: its noise is not the same again.
                 setup = replace(setup, seed=setup.seed + 1)
         except KeyboardInterrupt:
-            on_progress.interrupted = True
-        on_progress.uart_sha256, on_progress.trace_sha256 = self._uart.hexdigest(), self._trace.hexdigest()
-        return on_progress
+            result.interrupted = True
+        result.uart_sha256, result.trace_sha256 = self._uart.hexdigest(), self._trace.hexdigest()
+        return result
 
     def _until_it_is_switched_off(self, setup: Setup) -> None:
-        on_progress, before_s = self._result, self._result.seconds
+        result, before_s = self._result, self._result.seconds
         bench = Bench(setup)
         bench.uart_sent.connect(self._sent)
         try:
@@ -130,22 +130,22 @@ class _Soak:
             back = True
             while back and not self._over:
                 back = self._round(bench)
-                on_progress.seconds = before_s + seconds(bench.clock.now)
+                result.seconds = before_s + seconds(bench.clock.now)
                 self._count_objects()
-                self._over = on_progress.seconds >= self._most_s
-                self._on_progress(on_progress)
+                self._over = result.seconds >= self._most_s
+                self._on_progress(result)
         except FirmwareStopped as reason:
-            on_progress.seconds = before_s + seconds(bench.clock.now)
-            on_progress.ended.append(f"{on_progress.seconds:.3f} s: {reason}")
+            result.seconds = before_s + seconds(bench.clock.now)
+            result.ended.append(f"{result.seconds:.3f} s: {reason}")
         except KeyboardInterrupt:
-            on_progress.seconds = before_s + seconds(bench.clock.now)
-            on_progress.interrupted = self._over = True
+            result.seconds = before_s + seconds(bench.clock.now)
+            result.interrupted = self._over = True
         finally:
             bench.close()
-        on_progress.travelled_m += bench.world.travelled_m
-        on_progress.collisions += bench.world.robot.collisions
+        result.travelled_m += bench.world.travelled_m
+        result.collisions += bench.world.robot.collisions
         here = (replace(each, time_cycles=each.time_cycles + round(before_s * SYSCLK_HZ)) for each in bench.findings)
-        on_progress.findings = merged([*on_progress.findings, *here])
+        result.findings = merged([*result.findings, *here])
         self._uart.update(bench.uart_sha256.encode("ascii"))
         self._trace.update(bench.trace_sha256.encode("ascii"))
 
@@ -164,25 +164,25 @@ class _Soak:
 
     def _round(self, bench: Bench) -> bool:
         """A drive, a fault, and whether the robot comes back."""
-        rng, on_progress = self._rng, self._result
+        rng, result = self._rng, self._result
         bench.run_for(rng.uniform(*QUIET_S))
         fault = self._fault(bench)
         try:
             mounted = mount(fault, bench, from_now=True)
         except ValueError:
-            on_progress.not_here.add(fault.kind.name)
+            result.not_here.add(fault.kind.name)
             return True
-        on_progress.mounted[fault.kind.name] += 1
+        result.mounted[fault.kind.name] += 1
         for _ in range(rng.randrange(4)):
             bench.run_for(fault.lasts_s / 4)
             self._order(bench, self._anything())
         bench.run_for(fault.lasts_s)
         mounted.remove()
         report = mounted.report()
-        on_progress.fired[fault.kind.name] += report.count > 0
-        on_progress.met[fault.kind.name] += report.met is not None
+        result.fired[fault.kind.name] += report.count > 0
+        result.met[fault.kind.name] += report.met is not None
         if bench.ended:
-            on_progress.ended.append(f"{on_progress.seconds:.3f} s: the watchdog has reset the chip, after {fault}")
+            result.ended.append(f"{result.seconds:.3f} s: the watchdog has reset the chip, after {fault}")
             return False
         return self._comes_back(bench, fault) and fault.kind.name not in _LASTING
 

@@ -47,7 +47,7 @@ class PtyPort(SerialPort):
         try:
             self._master, self._slave = os.openpty()
         except OSError as error:
-            raise PortError(f"no pseudo-terminal to be had ({error.strerror}); use --listen instead") from None
+            raise PortError(f"no pseudo-terminal available ({error.strerror}); use --listen instead") from None
         self._link: PortLink | None = None
         try:
             tty.setraw(self._slave, termios.TCSANOW)

@@ -147,7 +147,7 @@ def hil_firmware(
             asked = {} if project is None else {"header": project.header, "library": project.library}
             image = link(hil_board, modules, asked=asked, **options)
         else:
-            raise ValueError("no firmware belongs to this board: name yours with the marker firmware(...)")
+            raise ValueError("no firmware is given for this board: name yours with the marker firmware(...)")
         guard(hil_board, image.linked, settings.call_limit_s(node))
     return image
 

@@ -228,6 +228,6 @@ def _endless(values: Iterable[int]) -> Iterator[int]:
     for last in values:
         yield last
     if last is None:
-        raise ValueError("want at least one value")
+        raise ValueError("expected at least one value")
     while True:
         yield last

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import pytest
 
-from hil.extras import want
+from hil.extras import require
 from hil.testing import settings
 from hil.testing.fixtures import (
     firmware_externs,
@@ -97,7 +97,7 @@ def pytest_configure(config: pytest.Config) -> None:
     lcov = config.getoption("hil_lcov")
     if config.getoption("hil_html"):
         try:
-            want("matplotlib")
+            require("matplotlib")
         except ModuleNotFoundError as error:
             raise pytest.UsageError(str(error)) from None
     if hasattr(config, "workerinput"):

@@ -210,7 +210,7 @@ def for_c(item: pytest.Item) -> dict[str, Any]:
             value, folder = item.config.getini(ini) or (), folder and item.config.rootpath
         texts = [value] if isinstance(value, str) else list(value)
         if not all(isinstance(text, str | Path) for text in texts):
-            raise ValueError(f"marker firmware({key}={value!r}): want a list of texts")
+            raise ValueError(f"marker firmware({key}={value!r}): expected a list of texts")
         if texts:
             given[key] = [folder / text for text in texts] if folder else texts
     for path in given.get("include", ()):

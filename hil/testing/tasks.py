@@ -36,7 +36,7 @@ class Tasks:
     ) -> Task:  # fmt: skip
         """A task, as `Task_create` in `main` makes it; before `start`.  Raises ValueError for a wrong priority."""
         if self._started:
-            raise ValueError("tasks are made before start(); later ones by the firmware's own Task_create")
+            raise ValueError("create tasks before start(); after it, only the firmware creates them, with Task_create")
         if not 1 <= priority <= 15:
             raise ValueError(f"priority {priority}: 1 to 15")
         tasks = self.kernel.tasks

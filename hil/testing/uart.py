@@ -27,7 +27,7 @@ class Uart:
                 pins = ", ".join(map(str, sorted(board.serial_pins)))
                 raise ValueError(f"no SCI reaches GPIO{gpio}: one of {pins}")
         if baud <= 0:
-            raise ValueError(f"uart({tx_gpio}, {rx_gpio}, {baud}): want more than 0 baud")
+            raise ValueError(f"uart({tx_gpio}, {rx_gpio}, {baud}): expected more than 0 baud")
         self._clock = board.clock
         self._bit_cycles = SYSCLK_HZ / baud
         self._heard = bytearray()

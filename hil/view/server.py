@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, Final
 
 from hil.client.orders import TimedOrder
-from hil.extras import want
+from hil.extras import require
 from hil.machine import Machine, Setup
 from hil.reports.policy import Policy
 from hil.serial_port import SerialPort
@@ -113,7 +113,7 @@ def serve_console(
 
     The line that was, for what passed.  Raises PortError or ValueError, one line, if port or address cannot be opened.
     """
-    want("nicegui")
+    require("nicegui")
     from nicegui import app as nicegui_app
 
     from hil.robot.view.console_page import console_page

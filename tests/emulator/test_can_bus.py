@@ -212,7 +212,7 @@ def test_a_sender_that_leaves_breaks_its_frame_off() -> None:
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
-    [((0x800,), "want 11 bits"), ((1 << 29, b"", True), "want 29 bits"), ((1, b"123456789"), "9 bytes")],
+    [((0x800,), "expected 11 bits"), ((1 << 29, b"", True), "expected 29 bits"), ((1, b"123456789"), "9 bytes")],
 )
 def test_what_is_no_frame_is_refused(arguments: tuple[object, ...], message: str) -> None:
     with pytest.raises(ValueError, match=message):
@@ -222,5 +222,5 @@ def test_what_is_no_frame_is_refused(arguments: tuple[object, ...], message: str
 def test_a_part_that_is_on_no_bus_cannot_send() -> None:
     with pytest.raises(ValueError, match="no bus"):
         CanPart().send(CanFrame(1))
-    with pytest.raises(ValueError, match="want 1 to 1000000"):
+    with pytest.raises(ValueError, match="expected 1 to 1000000"):
         CanPart(2_000_000)

@@ -58,7 +58,7 @@ def test_the_files_of_a_folder_are_those_of_the_robot_and_others_are_left_out(fo
     [
         (["nowhere"], "nowhere: there is no such file or folder"),
         (["empty"], "no C file of the robot in this folder: looked for main_Robot.c, us.c"),
-        (["notes.txt"], "notes.txt: want a C file"),
+        (["notes.txt"], "notes.txt: expected a C file"),
         (["filter.c"], "filter.c: no C file of the robot: looked for"),
         ([".", "twice/Odometry.c"], "are the same file of the robot"),
     ],

@@ -40,11 +40,11 @@ def test_a_world_and_settings_by_name_make_a_setup(driven: Bench) -> None:
     [
         ({"sead": 3}, "a setup has no 'sead': seed"),
         ({"xyzzy": 3}, "a setup has no 'xyzzy': one of world, seed"),
-        ({"seed": "3"}, "seed='3': want a whole number"),
-        ({"seed": True}, "seed=True: want a whole number"),
-        ({"realistic": 1}, "realistic=1: want True or False"),
-        ({"fixes": 1}, "fixes=1: want a text, or several"),
-        ({"setup": 5}, "5: want a Setup, or the name of a world"),
+        ({"seed": "3"}, "seed='3': expected a whole number"),
+        ({"seed": True}, "seed=True: expected a whole number"),
+        ({"realistic": 1}, "realistic=1: expected True or False"),
+        ({"fixes": 1}, "fixes=1: expected a text, or several"),
+        ({"setup": 5}, "5: expected a Setup, or the name of a world"),
     ],
 )
 def test_a_setting_that_cannot_be_is_told_at_the_call(settings: dict[str, object], told: str) -> None:
@@ -58,7 +58,7 @@ def test_feed_takes_text_or_bytes_and_refuses_others_at_once(driven: Bench) -> N
         driven.feed(order)
     assert driven.pending_to_robot == before + 18
     for wrong in (5, None, ["#MISN\r"]):
-        with pytest.raises(TypeError, match="want bytes or text"):
+        with pytest.raises(TypeError, match="expected bytes or text"):
             driven.feed(wrong)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="ASCII"):
         driven.feed("#MISIÓN\r")
@@ -67,7 +67,7 @@ def test_feed_takes_text_or_bytes_and_refuses_others_at_once(driven: Bench) -> N
 
 @pytest.mark.parametrize("duration_s", [-1.0, float("nan"), float("inf")])
 def test_a_time_that_cannot_be_is_told_at_the_call(driven: Bench, duration_s: float) -> None:
-    with pytest.raises(ValueError, match="want seconds"):
+    with pytest.raises(ValueError, match="expected seconds"):
         driven.run_for(duration_s)
 
 

@@ -154,7 +154,7 @@ def test_hil_check_of_drivers_on_a_board_of_ones_own(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("class NoBoard: pass\n", "want one class made from hil.board.Board, found none"),
+        ("class NoBoard: pass\n", "expected one class made from hil.board.Board, found none"),
         ("from hil.board import Board\nclass A(Board): pass\nclass B(Board): pass\n", "found A, B"),
         ("1 / 0\n", "ZeroDivisionError"),
         ("def (:\n", "SyntaxError"),
@@ -199,7 +199,7 @@ def test_parts_have_names_of_their_own_and_places_that_exist() -> None:
     ("wrong", "said"),
     [
         ({"spi_pins": {"Q": (63, 64, 65)}}, "Wrong.spi_pins: no SPI-Q: this chip has SPI-A, SPI-B, SPI-C"),
-        ({"spi_pins": {"B": (63, 64)}}, "Wrong.spi_pins.'B'.: want the pins of SIMO, SOMI, CLK"),
+        ({"spi_pins": {"B": (63, 64)}}, "Wrong.spi_pins.'B'.: expected the pins of SIMO, SOMI, CLK"),
         ({"i2c_pins": {"A": (32, 169)}}, "Wrong.i2c_pins: no GPIO169: this chip has GPIO0 to GPIO168"),
         ({"pulls": {-1: 1}}, "Wrong.pulls: no GPIO-1"),
     ],
@@ -360,5 +360,5 @@ def test_a_heap_without_room_for_a_block_is_refused() -> None:
 
         heap_words = 3
 
-    with pytest.raises(ValueError, match="a heap of 3 words has no room for a block: want 4 at least"):
+    with pytest.raises(ValueError, match="a heap of 3 words has no room for a block: expected 4 at least"):
         Tiny()

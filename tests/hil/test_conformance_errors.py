@@ -95,8 +95,8 @@ def test_elsewhere_there_is_no_tolerance(tmp_path: Path) -> None:
     ("text", "complaint"),
     [
         ("{", "not JSON"),
-        ("[]", 'want an object with "meta" and "vectors"'),
-        ('{"meta": {}}', 'want an object with "meta" and "vectors"'),
+        ("[]", 'expected an object with "meta" and "vectors"'),
+        ('{"meta": {}}', 'expected an object with "meta" and "vectors"'),
         ('{"meta": {}, "vectors": []}', "meta.function is missing"),
         ('{"meta": {"function": "Fly"}, "vectors": []}', "no function 'Fly' here: known are Action"),
         ('{"meta": {"function": "PI"}, "vectors": [{"id": "x"}]}', 'vector 0 lacks one of "id", "in", "out"'),
@@ -129,7 +129,7 @@ def test_a_file_that_is_not_text_is_refused(tmp_path: Path) -> None:
     ("changed", "complaint"),
     [
         ({"kp": None}, "not a float"),
-        ({"kp": "3f80"}, "'3f80' is not a float: want eight hexadecimal digits"),
+        ({"kp": "3f80"}, "'3f80' is not a float: expected eight hexadecimal digits"),
         ({"steps": [["3f000000"]]}, "vector PI-test"),
     ],
 )

@@ -124,7 +124,7 @@ def test_where_a_file_cannot_be_is_told_before_anything_runs(tmp_path: Path) -> 
     loop = tmp_path / "loop"
     loop.symlink_to(loop)
     for path, reason in (
-        (loop, "links that lead to each other"), (tmp_path, "it is a folder"), (tmp_path / "no" / "file", "no folder"),
+        (loop, "the links form a loop"), (tmp_path, "it is a folder"), (tmp_path / "no" / "file", "no folder"),
     ):  # fmt: skip
         with pytest.raises(ValueError, match=f"{path}: .*{reason}"):
             check_target(path)

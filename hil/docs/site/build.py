@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from hil.docs import BEGIN, LOOK_UP, PAGES, DocPage
 from hil.docs.site import api, catalogue, commands, links, notebook, replays, rules
-from hil.extras import want
+from hil.extras import require
 
 #: What a finished site has in it, so that it may be replaced.
 MARK: Final = ".buildinfo"
@@ -55,7 +55,7 @@ def build(target: Path, progress: Callable[[str], None] = lambda told: None) -> 
 
     Raises ValueError with the warnings, one after the other; then the folder is as it was.
     """
-    want("sphinx")
+    require("sphinx")
     target = target.absolute()
     if target.exists() and not (target.is_dir() and (not any(target.iterdir()) or (target / MARK).exists())):
         raise ValueError(f"{target}: is there, and is no site: give another folder")

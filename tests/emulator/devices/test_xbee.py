@@ -333,5 +333,5 @@ def test_data_from_the_air_waits_while_the_host_is_in_command_mode() -> None:
 
 
 def test_an_unknown_baud_rate_is_refused() -> None:
-    with pytest.raises(ValueError, match="want one of 1200, 2400"):
+    with pytest.raises(ValueError, match="expected one of 1200, 2400"):
         Bench(baud=1234)

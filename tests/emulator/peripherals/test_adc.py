@@ -223,5 +223,5 @@ def test_one_clock_event_a_conversion() -> None:
 def test_impossible_construction_is_refused() -> None:
     with pytest.raises(ValueError, match="must lie above"):
         Bench(vrefhi_v=1.0, vreflo_v=1.0)
-    with pytest.raises(ValueError, match="want 0 or more, and a random"):
+    with pytest.raises(ValueError, match="expected 0 or more, and a random"):
         Bench(noise_lsb=1.0)

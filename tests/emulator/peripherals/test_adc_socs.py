@@ -94,7 +94,7 @@ def test_a_hardware_trigger_starts_the_SOCs_that_select_it() -> None:
     bench.soc(10).bit.TRIGSEL = 8
     bench.adc.trigger(7)
     assert bench.regs.ADCSOCFLG1.all == 1 << 4 | 1 << 9
-    with pytest.raises(ValueError, match=r"hardware trigger 0: want 1\.\.28"):
+    with pytest.raises(ValueError, match=r"hardware trigger 0: expected 1\.\.28"):
         bench.adc.trigger(0)
 
 

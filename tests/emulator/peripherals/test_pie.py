@@ -188,7 +188,7 @@ def test_every_enabled_pulse_is_taken_once_when_handlers_acknowledge(pulses: lis
 
 def test_lines_and_vectors_outside_the_table_are_refused() -> None:
     bench = Bench()
-    with pytest.raises(ValueError, match="want group 1"):
+    with pytest.raises(ValueError, match="expected group 1"):
         bench.pie.line(13, 1)
     with pytest.raises(ValueError, match="PIE vector 0xc"):
         bench.pie.set_vector(0x0C, None)

@@ -122,7 +122,7 @@ def test_an_interrupted_audit_keeps_what_it_has(
     assert invoke(["audit", "--file", "protocol.c", *form]) == 130
     out, err = capsys.readouterr()
     entries = [defect.id for defect in CATALOGUE.values() if defect.c_file == "protocol.c"]
-    left = f"{len(entries) - 2} of {len(entries)} entries were not looked at"
+    left = f"{len(entries) - 2} of {len(entries)} entries were not examined"
     assert err.splitlines() == [left, "hil: error: interrupted"]
     if form:
         told = json.loads(out)

@@ -209,7 +209,7 @@ class TestC:
         _, data = report(capsys, "p.c")
         notes = {one["name"]: one["note"] for one in data["run"]["functions"] if one["called"]}
         assert set(notes) == {"Far", "Keep", "Kept", "Is", "Copy", "Each", "Wait", "Sum", "Out"}
-        assert "of them say nothing: they left what was guessed" in notes["Far"]
+        assert "of them are ignored: they accessed memory beyond the guessed size" in notes["Far"]
         # Kept() is wrong without Keep(): its own array has 4 elements.
         serious = {(rule, line) for (rule, line), one in found(data).items() if one["severity"] != "note"}
         assert {line for _, line in serious} <= {6, 11, 12}
@@ -265,7 +265,7 @@ class TestC:
         }  # fmt: skip
         assert functions["Isr"]["note"] == "it is an interrupt routine"
         assert functions["Link"]["note"] == "parameter n holds a struct NODE *"
-        assert functions["Text"]["note"] == "the C does not tell how much s may point to: a guess"
+        assert functions["Text"]["note"] == "the C does not give the size of what s points to: it was guessed"
 
     def test_reports_show_the_c(self, data: dict[str, Any], folder: Path) -> None:
         assert data["failed"]
@@ -398,7 +398,7 @@ class TestC:
         (["ok.c", "--option", "lidar"], "--option: it is for the robot"),
         (["--option", "sonar"], "option 'sonar': must be five-sonars"),
         (["ok.c", "-I", "nowhere"], "-I nowhere: there is no such folder"),
-        (["ok.c", "-D", "1X"], "-D 1X: want NAME"),
+        (["ok.c", "-D", "1X"], "-D 1X: expected NAME"),
         (["ok.c", "--abi", "elf"], "--abi elf: one of coff, eabi"),
         (["-D", "X"], "-D: it is for C files"),
     ],

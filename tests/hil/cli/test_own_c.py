@@ -113,7 +113,7 @@ def test_a_folder_without_a_file_of_the_robot_is_one_line(
     ("arguments", "message"),
     [
         (["tasks", "--firmware", "nowhere"], "nowhere: there is no such file or folder"),
-        (["tasks", "-D", "X"], "-D: it is for C files: give --firmware DIR"),
+        (["tasks", "-D", "X"], "-D needs C files: give --firmware DIR"),
         (["tasks", "--firmware", "mine", "-I", "nowhere"], "-I nowhere: there is no such folder"),
         (["tasks", "--firmware", "mine", "--project", "bomb"], "bomb: not a project of Code Composer: a DOCTYPE"),
         (["run", "--firmware", "mine", "--fix", "ODO-half-step"], "is for the port, not for a C file"),

@@ -53,7 +53,7 @@ def test_for_ends_a_main_that_never_starts_the_kernel(
     assert invoke([*QUICK[:-1], "--no-port", "--for", "0.5"]) == 0
     out = capsys.readouterr().out
     assert "uninitialised" in out
-    assert "start-up has not ended: main has not come to BIOS_start" in out
+    assert "start-up has not ended: main has not reached BIOS_start" in out
 
 
 @pytest.mark.parametrize("form", ["text", "json"])

@@ -115,12 +115,12 @@ WRONG = [
     ("odd w", "int16_t f(int16_t v) { return v; }", "f has no parameter w"),
     ("odd", "int16_t f(int16_t v, int16_t w) { return v; }", "f has 2 numbers for parameters"),
     ("range 3..1", "int16_t f(int16_t v) { return v; }", "'3..1' is not a range"),
-    ("range", "int16_t f(int16_t v) { return v; }", "want hil: range [PARAMETER] LOW..HIGH"),
-    ("monotone upwards", "int16_t f(int16_t v) { return v; }", "want hil: monotone [PARAMETER] rising|falling"),
+    ("range", "int16_t f(int16_t v) { return v; }", "expected hil: range [PARAMETER] LOW..HIGH"),
+    ("monotone upwards", "int16_t f(int16_t v) { return v; }", "expected hil: monotone [PARAMETER] rising|falling"),
     ("unit a b c", "int16_t f(int16_t v) { return v; }", "'a b c' is not a unit"),
     ("unit w cm", "int16_t f(int16_t v) { return v; }", "no w is declared there"),
     ("allow indx, it is so", "int16_t f(int16_t v) { return v; }", "no rule 'indx': did you mean index"),
-    ("allow index", "int16_t f(int16_t v) { return v; }", "why is missing: want hil: allow RULE, REASON"),
+    ("allow index", "int16_t f(int16_t v) { return v; }", "why is missing: expected hil: allow RULE, REASON"),
     ("sometimes", "int16_t f(int16_t v) { return v; }", "there are allow, range"),
 ]
 

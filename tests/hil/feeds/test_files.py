@@ -36,11 +36,11 @@ def test_tables_of_each_kind(tmp_path: Path, text: str) -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("", ":1: want a heading: time_s"),
-        ("ADCINA3,time_s\n1,0\n", ":1: want a heading: time_s"),
-        ("time_s\n1\n", ":1: want a heading: time_s"),
+        ("", ":1: expected a heading: time_s"),
+        ("ADCINA3,time_s\n1,0\n", ":1: expected a heading: time_s"),
+        ("time_s\n1\n", ":1: expected a heading: time_s"),
         ("time_s,\n0,1\n", ":1: column 2 has no name"),
-        ("time_s,A,A\n0,1,2\n", ":1: two columns 'A'"),
+        ("time_s,A,A\n0,1,2\n", ":1: more than one column 'A'"),
         ("time_s,A\n0,1\n1\n", ":3: 1 cells, and the heading has 2"),
         ("time_s,A\n0,1\n1,x\n", ":3: column 'A': 'x' is not a number"),
         ("time_s,A\n0,1\n1,1_0\n", ":3: column 'A': '1_0' is not a number"),
@@ -48,14 +48,14 @@ def test_tables_of_each_kind(tmp_path: Path, text: str) -> None:
         ("time_s,A\n0,1\n1,-inf\n", ":3: column 'A': -inf is not a number that an input can have"),
         ("time_s,A\n0,1\n,1\n", ":3: column 'time_s': '' is not a number"),
         ("time_s,A\n0,1\n1e300,1\n", ":3: time 1e+300 s: must be a number of seconds"),
-        ("time_s,A\n1,1\n0.5,1\n", ":3: column 'time_s': 0.5 goes back"),
+        ("time_s,A\n1,1\n0.5,1\n", ":3: column 'time_s': 0.5 decreases"),
         ("time_s,A\n0,\n", ": column 'A' has no value"),
         ("time_s,A\n0,\"1\n", ":2: unexpected end of data"),
         (b"time_s,A\n0,\xff\n", ": byte 11 is not UTF-8"),
         ("time_s,channel,name,value\n0,adc,ADCINA3 sonars.FRONT,x\n", ":2: column 'value': 'x' is not a number"),
-        ("time_s,channel,name,value\n0,kernel,switch,TaskUS\n", ": nothing that sensors saw: record it with hil run"),
+        ("time_s,channel,name,value\n0,kernel,switch,TaskUS\n", ": no sensor values: record them with hil run"),
         ('{"hil_trace": 1, "cycles_per_second": 200000000, "channels": ["kernel"]}\n', ": nothing that sensors saw"),
-        ('{"hil_trace": 1, "cycles_per_second": 200000000, "channels": ["adc"]}\n[1,"adc","X",""]\n', ":2: want [cyc"),
+        ('{"hil_trace": 1, "cycles_per_second": 200000000, "channels": ["adc"]}\n[1,"adc","X",""]\n', ":2: expected ["),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_one_line(

@@ -111,11 +111,11 @@ def test_arrays_of_a_text_are_those_of_python(own: BoardTarget) -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("ADCINB3=[[0, 1], [1]]", r"feed of ADCINB3: want \[\[SECONDS,VALUE\],...\]"),
-        ("ADCINB3=[[0, 1]", r"feed of ADCINB3: want \[\[SECONDS,VALUE\],...\]"),
-        ("ADCINB3=[1, 2]", r"feed of ADCINB3: want \[\[SECONDS,VALUE\],...\]"),
+        ("ADCINB3=[[0, 1], [1]]", r"feed of ADCINB3: expected \[\[SECONDS,VALUE\],...\]"),
+        ("ADCINB3=[[0, 1]", r"feed of ADCINB3: expected \[\[SECONDS,VALUE\],...\]"),
+        ("ADCINB3=[1, 2]", r"feed of ADCINB3: expected \[\[SECONDS,VALUE\],...\]"),
         ("thing.level=[[0, 1], [2, 11]]", "thing.level: feed at 2 s: 11: thing.level must be 0 to 10 m"),
-        ("thing.level=[[1, 1], [0, 1]]", "thing.level: .* the time goes back"),
+        ("thing.level=[[1, 1], [0, 1]]", "thing.level: .* the time decreases"),
         ("thing.level=[]", "thing.level: .* 0 times, 0 values"),
     ],
 )  # fmt: skip
@@ -164,9 +164,9 @@ def test_a_face_is_set_when_it_changes(own: BoardTarget) -> None:
         ("thing.level", 11, "hold", "feed at 0 s: 11: thing.level must be 0 to 10 m"),
         ("thing.level", ([0, 1], [1, -1]), "hold", "feed at 1 s: -1: thing.level must be 0 to 10 m"),
         ("thing.level", ([0, 1], [1, float("nan")]), "hold", "feed at 1 s: nan"),
-        ("thing.level", ([1, 0], [1, 1]), "hold", "the time goes back"),
-        ("thing.level", ([0, 1], [1]), "hold", "2 times, 1 values: want as many"),
-        ("thing.level", ([], []), "hold", "0 times, 0 values: want as many"),
+        ("thing.level", ([1, 0], [1, 1]), "hold", "the time decreases"),
+        ("thing.level", ([0, 1], [1]), "hold", "2 times, 1 values: expected as many"),
+        ("thing.level", ([], []), "hold", "0 times, 0 values: expected as many"),
         ("thing.level", [1, 2], "hold", "feed of thing.level: "),
         ("thing.level", 1, "spline", "how 'spline': must be hold or linear"),
         ("thing.level", lambda time_s: -1, "hold", "feed at 0 s: -1: thing.level must be 0 to 10 m"),
@@ -368,12 +368,12 @@ def test_a_scenario_has_feeds_from_files_beside_it(tmp_path: Path) -> None:
     ("old", "new", "told"),
     [
         ('file = "t.csv"', 'file = "u.csv"', r":4: feed\[0\].file: there is no file .*u.csv"),
-        ('input = "ADCINA2"\n', "", r":6: feed\[1\]: input is missing: what sees the value"),
+        ('input = "ADCINA2"\n', "", r":6: feed\[1\]: input is missing: name the input that sees the value"),
         ('how = "linear"', 'how = "cubic"', r":5: feed\[0\].how: 'cubic' must be one of hold, linear"),
         ('file = "t.csv"\n', "", r":3: feed\[0\]: one of value, values, file must be given"),
-        ('input = "bumper.pressed"\n', "", r":9: feed\[2\]: input is missing: what sees the values"),
+        ('input = "bumper.pressed"\n', "", r":9: feed\[2\]: input is missing: name the input that sees the values"),
         ("[0, 0]", "[0]", r":11: feed\[2\].values\[0\]: \[0\] must be a pair of numbers"),
-        ("[0, 0]", "[0.5, 0]", r":11: feed\[2\].values\[1\]: \[0.25, 1\] after \[0.5, 0\]: the time goes back"),
+        ("[0, 0]", "[0.5, 0]", r":11: feed\[2\].values\[1\]: \[0.25, 1\] after \[0.5, 0\]: the time decreases"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_in_a_scenario_is_told_with_its_line(tmp_path: Path, old: str, new: str, told: str) -> None:

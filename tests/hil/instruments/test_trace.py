@@ -490,5 +490,5 @@ def test_what_a_user_can_get_wrong_is_one_line(
 
 
 def test_another_suffix_is_one_line(trace: RecordedTrace, tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"no format for \.xyz: want \.vcd"):
+    with pytest.raises(ValueError, match=r"no format for \.xyz: expected \.vcd"):
         export(trace, tmp_path / "t.xyz")

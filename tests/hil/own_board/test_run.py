@@ -153,7 +153,7 @@ def test_lines_that_ran_are_written(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--world", "room"], "--world: it is for a robot in its world, and Station has no wheels"),
+        (["--world", "room"], "--world needs a robot in its world, and Station has no wheels"),
         (["--order", "mission"], "--order: it is for a robot"),
         (["--fix", "all"], "--fix: it is for a robot"),
         (["--no-xbee"], "--xbee/--no-xbee: it is for a robot"),
@@ -162,12 +162,12 @@ def test_lines_that_ran_are_written(folder: Path) -> None:
         (["--put", "infrared.distance_m=nan"], "infrared.distance_m = nan: must be 0.08 to 2 m"),
         (["--put", "thermometer.temperature_c=nan"], "temperature_c = nan: must be a number of degrees C"),
         (["--put", "infrared.distance_m=near"], "'near': must be a number; distance_m (m, 0.08 to 2)"),
-        (["--put", "1:infrared.level_v=1"], "infrared.level_v is only seen, not set: the part works it out"),
+        (["--put", "1:infrared.level_v=1"], "infrared.level_v can only be read: the part computes it"),
         (["--put", "infrared.range=1"], "the part 'infrared' has no face 'range': distance_m (m, 0.08 to 2), level_v"),
         (["--put", "sonar.range_m=1"], "Station has no part 'sonar': thermometer, infrared"),
-        (["--put", "infrared"], "'infrared': want [TIME:]PART.FACE=VALUE; Station has thermometer.temperature_c"),
+        (["--put", "infrared"], "'infrared': expected [TIME:]PART.FACE=VALUE; Station has thermometer.temperature_c"),
         (["--firmware", "nowhere"], "nowhere: there is no such file"),
-        (["-D", "1=2"], "-D 1=2: want NAME or NAME=VALUE"),
+        (["-D", "1=2"], "-D 1=2: expected NAME or NAME=VALUE"),
     ],
 )
 def test_what_cannot_be_is_one_line(
@@ -184,14 +184,14 @@ def test_what_cannot_be_is_one_line(
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--board", "station_board.py"], "no firmware belongs to the board Station: give --firmware DIR (or files)"),
+        (["--board", "station_board.py"], "no firmware is given for the board Station: give --firmware DIR (or files)"),
         (["--board", "missing.py"], "there is no such file"),
-        (["--board", "station_board.py", "-D", "LAB=3"], "-D: it is for C files: give --firmware DIR"),
+        (["--board", "station_board.py", "-D", "LAB=3"], "-D needs C files: give --firmware DIR"),
         (["--board", "station_board.py", "--firmware", "firmware/station.c"], "no program, it has no main"),
         (["--board", "half.py", "--firmware", "firmware"], "board Half: AttributeError: "),
         (["--board", "alone.py", "--firmware", "firmware", "--link", "COM3"], "alone.py has no line to a PC"),
         (["--board", "alone.py", "--firmware", "firmware", "--wire", "x.wire"], "--wire: alone.py has no line to a PC"),
-        (["--board", "twice.py", "--firmware", "firmware"], "pc at GPIO1: no SCI reaches it, but GPIO 8, 9, "),
+        (["--board", "twice.py", "--firmware", "firmware"], "pc at GPIO1: no SCI reaches this pin; it reaches GPIO 8"),
     ],
 )
 def test_a_board_or_a_program_that_cannot_run_is_one_line(

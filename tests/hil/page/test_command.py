@@ -75,7 +75,7 @@ def test_its_trace_makes_the_same_page(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (["--page", "."], "it is a folder, want the name of a file"),
+        (["--page", "."], "it is a folder; expected the name of a file"),
         (["--page", "missing/run.html"], "missing/run.html: there is no folder"),
         (["--page", "run.html", "--view"], "--view runs until Ctrl-C: leave out"),
         (["--channel", "pins"], "--channel is for --trace FILE and --page FILE"),

@@ -213,7 +213,7 @@ def test_a_scene_that_is_none_is_refused_with_its_line(tmp_path: Path, name: str
     path = tmp_path / "t.trace"
     with path.open("w", encoding="utf-8") as file:
         TraceWriter(file, ["scene"]).event(1, "scene", name, value)
-    with pytest.raises(ValueError, match=r"t\.trace:2: want"):
+    with pytest.raises(ValueError, match=r"t\.trace:2: expected"):
         read(path)
 
 

@@ -93,12 +93,12 @@ def test_any_text_is_a_table_or_one_line(text: str) -> None:
 
 
 @pytest.mark.parametrize(("text", "said"), [
-    ("", "t.csv:1: want a header like distance_cm,LEFT,FRONT,RIGHT"),
-    ("distance_cm,A,A\n", "t.csv:1: want a name of its own for each sonar"),
-    ("distance_cm,A\n20,1\n30\n", "t.csv:3: 1 values: want 2"),
-    ("distance_cm,A\n20,x\n", "t.csv:2: A = x: want a number"),
-    ("distance_cm,A\n20,nan\n", "t.csv:2: A = nan: want a number"),
-    ("distance_cm,A\n20,1\n20,2\n", "t.csv: A: want at least two distances"),
+    ("", "t.csv:1: expected a header like distance_cm,LEFT,FRONT,RIGHT"),
+    ("distance_cm,A,A\n", "t.csv:1: expected a name of its own for each sonar"),
+    ("distance_cm,A\n20,1\n30\n", "t.csv:3: 1 values: expected 2"),
+    ("distance_cm,A\n20,x\n", "t.csv:2: A = x: expected a number"),
+    ("distance_cm,A\n20,nan\n", "t.csv:2: A = nan: expected a number"),
+    ("distance_cm,A\n20,1\n20,2\n", "t.csv: A: expected at least two distances"),
 ])  # fmt: skip
 def test_a_bad_table_is_one_line(
     text: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

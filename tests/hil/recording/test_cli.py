@@ -109,7 +109,7 @@ def test_a_replay_that_differs_exits_1_and_shows_the_first_difference(
     assert "frame 4 is the first that differs" in out
     assert "#ODO 5,-3" in out
     assert "#ODO 5,-2" in out
-    assert err == "hil: run.wire: was changed since it was recorded (the check sum of its end does not fit)\n"
+    assert err == "hil: run.wire: was changed since it was recorded (the checksum at its end does not match)\n"
     assert invoke(["replay", str(log), "--json"]) == 1
     result = json.loads(capsys.readouterr().out)
     assert (result["equal"], result["first_difference"]) == (False, 4)
@@ -123,7 +123,7 @@ def test_a_log_that_does_not_say_which_robot_is_played_against_the_standard_one(
     assert invoke(["replay", str(log), "--seed", "4", "--json"]) == 0
     out, err = capsys.readouterr()
     assert json.loads(out)["setup"]["seed"] == 4
-    assert "does not say which robot it was; taking the standard one" in err
+    assert "does not name its robot; using the standard one" in err
 
 
 @POSIX

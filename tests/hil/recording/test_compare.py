@@ -107,7 +107,7 @@ def test_the_consoles_file_is_read_and_what_is_broken_in_it_is_said() -> None:
     trajectory = parse_trajectory(text.encode())
     assert [frame.values for frame in trajectory.frames] == [(0, 0, 0, 1922, 300, 301), (75, 0, 1, 1880, 300, 301)]
     assert trajectory.repeated == 1
-    assert trajectory.problems == ["line 4 and 1 more: no six numbers, left out"]
+    assert trajectory.problems == ["line 4 and 1 more: not six numbers, left out"]
 
 
 @given(st.binary(max_size=300))

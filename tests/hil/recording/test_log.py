@@ -170,7 +170,7 @@ def test_editors_and_people_may_touch_it() -> None:
     data = b"hil-wire 1\r\n; a note\r\n\r\n> 2 b\r\n> 1 a\r\nend 3 00000000\r\n"
     recording = parse_log(data, "x")
     assert [(record.time_ns, record.data) for record in recording.records] == [(1000, b"a"), (2000, b"b")]
-    assert recording.problems == ["was changed since it was recorded (the check sum of its end does not fit)"]
+    assert recording.problems == ["was changed since it was recorded (the checksum at its end does not match)"]
 
 
 def test_what_is_no_log_is_one_line(tmp_path: Path) -> None:

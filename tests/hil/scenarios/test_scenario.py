@@ -78,7 +78,7 @@ def test_a_map_beside_the_file_is_found_from_anywhere(tmp_path: Path, monkeypatc
         ("[[expect]]\nname = 'a'\nstate = 'STOP'\n[[expect]]\nname='b'\nquantity='x_m'\nmost='2'",
          "drive.toml:7: expect[1].most: '2' must be a number"),
         ("[[expect]]\nname = 'a'\n\n[[expect]]\nname = 'b'\nstate = 'STOP'", "drive.toml:1: expect[0]: one of"),
-        ("[[expect]]\nname = 'a'\nstate = 'STOP'\nmost = 1", "drive.toml:1: expect[0]: most means nothing for state"),
+        ("[[expect]]\nname = 'a'\nstate = 'STOP'\nmost = 1", "drive.toml:1: expect[0]: most is no key of state"),
         ("[[expect]]\nname = 'a'\nquantity = 'x_m'", "expect[0]: least or most must be given"),
         ("[[expect]]\nname = 'a'\nframe = '('", "expect[0]: frame: no regular expression"),
         ("[start]\nx_m = 1", "drive.toml:1: start: y_m is missing"),

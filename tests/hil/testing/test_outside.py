@@ -256,6 +256,6 @@ def test_a_gap_stands_behind_every_byte(board: RobotBoard, uart: Any, advance: C
 
 
 def test_a_line_without_speed_is_refused_and_one_that_says_none_has_the_robots(board: RobotBoard, uart: Any) -> None:
-    with pytest.raises(pytest.fail.Exception, match=r"uart\(89, 90, 0\): want more than 0 baud"):
+    with pytest.raises(pytest.fail.Exception, match=r"uart\(89, 90, 0\): expected more than 0 baud"):
         uart(89, 90, 0)
     assert uart(89, 90) is uart(baud=9600)

@@ -207,7 +207,7 @@ def test_b(firmware):
         ('firmware("nowhere.c")', "no file *nowhere.c"),
         ('firmware("drv.py", include="nowhere")', "firmware(include=): there is no folder *nowhere"),
         ('firmware("drv.py", abi="elf")', "marker firmware(abi='elf'): coff or eabi"),
-        ('firmware("drv.py", defines=[3])', "marker firmware(defines=[[]3[]]): want a list of texts"),
+        ('firmware("drv.py", defines=[3])', "marker firmware(defines=[[]3[]]): expected a list of texts"),
         ('firmware("drv.py", includes="a")', "marker firmware('drv.py', includes='a') is not used as it should be*"),
         ("firmware(3)", "marker firmware(3): a module is named by its file or its importable name"),
         ("expects", "marker expects() is not used as it should be: expects(rule, object=, function=)*"),

@@ -180,7 +180,7 @@ class CDeclarationReader:
         where = node.coord
         known = self.module.symbols.get(name)
         if known is not None and not isinstance(known, Variable):
-            raise SourceError.at(where, f"{name} is declared twice, as something else before")
+            raise SourceError.at(where, f"{name} is declared again as something else")
         if known is not None:
             if isinstance(ctype, Unsized) and isinstance(known.ctype, ArrayType):
                 ctype = known.ctype
@@ -243,7 +243,7 @@ class CDeclarationReader:
         where = node.coord
         known = self.module.symbols.get(name)
         if known is not None and not isinstance(known, Function):
-            raise SourceError.at(where, f"{name} is declared twice, as something else before")
+            raise SourceError.at(where, f"{name} is declared again as something else")
         if known is not None:
             if not compatible(known.ctype, prototype):
                 shown = f"{signature(name, prototype)} here and as {signature(name, known.ctype)} before"
