@@ -49,7 +49,7 @@ def mark_of(report: DeviceReport) -> Callable[[], Mark]:
     return mark
 
 
-class Silent:
+class DiscardedReports:
     """The report function of a device whose reports are not kept."""
 
     def __call__(

@@ -34,7 +34,7 @@ def status_line(session: Session, policy: Policy) -> str:
     machine, pacer = session.machine, session.pacer
     lag = pacer.lag
     time = f"{machine.clock.now / SYSCLK_HZ:.1f}s x{pacer.ratio(machine.clock.now):.2f} lag {lag.last_s * 1e3:.0f}ms"
-    found = _findings(policy.weighed(machine.findings))
+    found = _findings(policy.with_severities(machine.findings))
     traffic = f"in {session.bytes_to_robot} out {session.bytes_from_robot}B findings {found}"
     counters = session.port.counters if session.port else None
     if isinstance(machine, RobotMachine):
@@ -44,9 +44,9 @@ def status_line(session: Session, policy: Policy) -> str:
     return f"{time} {traffic} {dropped} lag max {lag.max_s * 1e3:.0f}ms"
 
 
-def _findings(weighed: Iterable[tuple[Finding, Severity]]) -> str:
+def _findings(rated: Iterable[tuple[Finding, Severity]]) -> str:
     """The number of findings, and how many of them are errors."""
-    severities = [severity for _, severity in weighed]
+    severities = [severity for _, severity in rated]
     errors = severities.count(Severity.ERROR)
     return f"{len(severities)} ({errors} error{'s' * (errors != 1)})" if errors else str(len(severities))
 

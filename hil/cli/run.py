@@ -474,7 +474,7 @@ class _Display:
     """The status line, and above it what was expected, once it is decided: live in a terminal, now and then elsewhere,
     not at all when quiet."""
 
-    def __init__(self, policy: Policy, watching: Watching | None = None, *, quiet: bool) -> None:
+    def __init__(self, policy: Policy, watching: ExpectationWatch | None = None, *, quiet: bool) -> None:
         self._policy = policy
         self._watching = watching
         terminal = show.console()
@@ -496,7 +496,7 @@ class _Display:
         if self._live:
             self.live.update(Text(status_line(session, self._policy), no_wrap=True, overflow="ellipsis"), refresh=True)
         else:
-            show.say(status_line(session, self._policy))
+            show.print_line(status_line(session, self._policy))
 
     def print_decided(self, *, ended: bool = False) -> None:
         """A line for each expectation that is decided, once."""

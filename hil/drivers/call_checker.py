@@ -334,8 +334,8 @@ class CallChecker:
         self._started |= started
         self._before[candidate.function.path] = best.before, started
         for key, finding in best.proven.items():
-            weighed = self._as_note(candidate, finding)
-            self._add_finding(key, replace(weighed, how="generated") if best.incomplete else weighed)
+            rated = self._as_note(candidate, finding)
+            self._add_finding(key, replace(rated, how="generated") if best.incomplete else rated)
         self._try_all(candidate, best.before, lists, started=started)
         if best.before and self.roles.main is None and not self._share_is_used():
             self._too_early(candidate, probes[0], started=started)

@@ -172,7 +172,7 @@ def _run(
     alone = roles.main is None
     starts = [ring.start for ring in image.board.find(SonarRing).values()]
     selects = [select for bus in image.board.spi_bus.values() for select in bus.selects]
-    weighed = tuple(
+    rated = tuple(
         replace(finding, how="generated")
         if alone
         or (waits_for_others(finding, roles, ended_parties) and not waits_for_tasks(finding, roles))
@@ -184,7 +184,7 @@ def _run(
     cut = ""
     if image.board.clock.now < end and budget.over:
         cut = "this machine took too long" if budget.cut else "it has computed as much as a run may"
-    return ProgramOutcome(weighed, seconds(min(image.board.clock.now, end)), "" if said else str(stop), cut)
+    return ProgramOutcome(rated, seconds(min(image.board.clock.now, end)), "" if said else str(stop), cut)
 
 
 def _retried(image: Image, stood: EndPosition, roles: Roles) -> None:

@@ -179,7 +179,7 @@ class Replay:
             self._tasks.end(self._end)
             self._keep(self._tasks.spans)
         for line in self._lines.rest():
-            self._say(line)
+            self._add_line(line)
         findings = self._listed()
         rules = {rule.id: rule for rule in (rule_of(found["rule"]) for found in findings)}
         return {

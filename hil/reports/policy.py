@@ -121,9 +121,9 @@ class Policy:
         severity = self.severity(finding.rule)
         return Severity.NOTE if severity is not None and finding.how == GENERATED else severity
 
-    def weighed(self, findings: Iterable[Finding]) -> list[tuple[Finding, Severity]]:
+    def with_severities(self, findings: Iterable[Finding]) -> list[tuple[Finding, Severity]]:
         """The findings with their severities here, in their order, without those that are turned off."""
-        every = ((finding, self.weigh(finding)) for finding in findings)
+        every = ((finding, self.severity_of(finding)) for finding in findings)
         return [(finding, severity) for finding, severity in every if severity is not None]
 
     def fails(self, severity: Severity) -> bool:

@@ -44,16 +44,16 @@ class FindingsTable(DataTable[Text]):
         """Add what is new, update counts."""
         if not self.columns:
             return  # not on the screen yet
-        weighed = self._policy.weighed(findings)
-        for number, (finding, _) in enumerate(weighed[: len(self._shown)]):
+        rated = self._policy.with_severities(findings)
+        for number, (finding, _) in enumerate(rated[: len(self._shown)]):
             times = Text(str(finding.count), justify="right")
             if self.get_cell(str(number), "times") != times:
                 self.update_cell(str(number), "times", times)
-        for number in range(len(self._shown), len(weighed)):
-            self.add_row(*_row(*weighed[number]), key=str(number))
-        if len(weighed) != len(self._shown):
-            self.border_title = f"findings: {len(weighed)}"
-        self._shown = weighed
+        for number in range(len(self._shown), len(rated)):
+            self.add_row(*_row(*rated[number]), key=str(number))
+        if len(rated) != len(self._shown):
+            self.border_title = f"findings: {len(rated)}"
+        self._shown = rated
 
     @property
     def chosen(self) -> tuple[Finding, Severity] | None:

@@ -23,10 +23,10 @@ WORST_FIRST: Final = sorted(Severity, key=lambda severity: -severity.rank)
 COLUMNS: Final = ("severity", "finding", "where", "first")
 
 
-def by_severity(weighed: Iterable[tuple[Finding, Severity]]) -> dict[str, int]:
+def by_severity(rated: Iterable[tuple[Finding, Severity]]) -> dict[str, int]:
     """How many there are of each severity, the worst first."""
     counts = {severity.value: 0 for severity in WORST_FIRST}
-    for _, severity in weighed:
+    for _, severity in rated:
         counts[severity.value] += 1
     return counts
 
@@ -65,9 +65,9 @@ def row_of(finding: Finding, severity: Severity) -> TableRow:
     )
 
 
-def worst_first(weighed: Iterable[tuple[Finding, Severity]]) -> list[tuple[Finding, Severity]]:
+def worst_first(rated: Iterable[tuple[Finding, Severity]]) -> list[tuple[Finding, Severity]]:
     """By severity; those of one severity as they came."""
-    return sorted(weighed, key=lambda each: -each[1].rank)
+    return sorted(rated, key=lambda each: -each[1].rank)
 
 
 def has_words(row: TableRow, words: str) -> bool:
@@ -114,13 +114,13 @@ class FindingsPanel:
         self._filter()
         if self._counted != len(self._shown):
             self._counted = len(self._shown)
-            for severity, count in by_severity(self._engine.policy.weighed(self._shown)).items():
+            for severity, count in by_severity(self._engine.policy.with_severities(self._shown)).items():
                 self._filters[severity].text = f"{count} {severity}{'' if count == 1 else 's'}"
 
     def _filter(self) -> None:
         wanted = {severity for severity, box in self._filters.items() if box.value}
-        weighed = worst_first(self._engine.policy.weighed(self._shown))
-        rows = [row_of(finding, severity) for finding, severity in weighed if severity.value in wanted]
+        rated = worst_first(self._engine.policy.with_severities(self._shown))
+        rows = [row_of(finding, severity) for finding, severity in rated if severity.value in wanted]
         words = str(self._search.value or "")
         rows = [row for row in rows if has_words(row, words)]
         self._table.show(rows)

@@ -291,7 +291,7 @@ class _Head:
         findings = self._engine.findings
         if len(findings) != self._counted:
             self._counted = len(findings)
-            self._found.content = counted(by_severity(self._engine.policy.weighed(findings)))
+            self._found.content = counted(by_severity(self._engine.policy.with_severities(findings)))
         if self._mode.text != now.mode.value:
             self._mode.text = now.mode.value
             css = _CHIP.get(now.mode, "wait")

@@ -35,7 +35,7 @@ CLICKED: Final = """(e) => { const box = e.currentTarget.getBoundingClientRect()
   emit((e.clientX - box.left) / box.width); }"""
 
 
-def ticks(weighed: Iterable[tuple[Finding, Severity]], marks: Iterable[Mark], end: float, known_cycles: int = 0) -> str:
+def ticks(rated: Iterable[tuple[Finding, Severity]], marks: Iterable[Mark], end: float, known_cycles: int = 0) -> str:
     """Findings above, what was done and what happened below, what each tick is; and how far the run is known."""
 
     def x(cycles: int) -> float:
@@ -43,7 +43,7 @@ def ticks(weighed: Iterable[tuple[Finding, Severity]], marks: Iterable[Mark], en
 
     drawn = [
         (x(each.time_cycles), 0, f"finding {severity.value}", f"{each.rule}, {each.time_us / 1e3:.3f} ms")
-        for each, severity in weighed
+        for each, severity in rated
     ]
     drawn += [(x(each.cycles), 9, each.kind.value, f"{each.text}, {seconds(each.cycles):.3f} s") for each in marks]
     known = f'<rect class="known" x="0" y="16" width="{x(known_cycles)}" height="1"/>'
@@ -111,12 +111,12 @@ class ScrubBar:
     @property
     def _findings(self) -> list[Finding]:
         engine = self._engine
-        return [finding for finding, _ in engine.policy.weighed(engine.known_findings)]
+        return [finding for finding, _ in engine.policy.with_severities(engine.known_findings)]
 
-    def jump(self, way: int) -> None:
+    def jump(self, direction: int) -> None:
         """To the next finding, or the one before, at its statement."""
         at = self._at.time_cycles if self._at is not None else self._engine.snapshot.cycles
-        found = neighbour(self._findings, at, way)
+        found = neighbour(self._findings, at, direction)
         if found is None:
             ui.notify("no finding after this time" if direction > 0 else "no finding before this time")
             return
@@ -147,8 +147,8 @@ class ScrubBar:
             self._end_s = end
             self._slider.props(f"max={end} step={end / STEPS}")
             self._end.text = f"{end} s"
-        weighed = self._engine.policy.weighed(self._engine.known_findings)
-        drawn = ticks(weighed, self._engine.marks, end, self._engine.known_cycles)
+        rated = self._engine.policy.with_severities(self._engine.known_findings)
+        drawn = ticks(rated, self._engine.marks, end, self._engine.known_cycles)
         if drawn != self._ticks.content:
             self._ticks.content = drawn
 

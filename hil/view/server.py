@@ -77,7 +77,7 @@ def run_view(
     (None: by their rules).  Raises ValueError before it starts, and what ends the machine's thread: nobody looks at a
     machine that is not there.
     """
-    want("nicegui")
+    require("nicegui")
     engine = Engine(setup, pace=pace, orders=orders, open_port=open_port, read=read, policy=policy)
 
     def ends(stop: Callable[[], None]) -> None:

@@ -34,12 +34,12 @@ from emulator.c28x.tree_queries import bare, blocks, calls, parts
 _Word = tuple[Variable, int]
 
 
-def leave_taken(function: Function) -> None:
+def mark_copy_and_clear(function: Function) -> None:
     """Mark the statements that clear an object which a statement just before has read."""
-    _look(function.body, frozenset())
+    _mark(function.body, frozenset())
 
 
-def _look(body: list[Stmt], tested: frozenset[Variable]) -> None:
+def _mark(body: list[Stmt], tested: frozenset[Variable]) -> None:
     read: set[_Word] = set()
     for s in body:
         cleared = _cleared(s)
@@ -56,7 +56,7 @@ def _look(body: list[Stmt], tested: frozenset[Variable]) -> None:
         test = s.test if isinstance(s, If | While) else s.subject if isinstance(s, Switch) else None
         inner = tested | {p.root for p in parts(test) if isinstance(p, LValue) and isinstance(p.root, Variable)}
         for block in blocks(s):
-            _look(block, inner)
+            _mark(block, inner)
 
 
 def _values(s: Stmt) -> list[Expr] | None:

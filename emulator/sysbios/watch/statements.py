@@ -1,6 +1,6 @@
 """Where the firmware stands: the statement that runs, and the statement at which a suspended task waits.
 
-A spot is the number of a statement (`emulator.c28x.sites`), 0 if there is none.  A number is cheap to keep and to
+A statement is kept as its number (`emulator.c28x.sites`), 0 if there is none.  A number is cheap to keep and to
 compare.  It becomes a `Place` only when a finding needs it.
 """
 
@@ -26,12 +26,12 @@ class StatementLocator:
         self._places = findings.places
 
     def place(self, statement: StatementNumber) -> Place | None:
-        """The place of a statement, for a finding; None for spot 0."""
+        """The place of a statement, for a finding; None for 0."""
         return self._places[statement] if statement else None
 
-    def takes(self, spot: Spot) -> bool:
+    def takes(self, statement: StatementNumber) -> bool:
         """Whether the statement clears an object that a statement just before it has read."""
-        return self._places[spot].kind == "takes"
+        return self._places[statement].kind == "takes"
 
     def text(self, statement: StatementNumber) -> str:
         """The place of a statement as text, for a sentence."""

@@ -20,20 +20,21 @@ def test_the_worst_stand_first_and_those_of_one_severity_as_they_came(tmp_path: 
     file = module(tmp_path)
     rules = ("unused-object", "dead-store", "index", "no rule of ours", "overflow")
     findings = [finding(file, 1 + number, rule=rule) for number, rule in enumerate(rules)]
-    assert [each.rule for each, _ in worst_first(Policy().weighed(findings))] == [
+    assert [each.rule for each, _ in worst_first(Policy().with_severities(findings))] == [
         "index", "overflow", "dead-store", "no rule of ours", "unused-object",
     ]  # fmt: skip
 
 
 def test_a_project_weighs_its_findings_in_table_counts_and_ticks(tmp_path: Path) -> None:
     policy = Policy(severities={"index": Severity.NOTE, "overflow": None})
-    weighed = policy.weighed([finding(module(tmp_path), 1, rule=rule) for rule in ("index", "overflow", "dead-store")])
-    assert [(each.rule, severity) for each, severity in worst_first(weighed)] == [
+    found = [finding(module(tmp_path), 1, rule=rule) for rule in ("index", "overflow", "dead-store")]
+    rated = policy.with_severities(found)
+    assert [(each.rule, severity) for each, severity in worst_first(rated)] == [
         ("dead-store", Severity.WARNING), ("index", Severity.NOTE),
     ]  # fmt: skip
-    assert by_severity(weighed) == {"error": 0, "warning": 1, "note": 1}
-    assert row_of(*weighed[0]).cells[0].text == "note"
-    drawn = ticks(weighed, (), 10.0)
+    assert by_severity(rated) == {"error": 0, "warning": 1, "note": 1}
+    assert row_of(*rated[0]).cells[0].text == "note"
+    drawn = ticks(rated, (), 10.0)
     assert "finding note" in drawn
     assert "finding error" not in drawn
 
