@@ -8,12 +8,11 @@
 Modelled: standard and extended frames, data and remote; the length of each frame with its own stuff bits; arbitration
 by the wired AND of the identifiers; acknowledgement; nodes of another bit rate; error frames; intermission, and the
 suspended transmission of an error passive node.  `disturb` destroys frames, for tests of what a driver does then.
-Not modelled: propagation and sampling within a bit, overload frames, CAN FD.  A bit that a node sees another way than
-the others is not modelled either: an error is seen by all.
-Time: nodes are told at the bit at which they know: a receiver at the last but one bit of the end of frame, the sender
-at the last one.
-CHOICE: nodes whose bit times differ by more than 1 % do not understand each other; such a node finds its error, and
-destroys the frame if it is error active, in bit 13.
+Not modelled: propagation and sampling within a bit, overload frames, CAN FD, a bit that one node sees differently from
+the others: all nodes see an error.
+Time: a receiver gets a frame at the last but one bit of the end of frame, the sender its confirmation at the last bit.
+CHOICE: nodes whose bit times differ by more than 1 % do not understand each other.  Such a node finds its error in bit
+13, and destroys the frame there if it is error active.
 Sources: ISO 11898-1 (frame format, stuffing, CRC, fault confinement, bus idle).
 """
 

@@ -1,14 +1,15 @@
 """AT24C256 serial EEPROM: 32768 bytes on an I2C.
 
-Modelled: byte and page write (64 bytes, rolling over within the page), the self-timed write cycle that a STOP begins,
-no acknowledgment while it lasts (what polling waits for), current address, random and sequential read (rolling over at
-the end of the memory), address pins, write protection; a write that runs over the end of its page is told.
+Modelled: byte and page write (64 bytes, rolling over within the page); the self-timed write cycle, which begins with a
+STOP; no acknowledgment while it lasts, so that a driver can poll for its end; current address, random and sequential
+read (rolling over at the end of the memory); address pins; write protection.  A write over the end of its page is
+reported.
 Not modelled: endurance, the software reset by clocks without a STOP, supply, set-up and hold times.
-Time: lazy.  What a write cycle writes is in the memory when somebody looks after its end.
+Time: lazy.  The memory changes at the first access after the end of a write cycle.
 Sources: AT24C256 data sheet: device addressing, write and read operations, AC characteristics (tWR at most 5 ms; 10 ms
-for the older ones).  CHOICE: a cycle takes `write_cycle_ms`, by default that maximum, which a driver must allow for;
-bytes whose message ends in a repeated START instead of a STOP are not written; a protected device acknowledges what it
-does not write, and has no write cycle.
+for the older ones).  CHOICE: a cycle takes `write_cycle_ms`, by default that maximum, which a driver must allow for.
+CHOICE: bytes whose message ends in a repeated START instead of a STOP are not written.  A protected device acknowledges
+bytes that it does not write, and has no write cycle.
 """
 
 from __future__ import annotations

@@ -5,10 +5,10 @@ addresses while chip select is high, the whole register file, output data rates,
 paths and filters, BDU, BLE, FIFO, STATUS, interrupt generator, INT1 and DRDY pins, self test, temperature,
 imperfections of a specimen.
 Not modelled: 3-wire SPI (SIM is stored and reported), set-up and hold times of both buses, supply, BOOT beyond its bit.
-Time: lazy.  Samples lie on a grid of whole cycles from the moment the setting took effect, and are computed when
-somebody looks; an event per sample exists only while a pin reports one.  `rate_source` is asked in increasing order of
-sample times, which may lie in the past.  Samples that nobody saw and nothing remembers (bypass or stream mode, no
-interrupt enabled) are not computed, beyond the memory of the filters in the path.
+Time: lazy.  Samples have a grid of whole cycles that begins when a setting takes effect.  They are computed when the
+firmware reads.  There is an event for each sample only while a pin reports samples.  `rate_source` is called in the
+order of the sample times, which may be in the past.  A sample that was not read, and that nothing keeps (bypass or
+stream mode, no interrupt enabled), is computed only if it is still in the memory of the filters in the path.
 Sources: L3G sections on SPI, I2C, registers, FIFO.
 """
 

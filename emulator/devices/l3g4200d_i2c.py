@@ -1,11 +1,11 @@
 """I2C framing of the L3G4200D: bytes to and from the register file, which SPI uses too.
 
-Modelled: the sub-address with auto-increment in bit 7, bursts of reads and writes, a repeated START for the turn of
-direction, the sub-address that stays between transactions; silence while chip select is low, which chooses SPI.
+Modelled: the sub-address with auto-increment in bit 7; bursts of reads and writes; a repeated START that changes the
+direction; the sub-address, which stays between transactions; no answer while chip select is low, which selects SPI.
 Not modelled: set-up and hold times, a stretched clock.
 Time: none of its own.
-Sources: L3G section on the I2C bus interface.  CHOICE: a read without a sub-address goes on where the last transaction
-ended.
+Sources: L3G section on the I2C bus interface.
+CHOICE: a read without a sub-address continues where the last transaction ended.
 """
 
 from __future__ import annotations

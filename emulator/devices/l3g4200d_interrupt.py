@@ -2,7 +2,7 @@
 
 Modelled: INT1_CFG, INT1_THS_*, INT1_DURATION with WAIT, INT1_SRC and its latch.
 Not modelled: nothing of the data sheet.
-Time: one step a sample; the device calls `step` in order.
+Time: one step for each sample; the device calls `step` in order.
 Sources: L3G section on INT1_CFG, INT1_SRC, INT1_THS, INT1_DURATION.
 """
 

@@ -2,7 +2,7 @@
 
 Modelled: byte order, block data update, data-available and overrun flags, feeding from the FIFO.
 Not modelled: nothing of the data sheet.
-Time: none of its own; the device catches up with its samples before it asks here.
+Time: none of its own; the device computes its samples up to now before it reads here.
 Sources: L3G CTRL_REG4, STATUS_REG, section on FIFO.  The sheet does not say what clears a flag: see `status`.
 """
 

@@ -3,7 +3,7 @@
 Modelled: sensitivity, saturation, zero-rate level and its drift, sensitivity over temperature, non-linearity, noise
 density, settling after turn-on, self test, LPF1, HPF (normal, reference, auto-reset), LPF2 and the four paths.
 Not modelled: cross-axis sensitivity, response to acceleration and supply, flicker noise (no figure in the sheet).
-Time: one call a sample, in the order of the samples.
+Time: one call for each sample, in the order of the samples.
 Sources: L3G mechanical characteristics; figure of the output paths; CTRL_REG1, CTRL_REG2, CTRL_REG4, CTRL_REG5.
 """
 

@@ -3,16 +3,17 @@
 Modelled
     The truth table (IN1 IN2: 00 outputs off, 10 forward, 01 reverse, 11 brake); PWM on either or both inputs,
     averaged exactly over one period of a winding (R, L) with constant back-EMF, in continuous and in
-    discontinuous conduction: drive/brake decays slowly through transistor and diode, drive/coast decays fast
-    through two diodes into the supply, so that with coast the mean current of a fast PWM is small and far from
-    proportional to the duty; saturation voltage growing with current; the knee and the limit of the current.
+    discontinuous conduction.  With drive/brake the current decays slowly through transistor and diode.  With
+    drive/coast it decays fast through two diodes into the supply, so that the mean current of a fast PWM is small and
+    far from proportional to the duty.  Saturation voltage that grows with current; the knee and the limit of the
+    current.
 Not modelled
     Thermal shutdown, supply droop, the 1 A limit shared by ground pin, standby current, switching times,
     torque ripple inside a PWM period, electrical transients between duties (L/R is about 1 ms, the shaft takes more
     than 40).  When both inputs carry PWM of different duty, the off time is a mixture whose decay voltage is the
     time-weighted mean.
 Time
-    None of its own: the mean over a PWM period, asked for when the plant is integrated.
+    None of its own: the mean over a PWM period is computed when the plant is integrated.
 Sources
     LB (truth table, saturation 0.40 V at 400 mA, abs. max 1.0 A, supply 2.5-9 V); sister LB1843V for low currents.
 """

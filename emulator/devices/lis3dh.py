@@ -4,14 +4,14 @@ Modelled: 4-wire SPI framing (`l3g4200d_spi`, the same frame), WHO_AM_I, CTRL_RE
 outputs; power-down, low-power (8 bits), normal (10) and high-resolution mode (12), every output data rate, full scales
 of 2, 4, 8 and 16 g, enabled axes, BDU, BLE, overrun; offset, noise and data rate of a specimen.
 Not modelled: FIFO, interrupt generators and pins, click and sleep detection, high-pass filter, self test, auxiliary
-converter and thermometer, 3-wire SPI, I2C; BOOT beyond its bit, and the boot of some 5 ms behind power-up: it answers
-at once.  A write that switches one of them on is reported as `unmodelled`; its registers keep what was written.
-Time: one event a sample while it is on, none in power-down: a sample is what the body did over the sample's period, and
-whoever moves the body is asked when the period ends.
+converter and thermometer, 3-wire SPI, I2C; BOOT beyond its bit; the boot of some 5 ms after power-up (it answers at
+once).  A write that switches one of them on is reported as `unmodelled`; its registers keep what was written.
+Time: one event for each sample while it is on, none in power-down.  A sample is the mean motion over the sample's
+period.  The source of the motion is called when the period ends.
 Sources: LIS3DH data sheet (DocID17530 Rev 2): 3.2.1 operating modes (tables 10 to 12), 6.2 SPI bus interface, 7
 register mapping, 8 register description, table 4 mechanical characteristics.  Addresses, bits, data rates and mg a
-digit are also those of ST's driver (STMicroelectronics/lis3dh-pid, `lis3dh_reg.h` and `.c`).  Not compared with a text:
-what table 4 says of noise and zero-g level.
+digit are also those of ST's driver (STMicroelectronics/lis3dh-pid, `lis3dh_reg.h` and `.c`).  The figures of table 4
+for noise and zero-g level were not compared with the text of the sheet.
 """
 
 from __future__ import annotations

@@ -2,12 +2,12 @@
 
 Modelled: power-up, calibration at the first command, 49 ms cycle, RX sampled at the end of a cycle and qualified for
 20 us when idle, chaining pulse on TX, serial `Rddd`, PW, the analog value (`lv_maxsonar_analog`), whole inches from 6
-to 254 and 255 for nothing, cross-talk between sensors on one `SonarAir`, a blind range learned at calibration,
-a supply that breaks in (`set_power`), an oscillator that is off against the chip's (`set_second`).
+to 254 and 255 for no echo, cross-talk between sensors on one `SonarAir`, a blind range learned at calibration,
+an interrupted supply (`set_power`), an oscillator that differs from the chip's (`set_second`).
 Not modelled: temperature compensation (there is none), warm-up drift of the near range, the inverted voltage of the
 serial line (frames are sent as a receiver behind an inverter sees them), BW switched while running.
-Time: in a ring, three events a cycle (end of cycle, end of the TX pulse, RX qualified); free running, one.  PW and the
-serial output add theirs when wired.
+Time: in a ring, three events for each cycle (end of cycle, end of the TX pulse, RX qualified); free running, one.  PW
+and the serial output add events when they are wired.
 Sources: EZ features, pin description, timing description.
 """
 

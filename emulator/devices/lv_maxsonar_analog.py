@@ -1,6 +1,7 @@
 """The AN output of the LV-MaxSonar-EZ: a held voltage that moves to its new value after the echo.
 
-Modelled: Vcc / 512 an inch, hold, the slew between the echo and 44.3 ms of the cycle, incomplete long steps, ripple.
+Modelled: Vcc / 512 for each inch, hold, the slew between the echo and 44.3 ms of the cycle, incomplete long steps,
+ripple.
 Not modelled: droop of the held value (no figure), output impedance.
 Time: a pure function of cycles since the last `move`; no events.
 Sources: EZ pin description AN, timing description.

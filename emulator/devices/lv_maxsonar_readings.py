@@ -1,11 +1,11 @@
 """Finds drivers that convert the AN output of an LV-MaxSonar-EZ too early, while it moves, or too often.
 
 Nothing here changes the voltage.  Conversions less than `SAME_READING_CYCLES` apart are one reading: the mean of a
-burst removes the converter's noise and is no new range.  Reported are (CHOICE of the figures):
+burst reduces the converter's noise, but is no new range.  Reported are (CHOICE of the figures):
 
 * `stale-sample`: three readings of one held range within one cycle of the sensor (49 ms);
 * `slew-read`: a voltage that is more than `NEITHER_IN` inches from the range before and from the range to come;
-* `startup-read`: a reading before the first range has settled; `not-configured`: nobody has asked for a range.
+* `startup-read`: a reading before the first range has settled; `not-configured`: the driver has never started a range.
 
 The converter reads the voltage very often.  So `converted` is called only at the first conversion of a reading.  It
 returns until when it need not be called again.

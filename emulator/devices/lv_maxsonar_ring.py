@@ -1,9 +1,9 @@
 """Several LV-MaxSonar-EZ in a ring: each ranges when the one before has finished.
 
-Modelled: TX of each to RX of the next, the last TX to the first RX through 1 kOhm, the start wire that a pin may drive
-against that resistor and then release.
+Modelled: TX of each sensor at RX of the next one; the last TX at the first RX through 1 kOhm; the start wire, which a
+pin may drive against that resistor and then release.
 Not modelled: nothing of the application note.
-Time: as the sensors.
+Time: that of the sensors.
 Sources: EZ application note on chaining (constantly looping).
 """
 

@@ -8,8 +8,8 @@ Not modelled
     Backlash of the gears (several degrees), the protecting thermistor, winding heat, cogging, encoder phase and
     duty errors, current ripple.
 Time
-    Integrated by whoever owns the shaft (a robot's chassis, or `spin` for a shaft in the air) between two virtual
-    times; edges are placed between them by constant acceleration.
+    The owner of the shaft (a robot's chassis, or `spin` for a shaft in the air) integrates between two virtual times;
+    the times of edges in between follow from constant acceleration.
 Sources
     NXT: 170 rpm and 60 mA at 9 V unloaded, stall 0.50 N.m, 180 lines a revolution on each channel; R, Kt, Kb fitted
     at 8.5 V.

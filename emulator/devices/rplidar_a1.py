@@ -1,15 +1,15 @@
 """RPLIDAR A1M8: a turning laser scanner that sends the distances all around over a serial line.
 
 Modelled: requests STOP, RESET, SCAN, FORCE_SCAN, GET_INFO, GET_HEALTH with response descriptors and data; requests with
-a payload and a checksum; the 5 s in which a request must be complete, the pauses behind STOP and RESET; 2000
-samples a second while the motor turns at 5.5 Hz, each with quality, angle and distance at its own time; nothing nearer
-than 0.15 m or farther than 6 m; distance error and motor speed of a specimen.
-CHOICE: an early specimen, hardware 0 with firmware 1.15: it has none of the requests that came with 1.17 and later, and
-sees as far as the first drivers said, 6 m; data sheets since 2016 say 12 m of later ones.
-Not modelled: those requests (EXPRESS_SCAN, GET_SAMPLERATE, GET_LIDAR_CONF and others: asked for one it is silent, which
-is reported as `unmodelled`), protection stop, the motor's control input and start (MOTOCTL lies at the motor's supply:
-it turns from power-up on), text at start-up, light from outside, glass and mirrors.
-Time: one event a sample while it scans, and one a character on the line; none while it is idle.
+a payload and a checksum; the 5 s in which a request must be complete; the pauses after STOP and RESET; 2000 samples
+a second while the motor turns at 5.5 Hz, each with quality, angle and distance at its own time; nothing nearer than
+0.15 m or farther than 6 m; distance error and motor speed of a specimen.
+CHOICE: an early specimen, hardware 0 with firmware 1.15.  It has none of the requests of 1.17 and later, and its range
+is the 6 m of the first drivers; data sheets since 2016 give 12 m for later specimens.
+Not modelled: those requests (EXPRESS_SCAN, GET_SAMPLERATE, GET_LIDAR_CONF and others): it does not answer them, and
+that is reported as `unmodelled`.  Not modelled either: protection stop; the motor's control input and start (MOTOCTL is
+connected to the motor's supply, so the motor turns from power-up on); text at start-up; ambient light, glass, mirrors.
+Time: one event for each sample while it scans, and one for each character on the line; none while it is idle.
 Sources: RPLIDAR interface protocol and application notes (request packets' format: XOR, 5 s; response packets' format;
 STOP: 1 ms, RESET: 2 ms; SCAN, GET_INFO, GET_HEALTH); A1M8 data sheet (measurement performance, figure 2-1: 0.15 m, less
 than 1 % of the distance, 5.5 Hz, 0.5 ms a sample; communication interface: 115200 baud, 8N1).  Commands, headers and

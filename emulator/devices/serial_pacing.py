@@ -1,8 +1,8 @@
 """Characters on a serial line at their exact times, and how a receiver of another speed decodes them.
 
 Modelled: 8N1 frames back to back, fractional bit times without drift, reception at the middle of the receiver's bits.
-Not modelled: parity, noise on the line, characters run together by a speed that is far off.
-Time: one event a character, at the end of its stop bit.
+Not modelled: parity, noise on the line, characters that merge because the speeds differ too much.
+Time: one event for each character, at the end of its stop bit.
 Sources: asynchronous serial format (TRM SCI chapter describes the same frame).
 """
 

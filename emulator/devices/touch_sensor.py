@@ -2,7 +2,7 @@
 
 Modelled: active low, the voltage divider with the pull-up against the pin's thresholds, contact bounce.
 Not modelled: travel and force.
-Time: an event for each bounce of a realistic sensor, none for an ideal one.
+Time: one event for each bounce of a realistic sensor, none for an ideal one.
 Sources: NXT (published measurements of the switch: 2.2 kOhm).
 """
 

@@ -1,8 +1,8 @@
 """A wire in place of the radio: the robot's UART straight to the PC.
 
-Modelled: byte-exact timing both ways at one speed; a robot at another speed is heard as a UART would hear it.
+Modelled: byte-exact timing in both directions at one speed; a UART's reception of a robot with another speed.
 Not modelled: noise, breaks, flow control.
-Time: one event a character towards the robot; from the robot, what its own transmitter schedules.
+Time: towards the robot, one event for each character; from the robot, the events of its own transmitter.
 Sources: none needed beyond `serial_pacing`.
 """
 

@@ -2,9 +2,9 @@
 
 Modelled: DI buffer of 202 bytes with CTS and silent overflow, packetisation by RO or 100 characters, half-duplex radio
 (`xbee_radio`), DO buffer that takes or drops whole packets, exact output timing, command mode (`xbee_command`), a host
-at another speed.
+with another speed.
 Not modelled: API mode, parity, RTS (reported when set), sleep, I/O pins, power-up time, break.
-Time: towards a host one event a character; from a host one an RO silence; two a packet on the air.
+Time: one event for each character towards a host, one for each RO silence from a host, two for each packet on the air.
 Sources: XB sections on serial data, transparent operation, flow control.
 """
 

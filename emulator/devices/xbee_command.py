@@ -1,4 +1,4 @@
-"""XBee S1 command mode: how it is entered, what it answers, how it is left.
+"""XBee S1 command mode: entry, answers, exit.
 
 Modelled: guard silence, three command characters, guard silence; queries, settings, joined commands, CT, WR, RE, FR,
 AC, CN, NI; values take effect on AC, CN or the time-out.

@@ -1,7 +1,7 @@
 """XBee S1: its AT parameters, their ranges and factory values.  Description, and the two stores of one module.
 
 Modelled: working values, non-volatile values (WR, FR), factory values (RE).
-Not modelled: what `STORED_ONLY` names: kept and read back, without effect.
+Not modelled: the parameters in `STORED_ONLY`: they are kept and read back, and have no effect.
 Time: none.
 Sources: XB command reference tables.
 """

@@ -1,9 +1,9 @@
 """The air between two XBee S1: one half-duplex 250 kb/s channel.
 
 Modelled: air time, acknowledgement, up to three MAC retries times (1 + RR), silent loss of whole packets in good and
-bad spells, addresses, broadcast without retries, order, queueing of two talkers.
+bad periods, addresses, broadcast without retries, order, queueing of two senders.
 Not modelled: back-off slots (RN), clear-channel failures (EC stays 0), third parties, corrupted payload (16-bit FCS).
-Time: two events a packet: its arrival, and the channel free again.
+Time: two events for each packet: its arrival, and the release of the channel.
 Sources: XB sections on transparent mode, addressing, MAC retries; IEEE 802.15.4 rate.
 """
 

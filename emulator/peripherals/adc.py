@@ -1,19 +1,20 @@
 """One ADC module: SOCs, arbiter, sample and hold, interrupt flags, results.
 
-Modelled: software, hardware (`trigger`), interrupt (ADCINTSOCSEL) and burst triggers; pending and overflow flags; high
-priority and round robin with the persistent RRPOINTER; sample window; tINT, tEOC and tLAT for 12 and 16 bits; sticky
-ADCINTFLG, ADCINTOVF, INTxCONT, INTPULSEPOS; power-up time; clock gating (everything freezes); as an option the erratum
-of a flag cleared in the very cycle that sets it; the post-processing blocks (`adc_ppb.py`).  What no chip detects is a
-finding: window too short, ADCCLK too fast, unsupported mode, core not powered.
-Not modelled: ADCOSDETECT, trims, ADCREV, events to the trip zones: declared, and touching one is reported.
-Reported as well: a result that is read while its SOC waits or converts, which is that of an earlier conversion.  After
-a hardware trigger this is how the module is used (the latest result whenever somebody wants it); after a software
-force it is a defect.
-Time: the window opens `sync_cycles` after a trigger that finds the S/H free, or when the conversion before ends, and
-lasts ACQPS + 1 SYSCLK.  One clock event a conversion, at its end (with INTPULSEPOS = 0 one more, at the early pulse).
-Pending flags, busy, counter and the latch of the result are no events: they follow from the times when somebody reads.
-The pin is asked for its voltage at the end of the window once the conversion has ended, up to 252 cycles later: a
-source answers for the time it is given.
+Modelled: triggers by software, by hardware (`trigger`), by an interrupt (ADCINTSOCSEL) and in bursts; pending and
+overflow flags; high priority, and round robin with the RRPOINTER, which keeps its value; sample window; tINT, tEOC and
+tLAT for 12 and 16 bits; ADCINTFLG, which stays set until it is cleared, ADCINTOVF, INTxCONT, INTPULSEPOS; power-up
+time; clock gating (everything freezes); the post-processing blocks (`adc_ppb.py`); as an option, the erratum of a flag
+that is cleared in the cycle that sets it.  What no chip detects is a finding: a window that is too short, an ADCCLK
+that is too fast, an unsupported mode, a core without power.
+Not modelled: ADCOSDETECT, trims, ADCREV, events to the trip zones.  They are declared, and touching one is reported.
+Reported as well: a read of a result while its SOC waits or converts.  The result is then that of an earlier
+conversion.  After a hardware trigger this is normal use: the program takes the latest result at any time.  After a
+software force it is a defect.
+Time: the window opens `sync_cycles` after a trigger that finds the S/H free, or when the conversion before ends.  It
+lasts ACQPS + 1 SYSCLK.  Each conversion has one clock event, at its end; with INTPULSEPOS = 0 it has one more, at the
+early pulse.  Pending flags, busy, counter and the latch of the result need no events: they are computed when they are
+read.  The voltage of the pin at the end of the window is read once the conversion has ended, up to 252 cycles later.
+So a source must give the voltage of the time that it is asked for.
 Sources: DS ADC timing tables; TRM ADC; ERR ADC interrupts; HDR F2837xS_adc.h.
 """
 

@@ -1,9 +1,10 @@
 """The analog half of an ADC module: it converts the voltage of a pin to a code, with the times of the data sheet.
 
-Modelled: 12-bit single-ended and 16-bit differential transfer (and the two combinations that are not supported, by the
-same formulas), clamping, noise in LSB, the garbage of an unpowered core, codes forced by a test or spoilt by a fault.
+Modelled: the transfer functions of 12-bit single-ended and 16-bit differential conversions (the two combinations that
+are not supported use the same formulas); clamping; noise in LSB; the meaningless codes of a core without power; codes
+that a test forces or a fault changes.
 Not modelled: gain, offset and linearity errors, settling of the sampling capacitor.
-Time: none of its own; it is asked with the cycle at which the sample was taken.
+Time: none of its own; the caller gives the cycle at which the sample is taken.
 Sources: DS ADC timing tables and electrical characteristics; TRM ADC.
 """
 

@@ -2,15 +2,16 @@
 
 Each block watches the SOC in its CONFIG; out of reset all four watch SOC0.
 
-Modelled: offset correction of ADCRESULT (of several blocks of one SOC the highest number's), saturating; the difference
-from a reference and its negative, sign-extended; high and low limit and zero crossing with their flags; ADCxEVT, for
-which a flag has to be cleared first; REQSTAMP and DLYSTAMP.
+Modelled: the offset correction of ADCRESULT, with saturation (if several blocks have one SOC, the highest number
+counts); the difference from a reference and its negative, sign-extended; high and low limit and zero crossing with
+their flags; ADCxEVT, which comes again only after its flag is cleared; REQSTAMP and DLYSTAMP.
 Not modelled: events to the trip zones of the ePWM (ADCEVTSEL: setting it is reported).
-Time: none of its own.  A result of a block latches with the ADCRESULT, flags and interrupt come with the EOC.
-CHOICE: a result of 0 counts as positive for the zero crossing; an ADCINT that triggers a SOC is stamped as hardware is.
-CHOICE: until somebody touches a block, its result and its flags are those that SOC0's last result gives.
-Reported: a limit that decides over a signed result, which this silicon gets wrong (ERR), and an OFFCAL that another
-block of the same SOC overrides (`not-configured`).
+Time: none of its own.  The result of a block latches with the ADCRESULT; flags and interrupt come with the EOC.
+CHOICE: a result of 0 counts as positive for the zero crossing.  An ADCINT that triggers a SOC gives a stamp as a
+hardware trigger does.
+CHOICE: until a program accesses a block, its result and its flags are those of the last result of SOC0.
+Reported: a limit that is compared with a signed result, which this silicon does wrong (ERR); and an OFFCAL that
+another block of the same SOC overrides (`not-configured`).
 Sources: TRM ADC, post-processing blocks; HDR F2837xS_adc.h; ERR ADC post-processing block limit compare.
 """
 

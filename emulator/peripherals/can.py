@@ -1,20 +1,21 @@
 """CAN controller (Bosch D_CAN): registers, interfaces to the message objects, errors, interrupts.
 
 Modelled: Init, CCE, bit timing, automatic retransmission (DAR), software reset; IF1 and IF2 with their busy time, IF3
-with its updates; 32 message objects (`can_objects.py`); loopback inside and through the pin, silent mode, both at once;
-RX of CAN_TEST; error counters, warning, error passive, bus-off and the way back, auto-bus-on; both interrupt lines and
+with its updates; 32 message objects (`can_objects.py`); internal and external loopback, silent mode, and both at once;
+RX of CAN_TEST; error counters, warning, error passive, bus-off and its recovery, auto-bus-on; both interrupt lines and
 their global flags; initialisation of the message RAM; clock gate (no SOFTPRESx has a bit for it); pins.
-Not modelled: parity errors (nothing damages this RAM), the message RAM at addresses of its own (RDA) and the control of
-CANTX (TX): using them is reported; resynchronisation (SJW), a debugger, AUXCLKIN as clock; levels at the wires of the
-pins (`Wire`), whatever frames go over them.  CHOICE: the message RAM is 0 from the beginning.
+Not modelled: parity errors (nothing damages this RAM); the message RAM at addresses of its own (RDA) and the control of
+CANTX (TX), whose use is reported; resynchronisation (SJW); a debugger; AUXCLKIN as clock; the levels at the wires of
+the pins (`Wire`), which frames do not change.  CHOICE: the message RAM is 0 from the beginning.
 A controller in loopback puts its frames on the bus for listeners only (`CanBus.arrived`): no other node takes them.
 Time: a transfer of an interface takes TRANSFER_CLOCKS of the module's clock; frames take their bits (`can_bus.py`).
-CHOICE: 3 clocks, the fewest of the 3 to 6 that the manual of the C_CAN gives; the bridge makes no access longer here,
-and what TI's InitCAN writes without waiting has to arrive.  CHOICE: an initialisation of the RAM takes RAM_CYCLES.
+CHOICE: a transfer takes 3 clocks, the fewest of the 3 to 6 that the manual of the C_CAN gives.  The bridge makes no
+access longer here, and what TI's InitCAN writes without waiting must arrive.
+CHOICE: an initialisation of the RAM takes RAM_CYCLES.
 CHOICE: an interrupt line that is still active when its global flag is cleared gives the next pulse.
 CHOICE: the software reset leaves the message RAM, CAN_RAM_INIT and CAN_GLB_INT_x as they are.
 CHOICE: a receiver counts 1 for every error.
-CHOICE: the way back from bus-off takes 129 times 11 bits whatever is on the bus.
+CHOICE: the recovery from bus-off takes 129 times 11 bits, whatever is on the bus.
 Sources: TRM CAN; HDR F2837xS_can.h, hw_can.h; Bosch C_CAN user's manual; ISO 11898-1 (fault confinement).
 """
 

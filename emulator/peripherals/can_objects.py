@@ -1,10 +1,10 @@
 """The 32 message objects of a CAN controller.  Part of `can.py`.
 
-Modelled: which object accepts a frame (identifier, Xtd, mask, FIFO), what the object stores of it, the object that is
-sent next, remote frames and their answers.
-CHOICE: data frames are stored in receive objects only, and remote frames concern transmit objects only, whatever MDir
-says.  CHOICE: a frame of 11 bits leaves the lower 18 bits of the object's identifier 0.  CHOICE: bytes of an object
-beyond the length of the frame stay as they were (the manual: not specified).
+Modelled: which object accepts a frame (identifier, Xtd, mask, FIFO), what the object stores of it, which object is sent
+next, remote frames and their answers.
+CHOICE: only receive objects store data frames, and remote frames concern only transmit objects, whatever MDir is.
+CHOICE: a frame of 11 bits sets the lower 18 bits of the object's identifier to 0.
+CHOICE: the bytes of an object beyond the length of the frame do not change (the manual: not specified).
 Sources: TRM CAN, message objects, message handling; Bosch C_CAN user's manual.
 """
 

@@ -1,20 +1,21 @@
 """A comparator subsystem (CMPSS): two comparators with a DAC each, a digital filter and a latch behind each.
 
 Modelled: COMPCTL with inversion, both negative inputs and the four choices of CTRIPx and CTRIPOUTx; both 12-bit DACs
-    with VDDA or VDAC, loaded at once or by EPWMSYNCPER; hysteresis; the digital filters (`cmpss_filter.py`), latches,
-    their clearing by software and by EPWMSYNCPER; the ramp generator (`cmpss_ramp.py`); locks; software reset.
+    with VDDA or VDAC, loaded at once or by EPWMSYNCPER; hysteresis; the digital filters (`cmpss_filter.py`); the
+    latches, and their clearing by software and by EPWMSYNCPER; the ramp generator (`cmpss_ramp.py`); locks; software
+    reset.
 Not modelled: propagation delay and offset of the comparators, settling of the DACs, power-up (10 us), the two SYSCLK
-    of synchronisation: asynchronous and synchronous level are one.  Without its clock a module does not answer the
-    CPU, and goes on as it was set.
-Time: the positive input is a voltage that may change at any time.  CHOICE: it is compared when the wire tells of a
-    step, when a register of the module is accessed, and else every `look_cycles` (1 us) while the comparators are on
-    and an input is not steady: the time of a crossing is known to that, and what is shorter may be missed.  Filter
-    samples between two looks are those of the last one.  With steady inputs there is no event but those of filter and
-    ramp, and these are exact.
+    of synchronisation: the asynchronous and the synchronous level are the same.  A module without clock does not
+    answer the CPU, and continues with its last settings.
+Time: the positive input is a voltage that may change at any time.  CHOICE: it is compared when the wire reports a step
+    and when a register of the module is accessed; while the comparators are on and an input is not steady, also every
+    `look_cycles` (1 us).  So the time of a crossing is known within that interval, and a shorter pulse may be missed.
+    The filter samples between two comparisons have the level of the last one.  With steady inputs, only filter and
+    ramp have events, and these are exact.
 CHOICE: while COMPDACE is 0 all outputs are low, inverted or not.
-CHOICE: a comparator is high from above its negative input until it is the hysteresis below it, which is 12 of 4096
-    parts of the DAC's reference (DS, typical) times COMPHYS; COMPHYS above 4 is as 4.
-CHOICE: COMPHSTS that rises while EPWMSYNCPER starts the ramp stops it one cycle later.
+CHOICE: a comparator goes high above its negative input, and low when it is the hysteresis below it.  The hysteresis is
+    COMPHYS times 12 of 4096 parts of the DAC's reference (DS, typical); COMPHYS above 4 counts as 4.
+CHOICE: COMPHSTS that rises while EPWMSYNCPER starts the ramp stops the ramp one cycle later.
 Sources: TRM CMPSS; DS CMPSS electrical characteristics; HDR F2837xS_cmpss.h.
 """
 

@@ -1,10 +1,10 @@
 """The digital filter of a comparator: samples, a window, a majority; and the latch behind it.
 
-A sample is taken every CLKPRESCALE + 1 SYSCLK.  If at least THRESH + 1 of the newest SAMPWIN + 1 samples differ from
-the output, it changes.  The samples are computed on demand: the input level changes only by `take`.
+A sample is taken every CLKPRESCALE + 1 SYSCLK.  The output changes if at least THRESH + 1 of the newest SAMPWIN + 1
+samples differ from it.  The samples are computed on demand, because the input level changes only by `take`.
 
-CHOICE: a new CLKPRESCALE starts the sample clock anew; a new window or threshold decides at the next sample.
-CHOICE: FILINIT decides the output at once, with all samples equal.
+CHOICE: a new CLKPRESCALE restarts the sample clock; a new window or threshold takes effect at the next sample.
+CHOICE: FILINIT sets all samples to the level of the input, and the output with them.
 Part of `cmpss.py`.  Sources: TRM CMPSS, digital filter.
 """
 

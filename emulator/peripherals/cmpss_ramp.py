@@ -1,11 +1,11 @@
 """The ramp generator of a CMPSS: a reference that falls by a step each SYSCLK after an ePWM's sync pulse.
 
-RAMPSTS stands at its start until EPWMSYNCPER comes, waits for RAMPDLYA SYSCLK, and falls by RAMPDECVALA in each one
-after that, down to 0.  When the comparator's filter output (COMPHSTS) rises, it goes back to the start and waits for
-the next pulse.  Its upper twelve bits are the code of the high comparator's DAC.
+RAMPSTS keeps its start value until EPWMSYNCPER comes.  It then waits for RAMPDLYA SYSCLK, and falls by RAMPDECVALA in
+each SYSCLK after that, down to 0.  When the comparator's filter output (COMPHSTS) rises, RAMPSTS returns to the start
+value and waits for the next pulse.  Its upper twelve bits are the code of the high comparator's DAC.
 
 CHOICE: the first step down is in the SYSCLK after the delay is over.
-CHOICE: a step that leads below 0 leads to 0.
+CHOICE: a step that would go below 0 ends at 0.
 Part of `cmpss.py`.  Sources: TRM CMPSS, ramp generator.
 """
 

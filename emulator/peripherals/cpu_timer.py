@@ -1,13 +1,13 @@
 """A 32-bit CPU timer with its 16-bit prescaler.
 
-Modelled: TIM, PRD, TDDR, PSC, TSS, TRB, TIF, TIE, the interrupt pulse, the ADC trigger, clock gating; another clock
-than SYSCLK, which timer 2 has (`set_tick`).
+Modelled: TIM, PRD, TDDR, PSC, TSS, TRB, TIF, TIE, the interrupt pulse, the ADC trigger, clock gating; a clock other
+than SYSCLK, which timer 2 can have (`set_tick`).
 Not modelled: FREE and SOFT (nothing halts).
-Time: the prescaler counts SYSCLK down from TDDRH:TDDR, TIM counts its underflows; the period is (PRD+1)*(TDDR+1)
-cycles.  Counters are computed when somebody looks.  An underflow is a clock event only where it changes something:
-TIF is clear, TIE is set, or a trigger listens.  Who knows that the next interrupts change nothing but the CPU's time
-can take them together (`skip`).
-Reported: TIF read as 1, an underflow later read as 1 again, and never cleared between (`flag-not-cleared`).
+Time: the prescaler counts SYSCLK down from TDDRH:TDDR, and TIM counts its underflows; the period is (PRD+1)*(TDDR+1)
+cycles.  Counters are computed when they are read.  An underflow is a clock event only where it changes something: TIF
+is clear, TIE is set, or a trigger has a listener.  A caller that knows that the next interrupts only take CPU time can
+handle them together (`skip`).
+Reported: TIF that is read as 1, and again as 1 after an underflow, without a clear in between (`flag-not-cleared`).
 Sources: TRM CPU timers; HDR F2837xS_cputimer.h.
 """
 

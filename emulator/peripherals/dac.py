@@ -1,10 +1,10 @@
 """A buffered 12-bit DAC: a code becomes the voltage of an analog pin.
 
 Modelled: DACVALS, loaded into DACVALA; the two references; output enable; locks with their key; clock gate and software
-reset.  The pin is the one that an ADC samples too.
-Not modelled: loads by EPWMSYNCPER (touching LOADMODE or SYNCSEL is reported, the code is loaded at once), the offset
-trim, DACREV, the 10 us of power-up and the settling time of the buffer.
-Time: none; a code acts in the store.
+reset.  An ADC can sample the pin, too.
+Not modelled: loads by EPWMSYNCPER (touching LOADMODE or SYNCSEL is reported, and the code is loaded at once), the
+offset trim, DACREV, the 10 us of power-up, the settling time of the buffer.
+Time: none; a code takes effect at the write.
 CHOICE: VDAC, which the LaunchPad leaves open, has the voltage that the board gives to VREFHI.
 Sources: TRM buffered DAC; HDR F2837xS_dac.h.
 """

@@ -1,21 +1,21 @@
-"""The DMA: six channels that copy words, a burst a trigger.
+"""The DMA: six channels that copy words, one burst for each trigger.
 
 Modelled: bursts, transfers, steps, wraps, active and shadow addresses, words of 16 and 32 bits, one-shot and continuous
-mode, RUN, HALT, soft and hard reset, triggers by software and by the modules that are modelled (levels of the SPI
-FIFOs too), overflow of a trigger, interrupts at the beginning or end of a transfer and at an overflow, round robin,
-high priority of channel 1, what the bridges and memories let the DMA reach, clock gate.
-Not modelled: triggers of modules that are not (selecting one is reported), EMIF, stalls by accesses of the CPU to the
-same memory, the emulation halt (there is no debugger).
-Time: a burst takes one cycle, and four for each word: its address is out in the first, it is read in the second, and
-written in the fourth.  The read samples at its end, three cycles after the trigger, what stood until then: an ADCRESULT
-that latches just then is read as it was before (ERR, DMA read of stale result).  Back from channel 1 of high priority
-takes one cycle.  Two clock events a word, and none where nothing is transferred.
-CHOICE, as no document at hand says: PERINTSEL is the channel whose DMACHSRCSEL field is heard; a one-shot channel keeps
-the bus until its transfer ends; a level of a FIFO triggers again at the end of a burst if it still stands; with 32 bits
-an odd burst ends with a whole double word; addresses do not move behind the last burst of a transfer; protection by
-EALLOW is for the CPU alone; a soft reset leaves PERINTFLG and OVRFLG; a channel without clock goes on where it was; an
-overflow interrupts only where CHINTE is set too.
-CHOICE: which RAM a linked object lies in only the linker's command file says, so that objects can always be reached.
+mode, RUN, HALT, soft and hard reset; triggers by software and by the modules that are modelled (levels of the SPI FIFOs
+too); overflow of a trigger; interrupts at the beginning or end of a transfer and at an overflow; round robin, and high
+priority of channel 1; what the DMA can reach through bridges and memories; clock gate.
+Not modelled: triggers of modules that are not modelled (selecting one is reported), EMIF, stalls by accesses of the CPU
+to the same memory, the emulation halt (there is no debugger).
+Time: a burst takes one cycle, and four for each word: the address is output in the first, the word is read in the
+second and written in the fourth.  The read takes the value at its end, three cycles after the trigger: an ADCRESULT
+that latches in that cycle is read with its old value (ERR, DMA read of stale result).  The return from channel 1 with
+high priority takes one cycle.  Each word has two clock events; without a transfer there are none.
+CHOICE, because no document at hand says it: PERINTSEL is the channel whose DMACHSRCSEL field counts.  A one-shot
+channel keeps the bus until its transfer ends.  A level of a FIFO triggers again at the end of a burst if it is still
+active.  With 32 bits an odd burst ends with a whole double word.  Addresses do not move after the last burst of a
+transfer.  EALLOW protects against the CPU only.  A soft reset leaves PERINTFLG and OVRFLG.  A channel that lost its
+clock continues where it was.  An overflow interrupts only if CHINTE is set too.
+CHOICE: only the linker's command file says in which RAM a linked object is, so objects can always be reached.
 Sources: TRM DMA; HDR F2837xS_dma.h, F2837xS_Dma_defines.h; ERR ADC: DMA read of stale result; DS memory map.
 """
 

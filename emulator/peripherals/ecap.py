@@ -5,20 +5,20 @@ Modelled: TSCTR at SYSCLK, TSCTRSTOP, CTRPHS loaded by a sync (SWSYNC, and that 
     REARM; APWM: period, compare value and their shadows, the output with its polarity (`ecap_output.py`); flags,
     gating of the interrupt, ECFRC; clock gate (`set_clock`), module reset.
 Not modelled: CTR = PRD as sync-out and the sync-in from an ePWM, the cycles of synchronisation between pin and module.
-    Edges set no flag and count for no event before anything is set up: CAPLDEN, CTRRSTn and the enables of CEVT1 to 4
-    all 0, ECFLG not read.
-Time: an event only at an overflow, period or compare match whose interrupt is enabled or whose flag was read (a poll
-    goes on there), at an edge of an output that somebody hears, and one cycle after TSCTR was read.  The input is
-    listened to only while its edges matter: a one-shot that has stopped leaves it at the next write to the module.
-CHOICE: divided by n, the input rises with the first n / 2 rising edges of the pin, falls with the next n / 2, and is
-    low at the start and after a change of PRESCALE.  In APWM mode the input is not looked at.
-CHOICE: a one-shot is armed out of reset and by every change to continuous; while stopped it gives no event, sets no
-    flag and resets no counter.  An event that is reached beyond STOP_WRAP goes on up to event 4.
+    Before a program sets anything up, edges set no flag and count for no event: that is while CAPLDEN, CTRRSTn and the
+    enables of CEVT1 to 4 are all 0, and ECFLG was not read.
+Time: there is an event at an overflow, period or compare match only if its interrupt is enabled or its flag was read (a
+    poll continues there); at an edge of an output that has a listener; and one cycle after TSCTR was read.  The module
+    listens to the input only while its edges matter: a one-shot that has stopped leaves it at the next write.
+CHOICE: with the prescaler n, the input rises with the first n / 2 rising edges of the pin, and falls with the next
+    n / 2.  It is low at the start and after a change of PRESCALE.  In APWM mode the input has no effect.
+CHOICE: a one-shot is armed out of reset and by every change to continuous.  While it is stopped it gives no event, sets
+    no flag and resets no counter.  An event that is reached beyond STOP_WRAP continues up to event 4.
 CHOICE: a match is an arrival by counting (a reset to 0 included), never a write or a load.
-CHOICE: the output is active while TSCTR < CAP2, also while the counter stands; it is low out of APWM mode and without
-    clock.
-CHOICE: CAP3 and CAP4 are loaded at the end of the period in which they were written; one that nobody has written since
-    CAP1 or CAP2 was is not loaded, so that CAP1 may be written before CAP_APWM is set.
+CHOICE: the output is active while TSCTR < CAP2, also while the counter is stopped.  It is low outside of APWM mode and
+    without clock.
+CHOICE: CAP3 and CAP4 are loaded at the end of the period in which they were written.  One that was not written after
+    CAP1 or CAP2 is not loaded, so that CAP1 may be written before CAP_APWM is set.
 Sources: TRM eCAP; HDR F2837xS_ecap.h.
 """
 

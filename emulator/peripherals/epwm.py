@@ -6,15 +6,15 @@ Modelled: up, down, up-down and stopped counting, prescalers, TBCLKSYNC, TBCTR w
     of DBCTL, DBRED and DBFED; phase load by SWFSYNC and `sync_in`; one-shot and cycle-by-cycle trips by TZ1 to TZ6 and
     by software (`epwm_trip_zone.py`), and by the digital compare with its blanking window (`epwm_digital_compare.py`);
     interrupt, SOCA and SOCB with prescalers; EPWMSYNCPER (`epwm_sync_pulse.py`); clock gate (`set_clock`).  Outputs are
-    duties, levels and, while somebody wants them, edges (`epwm_outputs.py`).
+    duties, levels and, while they have a listener, edges (`epwm_outputs.py`).
 Not modelled: half-cycle clocking and high resolution of the dead band, chopper, TZCTL2, T1/T2 events, CMPC/CMPD, global
     load and XLINK, loads at sync, high resolution, edge filter, capture and valley switching, the sync output.  Setting
     one of these is reported.
-Time: nothing happens per TBCLK.  TBCTR is computed when read; an output is put on its wire as duty and period when an
-    active value changes, which is the cycle of the shadow load.  Events exist only while a shadow waits to be loaded,
-    for enabled triggers, for EPWMSYNCPER that a CMPSS wants, for the end of a cycle-by-cycle trip, for the edges of an
-    output that somebody listens to, and one at the next TBCLK after TBCTR or TBSTS was read, where a poll of it goes
-    on.  The wire shows the steady waveform at once, although the first period may still differ.
+Time: a TBCLK is no event.  TBCTR is computed when it is read.  An output is put on its wire as duty and period when an
+    active value changes, which is the cycle of the shadow load.  Events exist only while a shadow waits to be loaded;
+    for enabled triggers; for EPWMSYNCPER while a CMPSS uses it; for the end of a cycle-by-cycle trip; and for the edges
+    of an output that has a listener.  One more comes at the next TBCLK after TBCTR or TBSTS was read, where a poll
+    continues.  The wire shows the steady waveform at once, although the first period may still differ.
 Sources: TRM ePWM (type 4); HDR F2837xS_epwm.h.
 """
 

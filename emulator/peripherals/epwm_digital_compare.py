@@ -2,19 +2,18 @@
 
 Modelled: TRIPIN1 to 12, one by one or combined (DCTRIPSEL, DCAHTRIPSEL and its like); the conditions of TZDCSEL;
     DCEVTFILT with its blanking window (DCFCTL, DCFOFFSET, DCFWINDOW and their counters); the choice of DCACTL and
-    DCBCTL; what event 1 does besides a trip: SOCA or SOCB, and sync.  What events do to outputs and flags is the trip
-    zone's (`epwm_trip_zone.py`).
+    DCBCTL; what event 1 does besides a trip: SOCA or SOCB, and sync.  The trip zone (`epwm_trip_zone.py`) does what
+    events do to outputs and flags.
 Not modelled: synchronisation with EPWMCLK (EVTxFRCSYNCSEL): events come at once either way; edge filter, valley
-    switching and capture of TBCTR (DCCAPCTL), of which setting a bit is reported.  TRIPIN14 and 15 are never high:
-    this memory has no errors.
-Time: an event changes in the cycle of its trip input.  A trip input is listened to while an event depends on it.
-    Events of the clock exist only for the blanking window, while BLANKE is set, some event is filtered and the counter
-    runs.
-CHOICE: SOC and sync are given at the beginning of an event.
-CHOICE: what TBCLK does to a window or an offset that has begun does not matter: both keep their length in SYSCLK.
+    switching and capture of TBCTR (DCCAPCTL): setting one of their bits is reported.  TRIPIN14 and 15 are never high,
+    because this memory has no errors.
+Time: an event changes in the cycle of its trip input.  A trip input has a listener only while an event depends on it.
+    The clock has events for the blanking window only, while BLANKE is set, an event is filtered and the counter runs.
+CHOICE: SOC and sync come at the beginning of an event.
+CHOICE: a window or an offset that has begun keeps its length in SYSCLK, whatever happens to TBCLK.
 CHOICE: an offset that ends where the next one begins does not end.
 CHOICE: DCFOFFSETCNT and DCFWINDOWCNT read 0 while there is no blanking.
-CHOICE: a trip input that DCTRIPSEL does not have (12), and PULSESEL 3, are reported; no event comes of them.
+CHOICE: a trip input that DCTRIPSEL does not have (12), and PULSESEL 3, are reported and give no event.
 Sources: TRM ePWM, digital compare submodule; HDR F2837xS_epwm.h.
 """
 

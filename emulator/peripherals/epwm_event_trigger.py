@@ -1,12 +1,13 @@
 """The event trigger of an ePWM module: interrupt, SOCA and SOCB at every nth event of the counter.
 
-An event of the clock exists only while a trigger is enabled (INTEN, SOCxEN), has a period (xPRD) and the counter runs.
-CHOICE: a counter that stays at 0, since TBPRD is 0, comes to no point and triggers nothing: TI's eQEP example starts
-its counter before it sets the period, and configures what its routine reads behind that.
-CHOICE: the event counters stand still while their trigger is disabled; a new xPRD clears its counter.  CHOICE: SOC
-pulses are given also while ETFLG.SOCx is set (unconfirmed).
+The clock has an event for a trigger only while the trigger is enabled (INTEN, SOCxEN), has a period (xPRD), and the
+counter runs.
+CHOICE: a counter that stays at 0, because TBPRD is 0, reaches no point and triggers nothing.  TI's eQEP example starts
+its counter before it sets the period, and only then configures what its routine reads.
+CHOICE: the event counters stop while their trigger is disabled; a new xPRD clears its counter.
+CHOICE: SOC pulses come also while ETFLG.SOCx is set (unconfirmed).
 
-SOCA and SOCB can come of event 1 of the digital compare too, which is counted like the counter's.
+SOCA and SOCB can also come from event 1 of the digital compare, which is counted like an event of the counter.
 
 Sources: TRM ePWM, event-trigger submodule.
 """

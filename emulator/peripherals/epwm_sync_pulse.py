@@ -1,8 +1,8 @@
 """EPWMSYNCPER: the pulse of an ePWM that loads the DACs of comparator subsystems, starts their ramps, clears latches.
 
-HRPCTL.PWMSYNCSEL: it comes when the counter is at TBPRD (0) or at 0 (1).  An event exists only while there is a
-listener and the counter runs.
-Not modelled: PWMSYNCSELX, by which CMPC and CMPD give it.
+With HRPCTL.PWMSYNCSEL = 0 it comes when the counter is at TBPRD, with 1 when it is at 0.  The clock has an event for it
+only while there is a listener and the counter runs.
+Not modelled: PWMSYNCSELX, which selects CMPC and CMPD as its source.
 Part of `epwm.py`.  Sources: TRM ePWM, time-base submodule; HDR F2837xS_epwm.h.
 """
 

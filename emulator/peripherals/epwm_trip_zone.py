@@ -1,18 +1,18 @@
 """The trip zone of an ePWM module: trips force its outputs, for a time or until software clears them.
 
-Modelled: TZ1 to TZ6 (active low) as one-shot and cycle-by-cycle trips (TZSEL); TZCTL.TZA and TZB, high impedance
-    included: then nobody drives the pin; TZFRC.OST and CBC; TZFLG, TZOSTFLG, TZCBCFLG with TZCLR, TZOSTCLR, TZCBCCLR;
+Modelled: TZ1 to TZ6 (active low) as one-shot and cycle-by-cycle trips (TZSEL); TZCTL.TZA and TZB, with high impedance
+    (then nothing drives the pin); TZFRC.OST and CBC; TZFLG, TZOSTFLG, TZCBCFLG with TZCLR, TZOSTCLR, TZCBCCLR;
     TZCLR.CBCPULSE; TZEINT and the interrupt; the events of the digital compare (`epwm_digital_compare.py`): event 1 as
     a one-shot, event 2 as a cycle-by-cycle trip (TZSEL), all four with actions of their own (TZCTL), flags, interrupts
-    and TZFRC.  A one-shot trip lasts until TZCLR.OST; a cycle-by-cycle trip until the
-    counter comes to the point that CBCPULSE names and the input has gone.  TZFLG.CBC only remembers it.
+    and TZFRC.  A one-shot trip lasts until TZCLR.OST.  A cycle-by-cycle trip lasts until the counter comes to the point
+    that CBCPULSE names, if the input is inactive by then.  TZFLG.CBC only remembers it.
 Not modelled: the actions of TZCTL2, TZCTLDCA and TZCTLDCB that depend on the direction of the counter; the least width
-    of a pulse that a latch takes (3 TBCLK): here every one trips.
-Time: no event but the end of a cycle-by-cycle trip whose input has gone.
-CHOICE: clearing TZFLG.OST while its input still is low trips again at once, as the manual says of TZFLG.CBC.
-CHOICE: the outputs follow TZCTL while they are tripped.  The action of a trip comes before those of event 1, these
-    before those of event 2 (TRM); CHOICE: one that leaves the output untouched lets the next one act.
-CHOICE: an event that TZFRC forces is over at once: it leaves flags and latches.
+    of a pulse that a latch takes (3 TBCLK): here every pulse trips.
+Time: the only event is the end of a cycle-by-cycle trip whose input is inactive.
+CHOICE: clearing TZFLG.OST while its input is still low trips again at once, as the manual says of TZFLG.CBC.
+CHOICE: the outputs follow TZCTL while they are tripped.  The action of a trip has priority over those of event 1, and
+    these over those of event 2 (TRM).  CHOICE: an action that leaves the output unchanged lets the next one act.
+CHOICE: an event that TZFRC forces is over at once; only its flags and latches stay.
 Sources: TRM ePWM, trip-zone submodule; HDR F2837xS_epwm.h.
 """
 

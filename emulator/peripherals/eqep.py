@@ -4,16 +4,16 @@ Modelled: QSRC 0-3 with XCR, SWAP, QAP, QBP; QPOSCNT with wrap at QPOSMAX in eve
     QPOSINIT by SWI, index and strobe, index and strobe latches, PCEF; unit timer with QPOSLAT and QCLM; capture with
     QCTMR, QCPRD, UPEVNT, COEF, CDEF; watchdog; position compare with shadow; flags and interrupt gating; QPEN as
     software reset; clock gate (`set_clock`).
-    Edges of the pins' levels (a jumper from an ePWM) come one by one, behind inversion and QSEL; both lines at once are
-    a phase error, which trip zones see as TZ4 (`error`).  Index and strobe come from their pins as well; CHOICE: in one
-    cycle they act before the edges of the pair.
-Not modelled: the sync output (SPSEL, SOEN, PCSPW, PCPOL), index gating (IGATE), the extra edge that a change of SWAP,
-    QAP or QBP makes on standing lines, the quadrature edge that TI's index marker waits for (IEL = 3 latches at the
-    index edge itself), input qualification (GPIO QSEL) of what comes in batches.
-Time: nothing happens per edge.  The wire brings whole batches, and every access that could see them asks the wire to
-    move up to now first.  QUTMR, QWDTMR and QCTMR are computed when read; events exist only for a unit time-out (UTE)
-    and a watchdog time-out (WDE).  Flags raised by edges therefore appear when the wire is moved, at the latest at the
-    next access or event, and their interrupt with them.
+    Edges of the levels of the pins (a jumper from an ePWM) come one by one, after inversion and QSEL.  Edges of both
+    lines in one cycle are a phase error, which trip zones see as TZ4 (`error`).  Index and strobe come from their pins
+    as well; CHOICE: in one cycle they act before the edges of the pair.
+Not modelled: the sync output (SPSEL, SOEN, PCSPW, PCPOL), index gating (IGATE), the extra edge of a change of SWAP, QAP
+    or QBP while the lines are at rest, the quadrature edge that TI's index marker waits for (IEL = 3 latches at the
+    index edge itself), input qualification (GPIO QSEL) of edges that come in batches.
+Time: an edge is no event.  The wire brings whole batches of edges, and every access that could see them first makes the
+    wire move up to now.  QUTMR, QWDTMR and QCTMR are computed when they are read.  Events exist only for a unit
+    time-out (UTE) and a watchdog time-out (WDE).  So flags of edges, and their interrupts, appear when the wire moves:
+    at the latest at the next access or event.
 Sources: TRM eQEP; HDR F2837xS_eqep.h.
 """
 

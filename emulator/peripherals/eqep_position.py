@@ -1,10 +1,10 @@
 """The arithmetic of the eQEP position counter: the value after some steps, and the steps to a value.
 
-Pure functions on a 32-bit counter that wraps at QPOSMAX.  A forward step from QPOSMAX leads to 0 (overflow), a backward
-step from 0 leads to QPOSMAX (underflow); with QPOSMAX = 0 the counter therefore never leaves 0.
+These are pure functions on a 32-bit counter that wraps at QPOSMAX.  A forward step from QPOSMAX goes to 0 (overflow), a
+backward step from 0 goes to QPOSMAX (underflow).  So with QPOSMAX = 0 the counter never leaves 0.
 
-CHOICE: a counter beyond QPOSMAX (written, or QPOSMAX lowered) is only compared for equality, so it counts on to
-0xFFFFFFFF, wraps to 0 without a flag and is inside from then on; the manual does not say.
+CHOICE: the manual does not describe a counter beyond QPOSMAX (written, or QPOSMAX lowered).  Here the hardware compares
+for equality only: the counter counts on to 0xFFFFFFFF, wraps to 0 without a flag, and is inside from then on.
 
 Sources: TRM eQEP, position counter operating modes (figure "underflow/overflow", QPOSMAX = 4).
 """

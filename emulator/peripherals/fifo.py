@@ -1,15 +1,16 @@
 """The 16-deep FIFO that SPI, SCI and I2C share: words, interrupt level, and its FFTX or FFRX register.
 
-The modules lay their FIFO registers out alike (HDR SPIFFTX, SCIFFTX, I2CFFTX, SPIFFRX, SCIFFRX, I2CFFRX), so one class
-serves all.  The I2C has no reset bit for both channels.  It has no overflow either: it takes no byte without room.
+The FIFO registers of the modules have the same layout (HDR SPIFFTX, SCIFFTX, I2CFFTX, SPIFFRX, SCIFFRX, I2CFFRX), so
+one class serves all.  The I2C has no reset bit for both channels.  It has no overflow either: it accepts no byte when
+the FIFO is full.
 
 Modelled: depth, status, level interrupt, reset bit, overflow of the receive FIFO; the level that triggers the DMA
 (TRM SPI: fewer words than TXFFIL, or RXFFIL and more; SCI and I2C have none).
 Time: none of its own.
 
-The interrupt flag follows a level: it is set while the condition holds, and clearing it while the condition holds
-sets it again.  The output is a pulse into the PIE whenever flag and enable become true together, and again after
-each clear that did not last.
+The interrupt flag follows a level: it is set while the condition holds, so it is set again if it is cleared while the
+condition holds.  The output is a pulse to the PIE whenever flag and enable become true together, and again after each
+such clear.
 """
 
 from __future__ import annotations

@@ -1,14 +1,14 @@
 """GPIO ports A to F: latches, pins, pin functions.
 
-Modelled: DAT reads pins and writes latches (lanes of the access only, so a bit-field write is the 16-bit read, modify,
-write of the compiler, with its effect on the neighbours), SET, CLEAR, TOGGLE, direction, open drain, pull-ups, input
-inversion, qualification by 3 or 6 samples (`gpio_qualifier.py`), pin function (MUX, GMUX) with a hook for the board,
-LOCK and CR, EALLOW (by the register core).  A pin whose level is computed (an ePWM drives it) is asked when DAT is
-read; its edges are wanted only while somebody follows the pin, or QSEL has its samples counted.
+Modelled: DAT, which reads pins and writes latches (only the words of the access, so a bit-field write is the 16-bit
+read, modify, write of the compiler, with its effect on the neighbours); SET, CLEAR, TOGGLE, direction, open drain,
+pull-ups, input inversion, qualification by 3 or 6 samples (`gpio_qualifier.py`), pin function (MUX, GMUX) with a hook
+for the board, LOCK and CR, EALLOW (by the register core).  The level of a pin that is computed (an ePWM drives it) is
+computed when DAT is read.  Its edges are produced only while the pin has a listener, or QSEL counts its samples.
 Not modelled: the owner of a pin (CSEL) and the analog mode of GPIO42 and 43 (setting one is reported), the few cycles
 of synchronisation between a pin and DAT, edge times.  The Input X-BAR (`input_xbar.py`) follows inputs of pins.
-Time: everything happens in the cycle of the access, but qualification.  Reading DAT of a port with computed levels
-leaves one event, at the next change of one of them, so that a poll of DAT goes on there.
+Time: everything but qualification happens in the cycle of the access.  A read of DAT of a port with computed levels
+schedules one event, at the next change of one of them.  A poll of DAT continues there.
 Sources: TRM GPIO chapter; HDR F2837xS_gpio.h; DS table of GPIO muxed pins.
 """
 

@@ -1,7 +1,7 @@
 """Input qualification of one pin: a level counts after 3 or 6 equal samples.
 
-Modelled: samples at the multiples of the sampling period since cycle 0, consecutive equal samples, glitches between
-two samples unseen.
+Modelled: samples at the multiples of the sampling period since cycle 0; consecutive equal samples; a glitch between two
+samples is not seen.
 Not modelled: a period that changes while a level is being qualified (it applies from the next edge on).
 Time: one clock event for each edge that may become valid; none while the pin is quiet.
 Sources: TRM GPIO, qualification using a sampling window.

@@ -1,23 +1,23 @@
 """I2C controller: START, address, bytes and STOP on a bus, one clock event each.
 
-Modelled: controller transmitter and receiver, with I2CCNT and in repeat mode, repeated START, STOP, acknowledgment both
-ways, NACKMOD, I2CDXR and I2CDRR with underflow and overrun (SCL is held low until the program has been there), 16-deep
-FIFOs with levels, all flags of I2CSTR that a controller has, both interrupt lines, the clock from IPSC, ICCL and ICCH,
-digital loopback of a transmitter, IRS, a bus that a second controller has (ARBL).
+Modelled: controller transmitter and receiver, with I2CCNT and in repeat mode; repeated START, STOP, acknowledgment in
+both directions, NACKMOD; I2CDXR and I2CDRR with underflow and overrun (SCL stays low until the program has served
+them); 16-deep FIFOs with levels; all flags of I2CSTR that a controller has; both interrupt lines; the clock from IPSC,
+ICCL and ICCH; digital loopback of a transmitter; IRS; a bus that a second controller has (ARBL).
 Not modelled: the module as a target (I2COAR, AAS and I2CEMDR report themselves; SDIR and AD0 stay 0), free data format,
 START byte, data of less than 8 bits, loss of arbitration within a transfer, targets that stretch the clock, targets
 with 10-bit addresses (the first of the two address bytes is sent, and nobody acknowledges it), the levels of SDA and
-SCL within a byte, emulation halt (there is no debugger), a transfer frozen half-way by clock gating.
-Time: a bit is (IPSC + 1) * (ICCL + ICCH + 2 d) SYSCLK cycles, d = 7, 6, 5 for IPSC = 0, 1, more; a byte is 9 bits, and
-happens at the end of its acknowledge bit.  CHOICE: SDA falls one module clock after STT is set, SCL ICCH + d later; a
-repeated START waits a bit before that, a STOP takes a bit, and STP is cleared a module clock behind SCD; a held
-transfer goes on a module clock after what it waited for.
+SCL within a byte, emulation halt (there is no debugger), a transfer that clock gating freezes half-way.
+Time: a bit is (IPSC + 1) * (ICCL + ICCH + 2 d) SYSCLK cycles, d = 7, 6, 5 for IPSC = 0, 1, more.  A byte is 9 bits, and
+takes effect at the end of its acknowledge bit.  CHOICE: SDA falls one module clock after STT is set, SCL ICCH + d
+later.  A repeated START waits for one bit before that.  A STOP takes one bit, and STP is cleared one module clock after
+SCD.  A held transfer continues one module clock after the event that it waited for.
 Sources: TRM I2C chapter; HDR F2837xS_i2c.h.  They leave open, and TI's examples rely on:
-CHOICE: a byte that is not acknowledged sets ARDY besides NACK, and SCL is held low until STT or STP is *written*, even
-if STP stood already (`stops_when_refused` has the other reading), unless the data counter has reached 0; what waits in
-I2CDXR or the transmit FIFO stays there.
-CHOICE: in repeat mode the address byte sets ARDY too; STT clears ARDY, when it is written and when the START is made,
-and a byte does not.
+CHOICE: a byte that is not acknowledged sets ARDY as well as NACK, unless the data counter has reached 0.  SCL then
+stays low until STT or STP is *written*, even if STP was already set (`stops_when_refused` has the other reading).  What
+waits in I2CDXR or the transmit FIFO stays there.
+CHOICE: in repeat mode the address byte sets ARDY too.  STT clears ARDY when it is written and when the START is made; a
+byte does not clear it.
 """
 
 from __future__ import annotations

@@ -3,10 +3,11 @@
 Modelled: XRDY and RRDY, underflow (XSMT) and overrun (RSFULL), the 16-deep FIFOs with levels and interrupts.
 Not modelled: nothing that a controller has.
 Time: none of its own.
-Sources: TRM I2C, I2CSTR, I2CFFTX, I2CFFRX.  CHOICE: in FIFO mode XRDY and RRDY stay as after reset (the manual says not
-to use them); a full receive FIFO keeps the next byte in the shift register, as I2CDRR does; an empty one gives its last
-byte again; each direction gives its own interrupt pulse, also while the other one's request stands; a flag from before
-its enable gives none unless the level still holds (TI's example by FIFO interrupts would lose bytes otherwise).
+Sources: TRM I2C, I2CSTR, I2CFFTX, I2CFFRX.
+CHOICE: in FIFO mode XRDY and RRDY stay as after reset (the manual says not to use them).  A full receive FIFO keeps the
+next byte in the shift register, as I2CDRR does.  An empty one gives its last byte again.  Each direction gives its own
+interrupt pulse, also while the request of the other one is active.  A flag that was set before its enable gives no
+pulse unless the level still holds (otherwise TI's example by FIFO interrupts would lose bytes).
 """
 
 from __future__ import annotations

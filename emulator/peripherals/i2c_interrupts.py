@@ -1,12 +1,12 @@
 """Interrupts of an I2C module: flags of I2CSTR, their enables in I2CIER, and the arbiter behind I2CISRC.
 
 Modelled: ARBL, NACK, ARDY, RRDY, XRDY and SCD; their priority; I2CISRC, which a read clears, and the flags that this
-read clears too (ARBL, NACK, SCD); the next request behind each read.
+read clears too (ARBL, NACK, SCD); after each read, the next request.
 Not modelled: AAS, which only a target has.
 Time: none of its own.
-Sources: TRM I2C, interrupt requests, I2CISRC.  CHOICE: a request is made by the event that sets a flag, or by the
-enable of a flag that stands; a flag that is cleared takes its request back; the code in I2CISRC stays until it is read,
-and until then there is no further interrupt.
+Sources: TRM I2C, interrupt requests, I2CISRC.
+CHOICE: a request is made by the event that sets a flag, or by the enable of a flag that is set.  A flag that is cleared
+withdraws its request.  The code in I2CISRC stays until it is read, and until then there is no further interrupt.
 """
 
 from __future__ import annotations

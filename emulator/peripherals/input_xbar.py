@@ -1,16 +1,16 @@
 """The Input X-BAR: which pin is INPUT1 to INPUT14, the inputs of trip zones, digital compares, external interrupts,
 ADCEXTSOC, the eCAP modules and the other X-BARs.
 
-Modelled: INPUTxSELECT, INPUTSELECTLOCK, EALLOW (by the register core).  What an input shows is what DAT of its pin
-shows: behind inversion and qualification, whatever the function and direction of the pin.
+Modelled: INPUTxSELECT, INPUTSELECTLOCK, EALLOW (by the register core).  The level of an input is the one that DAT of
+its pin shows: after inversion and qualification, whatever the function and direction of the pin.
 Not modelled: EXTSYNCIN (INPUT5, 6).
-Time: none; an input changes in the cycle of its pin.  A pin is followed only while somebody listens to its input.
-CHOICE: a bit of INPUTSELECTLOCK that is set stays set until reset, and what is written to a locked INPUTxSELECT is
-dropped silently, as with the other lock registers of the chip: HDR only names the bits.
-CHOICE: selecting a pin of another level, and switching the inversion of a selected one, is an edge for the input: the
-manual says nothing of a change on the way.
-Sources: DS Input X-BAR (destinations); TRM X-BAR; HDR F2837xS_input_xbar.h.  That qualification lies before it: TI's
-example of external interrupts, which qualifies their pins.
+Time: none; an input changes in the cycle of its pin.  A pin is followed only while its input has a listener.
+CHOICE: a bit of INPUTSELECTLOCK that is set stays set until reset, and a write to a locked INPUTxSELECT is dropped
+silently, as with the other lock registers of the chip: HDR only names the bits.
+CHOICE: selecting a pin of another level, or switching the inversion of a selected pin, is an edge for the input.  The
+manual does not describe this case.
+Sources: DS Input X-BAR (destinations); TRM X-BAR; HDR F2837xS_input_xbar.h.  That qualification comes before it follows
+from TI's example of external interrupts, which qualifies their pins.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Modelled: the muxes of each output (`xbar_mux.py`, with the signals that are not modelled), OUTPUTLATCH with its clear
     and force, OUTPUTLATCHENABLE, OUTPUTINV, OUTPUTLOCK with its key.
 Time: none; an output changes in the cycle of its signal.
-CHOICE: a latch is set by the muxes, before the inversion, and a clear of one whose muxes are high sets it again.
+CHOICE: the muxes set a latch before the inversion.  A latch that is cleared while its muxes are high is set again.
 Sources: TRM X-BAR; HDR F2837xS_output_xbar.h.
 """
 

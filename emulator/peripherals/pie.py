@@ -1,13 +1,13 @@
 """The peripheral interrupt expansion: 12 groups of 16 lines in front of the CPU's INT1..INT12, and the vectors.
 
-Modelled: PIEIFR, PIEIER, PIEACK, ENPIE; PIEVECT, of every vector that is fetched from the table; priority within a
-group; vectors of INT13 and INT14, which bypass the groups; the INTx.1 vector for a request that has vanished before its
-fetch.
-Not modelled: the vector table as memory (`set_vector` is its writing; firmware writes it through `pie_vectors.py`), PIE
-vector parity errors, NMI, boot-ROM vectors with ENPIE = 0 (nothing is delivered then).
-Reported, at the routine: an interrupt that only a missing acknowledge holds back, a flag that keeps its source from
-further ones (`flag-not-cleared`).
-Time: none of its own; a pulse is latched at once, the CPU takes it at its next charge and accounts for its entry.
+Modelled: PIEIFR, PIEIER, PIEACK, ENPIE; PIEVECT for every vector that is fetched from the table; priority within a
+group; vectors of INT13 and INT14, which bypass the groups; the INTx.1 vector for a request that has disappeared before
+its fetch.
+Not modelled: the vector table as memory (`set_vector` writes an entry; firmware writes it through `pie_vectors.py`),
+PIE vector parity errors, NMI, boot-ROM vectors with ENPIE = 0 (nothing is delivered then).
+Reported, at the routine: an interrupt that only a missing acknowledge blocks; a flag that blocks further interrupts of
+its source (`flag-not-cleared`).
+Time: none of its own.  A pulse is latched at once; the CPU takes it at its next charge and accounts for its entry.
 Sources: TRM PIE; HDR F2837xS_piectrl.h, hw_ints.h; BIOS family/c28/Hwi_disp_asm.s28 (the dispatcher takes the number of
 every interrupt from PIEVECT, of INT13 and INT14 as well: it is the address of their entry).
 """

@@ -1,9 +1,9 @@
 """The vector table as firmware without a kernel uses it: routines written into `PieVectTable`.
 
-Modelled: an entry runs when its interrupt is taken, nested on the interrupted stack; EALLOW (by the register core);
-an entry that the kernel took is the kernel's until firmware writes over it, as on silicon.
-Not modelled: what a routine without the keyword `interrupt` does to the registers that it finds (CHOICE: whatever
-stands in the table counts as an interrupt routine).
+Modelled: an entry runs when its interrupt is taken, nested on the interrupted stack; EALLOW (by the register core).  An
+entry that the kernel took belongs to the kernel until firmware writes over it, as on silicon.
+Not modelled: what a routine without the keyword `interrupt` does to the registers of the interrupted code (CHOICE: any
+function in the table counts as an interrupt routine).
 Time: none of its own; the core accounts for entry and return, the routine for itself.
 Sources: TRM PIE; HDR F2837xS_pievect.h.
 """

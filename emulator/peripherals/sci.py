@@ -1,14 +1,14 @@
-"""SCI (UART): frames on two lines, one clock event a frame sent.
+"""SCI (UART): frames on two lines, one clock event for each frame sent.
 
-Modelled: baud rate and frame length to the cycle, 1 to 8 data bits, parity, stop bits, TXRDY and TXEMPTY, 16-deep
-FIFOs with levels and FFTXDLY, receive errors (FE, PE, OE, BRKDT) that stay until SWRESET, a receiver that is deaf after
-a break, overflow, all interrupt sources, loopback, SWRESET, SCIRST and FIFO resets; baud and format mismatch as the
-samples see them (`sci_sampling.py`).
-Not modelled: auto-baud, SLEEP and TXWAKE and the address-bit mode (setting one is reported), emulation halt (there is
-no debugger), the stump that a peer sees of a frame cut by SWRESET, two separate low pulses within one character time,
-a character frozen half-way by clock gating.
-Time: a frame starts with the write that finds the shifter idle and reaches the line at the end of its last stop bit;
-a received one reaches SCIRXBUF at the end of its stop bit as sent.
+Modelled: baud rate and frame length to the cycle; 1 to 8 data bits, parity, stop bits; TXRDY and TXEMPTY; 16-deep FIFOs
+with levels and FFTXDLY; receive errors (FE, PE, OE, BRKDT), which stay until SWRESET; a receiver that takes nothing
+after a break; overflow; all interrupt sources; loopback; SWRESET, SCIRST and FIFO resets; baud and format mismatch as
+the samples see them (`sci_sampling.py`).
+Not modelled: auto-baud; SLEEP and TXWAKE and the address-bit mode (setting one is reported); emulation halt (there is
+no debugger); the part of a frame that a peer sees if SWRESET cuts the frame; two separate low pulses within one
+character time; a character that clock gating freezes half-way.
+Time: a frame starts with the write that finds the shifter idle, and reaches the line at the end of its last stop bit.
+A received frame reaches SCIRXBUF at the end of its stop bit, as it was sent.
 Sources: TRM SCI chapter; HDR F2837xS_sci.h.
 """
 

@@ -1,10 +1,10 @@
 """How an SCI receiver decodes a waveform: start bit, majority of three samples, stop bit.
 
-Modelled: eight samples a bit, a start bit valid after four low samples, each bit the majority of samples 4, 5 and 6,
-parity, one stop bit checked, the hunt for the next falling edge after a stop bit; so baud mismatch, format mismatch,
-glitches and short low pulses give the bytes and errors that they give on a wire.
-Not modelled: the up to one sample of jitter between an edge and the sample clock; a line that changes after the end of
-the last frame known (it idles high until the next frame ends, which is when the frame becomes known).
+Modelled: eight samples for each bit; a start bit is valid after four low samples; each bit is the majority of samples
+4, 5 and 6; parity; one stop bit is checked; the search for the next falling edge after a stop bit.  So baud mismatch,
+format mismatch, glitches and short low pulses give the bytes and errors that they give on a wire.
+Not modelled: the jitter of up to one sample between an edge and the sample clock; a line that changes after the end of
+the last known frame (it idles high until the next frame ends, because a frame becomes known at its end).
 Time: none; a waveform is examined as a whole.
 Sources: TRM SCI, asynchronous communication format.
 """

@@ -1,13 +1,13 @@
 """SPI master: words on a bus, one clock event each.
 
-Modelled: master transfers of 1 to 16 bits from SPITXBUF or SPIDAT, justification with stale upper bits, double
-buffering, BUFFULL, INT_FLAG (only a read of SPIRXBUF clears it), OVERRUN, baud rate, clock schemes, TALK, loopback,
-SPISWRESET, 16-deep FIFOs with levels, overflow and TXDLY, both interrupt lines, both levels for the DMA; SPISTE as
+Modelled: master transfers of 1 to 16 bits from SPITXBUF or SPIDAT; justification, with old upper bits; double
+buffering, BUFFULL, INT_FLAG (only a read of SPIRXBUF clears it), OVERRUN; baud rate, clock schemes, TALK, loopback,
+SPISWRESET; 16-deep FIFOs with levels, overflow and TXDLY; both interrupt lines, both levels for the DMA; SPISTE as
 chip select of a master.
 Not modelled: slave mode (a transfer in it is reported), 3-wire mode, the inversion of SPISTE, emulation halt (there is
-no debugger), a word frozen half-way by clock gating.
-Time: a word takes SPICHAR+1 bit times from the write that starts it; the bus sees it when it is complete.
-CHOICE: SPISTE falls with the first bit of a word and rises behind the last one, unless the next word follows at once.
+no debugger), a word that clock gating freezes half-way.
+Time: a word takes SPICHAR+1 bit times from the write that starts it.  The bus sees it when it is complete.
+CHOICE: SPISTE falls with the first bit of a word and rises after the last one, unless the next word follows at once.
 Sources: TRM SPI chapter; HDR F2837xS_spi.h.
 """
 

@@ -1,16 +1,16 @@
 """System control: clock gates, software resets, clock dividers, locks, reset cause.
 
-Modelled: PCLKCRx switch the registers of the modules that the board attaches, and tell their behaviour; TBCLKSYNC;
-CPUSYSLOCK1 for PCLKCRx; SOFTPRESx; LSPCLK and EPWMCLK dividers; the bit clocks of the CAN modules; RESC; the wait for
-the PLL's lock; what CPU timer 2 counts.
-Not modelled: a SYSCLK other than 200 MHz, which it has from the first instruction: what else PLL, divider and
-oscillator are set to make of it, and have been for `_SETTLED`, is told.  Nor: the 5 cycles that a module takes to
+Modelled: PCLKCRx, which switch the registers of the modules that the board attaches, and inform the modules;
+TBCLKSYNC; CPUSYSLOCK1 for PCLKCRx; SOFTPRESx; LSPCLK and EPWMCLK dividers; the bit clocks of the CAN modules; RESC; the
+wait for the PLL's lock; the clock of CPU timer 2.
+Not modelled: a SYSCLK other than 200 MHz.  SYSCLK is 200 MHz from the first instruction; if PLL, divider and oscillator
+are set to another frequency for `_SETTLED`, that is reported.  Not modelled either: the 5 cycles that a module takes to
 answer after its gate opens, low-power modes, trims, AUXPLLCLK, a clock at AUXCLKIN.
-Time: everything acts in the store but LOCKS, which comes `PLL_LOCK` after a multiplier was written.
-CHOICE: the crystal has 10 MHz for the CAN, as on the LaunchPad.  CHOICE: for CPU timer 2 an oscillator has the
-frequency that PLL and divider, as they are set, make SYSCLK of; 10 MHz while the PLL is off.  So what checks SYSCLK
-against its oscillator, as TI's start-up code does, finds what it has set, and an oscillator has its true frequency
-once a right program has set the PLL up.
+Time: everything takes effect at the write, except LOCKS, which comes `PLL_LOCK` after a multiplier was written.
+CHOICE: the crystal of the CAN has 10 MHz, as on the LaunchPad.
+CHOICE: for CPU timer 2 an oscillator has the frequency from which PLL and divider, as they are set, make SYSCLK; it has
+10 MHz while the PLL is off.  So code that compares SYSCLK with its oscillator, as TI's start-up code does, finds the
+ratio that it has set.  Once a right program has set the PLL up, an oscillator has its true frequency.
 Sources: TRM system control; HDR F2837xS_sysctrl.h, F2837xS_analogsubsys.h.
 """
 

@@ -1,9 +1,9 @@
 """The temperature sensor of the chip: a voltage at input 13 of ADC-A.
 
 Modelled: TSNSCTL.ENABLE; a voltage that rises with `temperature_c`.
-Not modelled: how long it takes to start, the sample window of 700 ns that it needs, what the chip warms itself.
-CHOICE: it is exact, with the slope and offset that TI's code takes for a part without calibration: code 1788 at 0 C, of
-    12 bits and a reference of 2.5 V, and 5196 / 32768 C a code.  CHOICE: the chip has 25 C.
+Not modelled: its start-up time, the sample window of 700 ns that it needs, the heat of the chip itself.
+CHOICE: it is exact, with the slope and offset that TI's code uses for a part without calibration: code 1788 at 0 C, of
+    12 bits and a reference of 2.5 V, and 5196 / 32768 C for each code.  CHOICE: the chip has 25 C.
 Sources: HDR F2837xS_TempSensorConv.c, F2837xS_analogsubsys.h; TI's example of the sensor: input and window.
 """
 

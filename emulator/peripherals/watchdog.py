@@ -1,8 +1,8 @@
 """The watchdog: an 8-bit counter that resets the chip, or raises WDINT, unless it is serviced.
 
 Modelled: WDCR check pattern, disable, prescaler; WDKEY sequence; WDCNTR; SCSR (WDOVERRIDE, WDENINT, WDINTS); window.
-Not modelled: HALT and STANDBY, drift of INTOSC1, the length of the reset pulse, the program that begins anew.
-Time: WDCLK = INTOSC1 (10 MHz) / 512 / prescaler; the counter overflows after 256 counts, 13.1 ms at /1.  WDCNTR is
+Not modelled: HALT and STANDBY, drift of INTOSC1, the length of the reset pulse, the restart of the program.
+Time: WDCLK = INTOSC1 (10 MHz) / 512 / prescaler.  The counter overflows after 256 counts, 13.1 ms at /1.  WDCNTR is
 computed when it is read; the only event is the overflow of an enabled watchdog.
 Sources: TRM watchdog; HDR F2837xS_sysctrl.h, struct WD_REGS.
 """

@@ -1,12 +1,12 @@
 """The X-BAR flags: which signals of the ePWM and Output X-BARs have been high.
 
 Modelled: XBARFLG1 (comparators), INPUT1 to INPUT6 and ECAP1.OUT to ECAP6.OUT of XBARFLG2, and their clears.
-Not modelled: the other flags, which stay 0, as their signals do.
+Not modelled: the other flags, which stay 0, because their signals do.
 Time: none; a flag is set in the cycle of its signal.
-CHOICE: a flag is set while its signal is high: a clear then sets it again.
-CHOICE: the flag of an INPUT or an eCAP can be set once a mux of an X-BAR chooses the signal, or XBARFLG2 or XBARCLR2
-    was accessed.  Before that no program needs the flags, and every edge of GPIO0, which is the pin of all inputs out
-    of reset, would cost time.
+CHOICE: a flag is set while its signal is high, so a clear in that time sets it again.
+CHOICE: the flag of an INPUT or an eCAP is set only after a mux of an X-BAR has selected the signal, or XBARFLG2 or
+    XBARCLR2 was accessed.  Before that no program needs the flags, and every edge of GPIO0, which is the pin of all
+    inputs out of reset, would cost time.
 Sources: TRM X-BAR; HDR F2837xS_xbar.h.
 """
 

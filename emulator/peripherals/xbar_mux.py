@@ -1,11 +1,11 @@
-"""An output of the ePWM X-BAR or the Output X-BAR, before latch and inversion: the OR of the signals its muxes choose.
+"""An output of the ePWM X-BAR or the Output X-BAR, before latch and inversion: the OR of the signals its muxes select.
 
 Modelled: MUX0 to MUX31 of an output, their enables; the comparators (CTRIPx, CTRIPOUTx), INPUT1 to INPUT6 and
     the outputs of the eCAPs.
-Not modelled: what else a mux can choose (events of the ADCs, CLB, ADCSOCAO and ADCSOCBO, EXTSYNCOUT,
-    SDFM): choosing one for a mux that is enabled is reported, and it is low.
-Time: none; an output changes in the cycle of a signal.  A signal is listened to only while an enabled mux chooses it.
-CHOICE: a choice that the manual does not name is low, and reported.
+Not modelled: the other signals of a mux (events of the ADCs, CLB, ADCSOCAO and ADCSOCBO, EXTSYNCOUT, SDFM).  If an
+    enabled mux selects one, that is reported, and the signal is low.
+Time: none; an output changes in the cycle of a signal.  A signal has a listener only while an enabled mux selects it.
+CHOICE: a selection that the manual does not name is low, and reported.
 Part of `output_xbar.py` and `epwm_xbar.py`.  Sources: TRM X-BAR, mux configuration tables; HDR F2837xS_epwm_xbar.h,
     F2837xS_output_xbar.h.
 """

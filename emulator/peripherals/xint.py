@@ -1,11 +1,11 @@
 """One external interrupt, XINT1 to XINT5: edges of its input give interrupts.
 
-Modelled: ENABLE, POLARITY (0 falling, 1 rising, 3 both), the counter of XINT1 to XINT3: SYSCLK cycles since the last
-edge that interrupted, wrapping at 16 bits; it stands still while the interrupt is disabled and goes on from there, as
-only such an edge or a reset clears it.
+Modelled: ENABLE, POLARITY (0 falling, 1 rising, 3 both); the counter of XINT1 to XINT3, which counts SYSCLK cycles
+since the last edge that interrupted, and wraps at 16 bits.  It stops while the interrupt is disabled and then continues
+from its value, because only such an edge or a reset clears it.
 Not modelled: the cycles of synchronisation between a pin and the module.
-Time: no event; the pulse comes in the cycle of the edge, the counter is computed when read.
-CHOICE: POLARITY = 2 is falling like 0, as manuals of the family have it; TI's driver library names 0, 1 and 3 only.
+Time: no event; the pulse comes in the cycle of the edge, the counter is computed when it is read.
+CHOICE: POLARITY = 2 is falling like 0, as in manuals of the family; TI's driver library names 0, 1 and 3 only.
 CHOICE: an edge that comes while the interrupt is disabled is not remembered (TI: a disabled source has no effect).
 Sources: TRM external interrupts; HDR F2837xS_xint.h.
 """

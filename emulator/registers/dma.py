@@ -1,9 +1,9 @@
 """DMA registers (0x1000; channel 1 at 0x1020) and the registers that choose its triggers (0x7980).
 
 Offsets and fields: HDR F2837xS_dma.h, F2837xS_sysctrl.h; protection and reset values: TRM, DMA registers and
-DMA_CLA_SRC_SEL_REGS.  Counters and active addresses only the DMA writes.
-CHOICE: out of reset the wrap sizes are 0xFFFF, so that nothing wraps; no document at hand gives their reset value.  The
-manual calls it the default that addresses do not wrap (wrap size greater than transfer size).  Three of TI's examples
+DMA_CLA_SRC_SEL_REGS.  Only the DMA writes counters and active addresses.
+CHOICE: out of reset the wrap sizes are 0xFFFF, so that nothing wraps.  No document at hand gives their reset value.
+The manual says that by default addresses do not wrap (wrap size greater than transfer size).  Three of TI's examples
 (dma_gsram_transfer, adc_soc_continuous_dma, spi_loopback_dma) never write these registers, and would wrap at every
 burst with 0; others write 0xFFFF.
 """

@@ -1,10 +1,10 @@
 """eCAP1 to eCAP6: what each register is (TRM chapter eCAP; names, offsets and bits as in HDR F2837xS_ecap.h).
 
 Bases 0x5000 to 0x50A0, 0x20 apart.  Nothing is EALLOW protected: TI's driver library for this chip writes all of it
-without.  The flags of period and compare are CTR_EQ_PRD and CTR_EQ_CMP in ECEINT but CTR_PRD and CTR_CMP in the others:
-so the header spells it.
+without EALLOW.  The flags of period and compare are CTR_EQ_PRD and CTR_EQ_CMP in ECEINT, but CTR_PRD and CTR_CMP in the
+other registers, as in the header.
 CHOICE: ECCTL2 resets to 0x0006 (STOP_WRAP is 3), all others to 0.  HDR has no reset values.  TI's register headers of
-other families, which do, disagree: four that were read have 0x0006, one has 0.
+other families have them, and disagree: four that were read have 0x0006, one has 0.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """Flash controller, its error correction, and the semaphore of its pump: registers that hold what is written.
 
-Not modelled: all that they do.  The flash has no wait states here, is ready from the first instruction, and never errs.
+Not modelled: the effect of all of them.  The flash has no wait states here, is ready from the first instruction, and
+has no errors.
 Offsets and fields: HDR F2837xS_flash.h.
 """
 

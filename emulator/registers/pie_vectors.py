@@ -2,7 +2,7 @@
 
 Entry `id` is the 32-bit word at 0x0D00 + 2 * id; ids: HDR F2837xS_pievect.h, hw_ints.h (INTx.1-8 from 0x20, INTx.9-16
 from 0x80).  Not modelled: the reserved entries; the table as words of
-memory.  What no modelled module raises never runs its entry.
+memory.  An entry whose interrupt no modelled module raises never runs.
 """
 
 # fmt: off

@@ -1,9 +1,11 @@
 """Registers of peripherals that are not modelled: `MemCfgRegs.LSxMSEL`, known by the names that C uses.
 
-What such a block holds is not described here, so any name is taken.  A program that touches one is told so at that
-place (`unmodelled`) and goes on.  CHOICE: a register, and each field of one by itself, is 0 at first and holds what is
-written to it, as configuration does; a whole register is an unsigned long, a field an unsigned int.  CHOICE: where a
-program waits for one and nothing else could end the wait, it becomes 0, then 1, then all ones: what most wait for.
+The content of such a block is not described here, so any name is accepted.  An access is reported at its statement
+(`unmodelled`), and the program continues.
+CHOICE: a register, and each field of one by itself, is 0 at first and holds what is written to it, as configuration
+does.  A whole register is an unsigned long, a field an unsigned int.
+CHOICE: if a program waits for one and nothing else could end the wait, it becomes 0, then 1, then all ones: most
+programs wait for one of these values.
 """
 
 from __future__ import annotations

@@ -1,17 +1,17 @@
 """The kernel's Clock: `ti.sysbios.knl.Clock`, tick mode PERIODIC (the C28x timer cannot do another).
 
 Modelled
-    The tick handler counts and posts the Clock Swi (priority 15), which replays every missed tick in order and, per
-    tick, walks the Clock objects in order of creation; one-shot and periodic objects without drift; a start counts
-    from the live tick, also from within a late Clock function; timeouts of `Task_sleep` and `Semaphore_pend` as
-    temporary objects at the end of the queue.
+    The tick handler counts, and posts the Clock Swi (priority 15).  The Swi replays every missed tick in order; for
+    each tick it walks the Clock objects in the order of their creation.  One-shot and periodic objects without drift.
+    A start counts from the present tick, also within a late Clock function.  Timeouts of `Task_sleep` and
+    `Semaphore_pend` are temporary objects at the end of the queue.
 Not modelled
     `Clock_setTicks`, `Clock_tickStop`, tick sources USER and NULL.  An object started with timeout 0
     while asserts are off would first fire when 32 bits wrap; here it fires after 2^32 ticks.
 Time
     `clock_tick` in the handler, `clock_work` and `clock_walk` per object in the Swi, `clock_call` per function
-    called. A tick at which nothing is due costs the same CPU cycles, but the queue is not walked: `_next_due` says
-    that it need not be.
+    called. A tick at which nothing is due costs the same CPU cycles, but the queue is not walked: `_next_due` tells
+    that no object is due.
 Sources
     BIOS; `knl/Clock.c` 6.83 (Clock_workFunc, Clock_startI, Clock_Instance_init), `knl/Clock.xdt` Clock_doTick.
 """

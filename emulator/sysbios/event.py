@@ -1,8 +1,9 @@
 """Events: `ti.sysbios.knl.Event`.
 
 Modelled
-    Sixteen bits; a pend that wants all bits of one mask, or any of another, and consumes what it matched; one task that
-    waits at a time; timeouts as those of semaphores; semaphores and mailboxes that keep a bit of an event up to date.
+    Sixteen bits; a pend on all bits of one mask or any bit of another, which consumes the bits that it matched; one
+    task that waits at a time; timeouts as those of semaphores; semaphores and mailboxes that keep a bit of an event up
+    to date.
 Time
     `event_pend` and `event_post` per call, `event_block` when the caller blocks.
 Sources

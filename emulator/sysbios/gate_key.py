@@ -1,9 +1,10 @@
 """Gates that disable something: `ti.sysbios.gates.GateTask`, `GateSwi`, `GateHwi`, `GateAll`.
 
 Modelled
-    To enter one is to disable the Task scheduler, the Swi scheduler or interrupts, whichever gate of its kind it is;
-    the key is theirs.  Who may not enter it.  A GateAll disables interrupts and the Swi scheduler; it keeps their keys
-    itself and hands out 0, or 1 to who enters it while it is entered: only the 0 leaves it.
+    To enter a gate disables the Task scheduler, the Swi scheduler or interrupts, by the kind of the gate and not by the
+    instance; the key is that of the disable function.  Which threads may not enter it.  A GateAll disables interrupts
+    and the Swi scheduler, and keeps their keys itself.  It returns 0, or 1 if it was entered already; only a leave with
+    0 leaves it.
 Time
     `gate_key` besides that of what is disabled.
 Sources

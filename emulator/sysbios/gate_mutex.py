@@ -2,9 +2,9 @@
 
 Modelled
     Nesting through the key alone (0 first, 1 nested); a counting semaphore of 1, so that waiters come in order of
-    arrival; `leave` by whoever calls it, without looking at the owner.
+    arrival; `leave` by any caller, without a check of the owner.
 Time
-    `gate_mutex` besides the call of the semaphore, which a nested `enter` or `leave` does not make.
+    `gate_mutex`, and the call of the semaphore, which a nested `enter` or `leave` does not make.
 Sources
     BIOS; `gates/GateMutex.c` 6.83 (GateMutex_enter, GateMutex_leave).
 """

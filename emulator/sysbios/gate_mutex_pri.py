@@ -2,9 +2,9 @@
 
 Modelled
     Nesting through the key alone (0 first, 1 nested); inheritance when a higher task actually waits; no transitivity;
-    `leave` by whoever calls it, without looking at the owner; a saved priority that drops the owner at any leave;
-    waiters by priority, FIFO among equals.  `order_fault` gives the behaviour of 6.37 and older: with a task waiting
-    already, the place of another depends on the low half of that task's address.
+    `leave` by any caller, without a check of the owner; a saved priority, to which any leave lowers the owner; waiters
+    by priority, FIFO among equals.  `order_fault` gives the behaviour of 6.37 and older: if a task waits already, the
+    place of another one depends on the low half of that task's address.
 Time
     `gate_enter`, `gate_leave`.
 Sources

@@ -1,10 +1,10 @@
 """Heaps of blocks of one size: `ti.sysbios.heaps.HeapBuf`.
 
 Modelled
-    A number of blocks in the caller's buffer, given out in the order in which they came back; the assertions;
+    A number of blocks in the caller's buffer, allocated in the order in which they were freed; the assertions;
     `HeapBuf_E_size`.  Any thread may call.
 Not modelled
-    The links of free blocks within the buffer: the heap keeps its list beside.  `getExtendedStats`.
+    The links of free blocks within the buffer: the heap keeps a list of its own.  `getExtendedStats`.
 Time
     `heap_service`.
 Sources

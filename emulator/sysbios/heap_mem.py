@@ -1,15 +1,16 @@
 """Heaps of blocks of any size: `ti.sysbios.heaps.HeapMem`.
 
 Modelled
-    First fit from the lowest address, blocks and buffer rounded to 4 words (a header of pointer and size) or to
-    `minBlockAlign`, alignment, the rest back into the list, neighbours joined when one is given back; the assertions;
-    `HeapMem_E_memory`.  The module's GateMutex: main and tasks only, and who comes while another is within waits.
-    A free block begins with its header: the next one and its size.  The default heap: `BIOS.heapSize` words.
+    First fit from the lowest address; blocks and buffer rounded to 4 words (a header of pointer and size) or to
+    `minBlockAlign`; alignment; the rest of a block returns to the list; a freed block is joined with its neighbours;
+    the assertions; `HeapMem_E_memory`.  The module's GateMutex: only main and tasks may call, and a task waits while
+    another one is inside.  A free block begins with its header: the next one and its size.  The default heap:
+    `BIOS.heapSize` words.
 Not modelled
-    That a header which the program writes over misleads the heap: it keeps its list beside.  That tasks, their stacks,
+    The effect of a header that the program overwrites: the heap keeps a list of its own.  That tasks, their stacks,
     mailboxes and the other objects of `*_create` are taken out of the default heap.  `primaryHeap`, other gates.
 Time
-    `heap_service`, `heap_look` for each free block that is looked at, and the gate's.
+    `heap_service`, `heap_look` for each free block that is examined, and that of the gate.
 Sources
     BIOS; `heaps/HeapMem.c`, `heaps/HeapMem.xs`, `BIOS.xdc` (heapSize) 6.83.
 """

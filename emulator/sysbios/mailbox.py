@@ -1,10 +1,11 @@
 """Mailboxes: `ti.sysbios.knl.Mailbox`.
 
 Modelled
-    A number of messages of one size, copied in and out; a semaphore that counts messages and one that counts places, so
-    that order of waiters and timeouts are theirs; events of reader and writer.
+    A number of messages of one size, copied in and out; a semaphore that counts messages and one that counts free
+    places, which give the order of waiters and the timeouts; events of reader and writer.
 Not modelled
-    That messages lie in a buffer which C can see: one that is passed as `buf` is measured and left alone.
+    The messages in a buffer that C can see: the size of a buffer that is passed as `buf` is checked, and the buffer
+    stays unchanged.
 Time
     That of two semaphore calls, `mailbox_copy`, and `mailbox_word` for each word copied.
 Sources

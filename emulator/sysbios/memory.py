@@ -1,12 +1,12 @@
 """The functions that allocate from heaps: `xdc.runtime.Memory`, and the `malloc` of C's library.
 
 Modelled
-    The default heap behind NULL, the default alignment behind 0, `Error_E_memory` when a heap gave nothing and raised
-    nothing of its own.  `malloc` and its kin on the default heap, with a header of 4 words before each block that says
-    where it begins and how long it is; what `free` finds there is what it gives back, right or wrong.  The size with
-    the header wraps at 32 bits: `malloc(-1)` gives a block in which no word may be used.
+    NULL selects the default heap, 0 the default alignment; `Error_E_memory` if a heap had no block and raised no error
+    of its own.  `malloc` and its kin on the default heap: a header of 4 words before each block holds its begin and
+    length.  `free` returns what the header says, right or wrong.  The size with the header wraps at 32 bits:
+    `malloc(-1)` gives a block in which no word may be used.
 Not modelled
-    `memalign`, `aligned_alloc`, `Memory_query`.  A program without SYS/BIOS has a heap of its linker's (`.esysmem`)
+    `memalign`, `aligned_alloc`, `Memory_query`.  A program without SYS/BIOS has the heap of its linker (`.esysmem`)
     with an algorithm of its own: CHOICE, it gets this one.
 Time
     That of the heap; `memory_word` for each word that is set or copied.

@@ -1,11 +1,11 @@
 """Queues: `ti.sysbios.knl.Queue`.
 
 Modelled
-    Doubly linked lists through the `Queue_Elem` that an element begins with.  Queue and links lie in the memory of the
-    C program: an empty queue gives itself, an element that is put twice or into two queues breaks both, and one that
-    has gone with its function's frame takes its links along.
+    Doubly linked lists through the `Queue_Elem` at the begin of each element.  Queue and links are in the memory of the
+    C program.  So an empty queue gives itself, an element that is put twice or into two queues breaks both, and the
+    links of an element in a function's frame end with the frame.
 Not modelled
-    That the object comes from a heap: CHOICE, it stands beside the objects of the image.
+    That the object comes from a heap.  CHOICE: it has an address beside the objects of the image.
 Time
     `queue_link` for what changes links, `queue_look` for what reads them.
 Sources

@@ -1,9 +1,9 @@
 """Semaphores: `ti.sysbios.knl.Semaphore`.
 
 Modelled
-    Counting and binary, FIFO or by priority at the time of the pend; a post gives itself to the first waiter without
-    counting; timeouts through Clock, resolved against a post so that exactly one wins; the count's 16 bits and their
-    assertion; an event that follows the count.  CHOICE: `Semaphore.supportsEvents` is on for whoever gives an event.
+    Counting and binary, FIFO or by priority at the time of the pend; a post wakes the first waiter and does not count;
+    timeouts through Clock (of a timeout and a post, exactly one takes effect); the count's 16 bits and their assertion;
+    an event that follows the count.  CHOICE: `Semaphore.supportsEvents` is on for a semaphore with an event.
 Time
     `semaphore_pend` and `semaphore_post` per call, `semaphore_block` when the caller blocks.
 Sources

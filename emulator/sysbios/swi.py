@@ -1,10 +1,10 @@
 """Software interrupts: `ti.sysbios.knl.Swi`.
 
 Modelled
-    Priorities 0..15, FIFO within one, higher ones pre-empt; a Swi that is posted already is not posted again, its
+    Priorities 0..15, FIFO within one, higher ones pre-empt; a Swi that is posted already is not posted again, and its
     flag is cleared just before its function runs; triggers (`or`, `inc` always post; `andn`, `dec` post when the
-    trigger becomes 0); `Swi_disable` holds back Swis and task switches; all Swis run on the system stack, with
-    interrupts enabled.
+    trigger becomes 0); `Swi_disable` delays Swis and task switches; all Swis run on the system stack, with interrupts
+    enabled.
 Not modelled
     Hooks, `Swi_raisePri`, `Swi_setAttrs`.
 Time

@@ -1,17 +1,16 @@
 """`xdc.runtime.System`: formatted output with its exact format grammar, and the end of the program.
 
 Modelled
-    `% [-] [0] [width|*] [.prec|.*] [l|L] conv` in this order; d i u x o p c s, `$S` and `$F`; anything else printed
-    as it stands, without taking an argument (`%f` takes its double and prints `f`, unless `%f` is in
-    `extended_formats`: then four digits, cut off); arguments read by words (varargs.py); SysMin's circular buffer,
-    not visible before a flush.
+    `% [-] [0] [width|*] [.prec|.*] [l|L] conv` in this order; d i u x o p c s, `$S` and `$F`.  Anything else is printed
+    unchanged and takes no argument; `%f` takes its double and prints `f`, or four digits, cut off, if `%f` is in
+    `extended_formats`.  Arguments are read by words (varargs.py).  SysMin's circular buffer, which becomes visible at a
+    flush.
 Not modelled
-    `$L` (labels), `System_aprintf`, `System_atexit`.  The 16-word conversion buffer on the stack: passing its end
-    with a zero padding above 16 is reported (`printf-outbuf`), the characters come out as if there were room
-    (CHOICE).
+    `$L` (labels), `System_aprintf`, `System_atexit`.  The 16-word conversion buffer on the stack: a zero padding above
+    16 passes its end, which is reported (`printf-outbuf`); CHOICE: the characters are printed as if there were room.
 Time
-    `print_call`, and per character, conversion and digit as they are produced: a print can be pre-empted between two
-    conversions.
+    `print_call`, and the time of each character, conversion and digit when it is produced: a print can be pre-empted
+    between two conversions.
 Sources
     XDCtools 3.24 `xdc/runtime/System.c` (System_doPrint, System_formatNum), `System.xdt` (printfExtend), `Text.c`
     (putSite).

@@ -8,7 +8,7 @@ Modelled
 Not modelled
     Hooks, `Task_setEnv`, `Task.deleteTerminatedTasks`, the memory protection of later versions.
 Time
-    `task_switch` per switch, with interrupts off; what is due meanwhile runs as soon as the new task is in place.
+    `task_switch` per switch, with interrupts off; an interrupt that is due meanwhile runs when the switch is complete.
 Sources
     BIOS; `knl/Task.c` 6.83 (Task_schedule, Task_setPri, Task_yield, Task_sleep, Task_blockI, Task_unblockI).
 """

@@ -5,7 +5,7 @@ Modelled
     floor(kHz * microseconds / 1000), without the usual -1, so that the period is one count longer.
 Time
     A tick that finds the CPU idle and no Clock function due takes the same cycles every time: core, dispatcher,
-    handler, Clock Swi.  Where nothing else falls into them, such ticks are taken in one step (`pass_idle_ticks`).
+    handler, Clock Swi.  If nothing else happens during them, such ticks are taken in one step (`pass_idle_ticks`).
 Not modelled
     `Timer_create` for firmware, prescaler, one-shot mode.
 Sources

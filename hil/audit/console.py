@@ -35,7 +35,7 @@ CLICK_S: Final = 0.1
 
 
 def run_console(bench: Bench, script: Script, corrected: frozenset[str]) -> Desk:
-    """The console on a booted robot, faithful if nothing is corrected."""
+    """Run the console on a booted robot, faithful if nothing is corrected."""
     program = at_hand()
     if not corrected and program is not None:
         return Desk(bench, script).run(lambda desk: ConsoleProgram(desk).run(program))
@@ -43,7 +43,7 @@ def run_console(bench: Bench, script: Script, corrected: frozenset[str]) -> Desk
 
 
 def _shown(script: Script, look: Callable[[Bench, Desk], Evidence], fixes: Fixes) -> Evidence:
-    """What `look` sees after a script, with the firmware and console for `fixes`."""
+    """Return what `look` sees after a script, with the firmware and console for `fixes`."""
     variant = Variant.of(fixes)
     corrected = IDS if ALL in variant else variant.fixes & IDS
     # The behaviour of the console is measured, so the firmware need not be watched.
@@ -52,7 +52,7 @@ def _shown(script: Script, look: Callable[[Bench, Desk], Evidence], fixes: Fixes
 
 
 def distance(bench: Bench, duration_s: float) -> float:
-    """How far the robot goes (m) in the next seconds, without an order."""
+    """Return how far the robot goes (m) in the next seconds, without an order."""
     bench.world.sync_now()
     before = bench.world.travelled_m
     bench.run_for(duration_s)
@@ -61,21 +61,21 @@ def distance(bench: Bench, duration_s: float) -> float:
 
 
 def speed(bench: Bench) -> Series:
-    """Along the true path."""
+    """Return the speed along the true path."""
     steps = [(a, b) for a, b in pairwise(bench.true_path()[::5]) if b.time_s > a.time_s]
     speeds = [math.dist((a.x_m, a.y_m), (b.x_m, b.y_m)) / (b.time_s - a.time_s) for a, b in steps]
     return Series("speed", [b.time_s for _, b in steps], speeds)
 
 
 def _still_drives(what: str, bench: Bench, _desk: Desk) -> Evidence:
-    """A second later, for two seconds."""
+    """Measure the distance of two seconds that begin a second from now."""
     bench.run_for(1.0)
     evidence = measured(f"way in 2 s, a second after {what}", distance(bench, 2.0), "m", high=STANDS_M)
     return evidence.shown(Picture("The robot's true speed", "time in s", "speed in m/s", [speed(bench)]))
 
 
 def _frames(desk: Desk) -> list[tuple[float, OdometryFrame]]:
-    """The whole frames that the robot sent."""
+    """Return the whole frames that the robot sent."""
     decoder = FrameDecoder()
     return [(time_s, frame) for time_s, data in desk.frames for frame in decoder.feed(data)]
 

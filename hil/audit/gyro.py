@@ -27,7 +27,7 @@ RAD_S_DIGITS: Final = round(1.0 / properties.RAD_S_PER_DIGIT)
 
 
 def _scripted(fixes: Fixes, axis: int = Z, raw: int = 0, **options: Any) -> tuple[Rig, ScriptedGyro]:
-    """SPI-A set up, and a slave that shows `raw` on one axis."""
+    """Set SPI-A up, with a slave that gives `raw` on one axis."""
     rig = _rig(fixes, **options)
     gyro = rig.scripted_gyro()
     gyro.set_axis(axis, raw)
@@ -36,7 +36,7 @@ def _scripted(fixes: Fixes, axis: int = Z, raw: int = 0, **options: Any) -> tupl
 
 
 def _rates(rig: Rig, gyro: ScriptedGyro, most_rad_s: float) -> Picture:
-    """The results of get_GYRO for rates up to `most_rad_s` in both directions."""
+    """Return the results of get_GYRO for rates up to `most_rad_s` in both directions."""
     true = [most_rad_s * i / 50 for i in range(-50, 51)]
     read = [properties.rate_read(rig, gyro, Z, round(rate / properties.RAD_S_PER_DIGIT)) for rate in true]
     lines = [Series("get_GYRO", true, read), Series("true", true, true)]
@@ -65,19 +65,19 @@ class DisturbedSpiSlave:
 
 
 def global_names(fixes: Fixes) -> Evidence:
-    """The typed tree of the image."""
+    """Look for the names in the typed tree of the image."""
     return reported(_rig(fixes).findings, "hidden-name", function="readReg")
 
 
 def fifo_bypassed(fixes: Fixes) -> Evidence:
-    """Init_GYRO on the sensor."""
+    """Run Init_GYRO on the sensor."""
     rig = _rig(fixes)
     rig.fw.gyro.Init_GYRO()
     return reported(rig.findings, "fifo-bypassed", function="Init_GYRO")
 
 
 def write_unchecked(fixes: Fixes) -> Evidence:
-    """One disturbed byte during Init_GYRO."""
+    """Disturb one byte during Init_GYRO."""
     rig = _rig(fixes)
     rig.board.spi_bus["A"].attach(rig.board.pins[GYRO_CS_GPIO], DisturbedSpiSlave(rig.board.gyro))
     rig.fw.gyro.Init_GYRO()
@@ -86,14 +86,14 @@ def write_unchecked(fixes: Fixes) -> Evidence:
 
 
 def turn_on(fixes: Fixes) -> Evidence:
-    """Init_GYRO on a sensor that was just switched on."""
+    """Run Init_GYRO on a sensor that was just switched on."""
     rig = _rig(fixes)
     rig.fw.gyro.Init_GYRO()
     return reported(rig.findings, "startup-read", function="Init_GYRO")
 
 
 def xy_off(fixes: Fixes) -> Evidence:
-    """A read of the X axis after Init_GYRO."""
+    """Read the X axis after Init_GYRO."""
     rig = _rig(fixes)
     rig.fw.gyro.Init_GYRO()
     rig.fw.gyro.getX()
@@ -101,7 +101,7 @@ def xy_off(fixes: Fixes) -> Evidence:
 
 
 def sum16(fixes: Fixes) -> Evidence:
-    """A zero-rate level of 3.5 deg/s, 400 digits."""
+    """Calibrate with a zero-rate level of 3.5 deg/s, which is 400 digits."""
     sums: list[int] = []
 
     def sample() -> int:
@@ -115,13 +115,13 @@ def sum16(fixes: Fixes) -> Evidence:
 
 
 def starves_at_start(fixes: Fixes) -> Evidence:
-    """The robot's start-up."""
+    """Run the robot's start-up."""
     with robot(fixes) as bench:
         return reported(bench.findings, "starvation", function="Init_GYRO")
 
 
 def bias_unsigned(fixes: Fixes) -> Evidence:
-    """A bias of -100 digits and a sample of 50."""
+    """Read a sample of 50 digits with a bias of -100."""
     rig, _ = _scripted(fixes, raw=50)
     rig.fw.gyro.Z_Calib_b = -100.0
     rig.fw.gyro.getZ()
@@ -129,7 +129,7 @@ def bias_unsigned(fixes: Fixes) -> Evidence:
 
 
 def offset_wraps(fixes: Fixes) -> Evidence:
-    """A sample near full scale, an offset of -200 digits."""
+    """Read a sample near full scale with an offset of -200 digits."""
     rig, _ = _scripted(fixes, raw=32700)
     rig.fw.gyro.Z_dc_offset = -200
     rig.fw.gyro.getZ()
@@ -137,12 +137,12 @@ def offset_wraps(fixes: Fixes) -> Evidence:
 
 
 def temperature_unused(fixes: Fixes) -> Evidence:
-    """The image's call graph."""
+    """Look for calls in the call graph of the image."""
     return reported(Rig(fixes).findings, "never-called", object="getTemp")
 
 
 def temperature_sign(fixes: Fixes) -> Evidence:
-    """A register of -10, that is 0xF6."""
+    """Read a temperature register of -10, which is 0xF6."""
     rig, gyro = _scripted(fixes)
     values, read = range(-60, 61, 5), []
     for value in values:
@@ -155,7 +155,7 @@ def temperature_sign(fixes: Fixes) -> Evidence:
 
 
 def offset_one_sample(fixes: Fixes) -> Evidence:
-    """Offset_GYRO on the sensor, awake for a second."""
+    """Run Offset_GYRO on a sensor that has been on for a second."""
     rig = _rig(fixes, ideal=False, keep_locals=True)
     rig.fw.gyro.Init_GYRO()
     rig.findings.clear()
@@ -166,7 +166,7 @@ def offset_one_sample(fixes: Fixes) -> Evidence:
 
 
 def offset_moving(fixes: Fixes) -> Evidence:
-    """A robot that is turned to and fro about 20 deg/s while TaskGYRO starts, and then stands: the gyro reads 100."""
+    """Turn the robot back and forth at about 20 deg/s while TaskGYRO starts; at rest the gyro then reads 100."""
     reads = count()
 
     def sample() -> int:
@@ -180,20 +180,20 @@ def offset_moving(fixes: Fixes) -> Evidence:
 
 
 def offset_unknown_axis(fixes: Fixes) -> Evidence:
-    """An axis that GYRO.h does not have."""
+    """Ask for the offset of an axis that GYRO.h does not have."""
     rig, _ = _scripted(fixes)
     rig.fw.gyro.Offset_GYRO(3)
     return reported(rig.findings, "no-case", function="Offset_GYRO")
 
 
 def scale(fixes: Fixes) -> Evidence:
-    """A rotation of 1 rad/s."""
+    """Measure a rotation of 1 rad/s."""
     rig, gyro = _scripted(fixes)
     return properties.rotation_scale(rig, gyro, Z, RAD_S_DIGITS).shown(_rates(rig, gyro, 4.0))
 
 
 def radians(fixes: Fixes) -> Evidence:
-    """The driver's own degrees against its radians."""
+    """Compare the driver's own degrees with its radians."""
     rig, _ = _scripted(fixes, Z, RAD_S_DIGITS, keep_locals=True)
     rig.fw.gyro.get_GYRO(Z, 0.0)
     values = rig.fw.last_locals("gyro.get_GYRO")
@@ -202,26 +202,26 @@ def radians(fixes: Fixes) -> Evidence:
 
 
 def xy_result(fixes: Fixes) -> Evidence:
-    """A rotation about X."""
+    """Measure a rotation about X."""
     rig, _ = _scripted(fixes, X, RAD_S_DIGITS)
     rig.fw.gyro.get_GYRO(X, 0.0)
     return reported(rig.findings, "uninitialised", function="get_GYRO", object="Wabs")
 
 
 def clockwise_zero(fixes: Fixes) -> Evidence:
-    """A rotation of -1 rad/s."""
+    """Measure a rotation of -1 rad/s."""
     rig, gyro = _scripted(fixes)
     return properties.rotation_sign(rig, gyro, Z, -RAD_S_DIGITS).shown(_rates(rig, gyro, 4.0))
 
 
 def dead_band(fixes: Fixes) -> Evidence:
-    """A slow rotation: 59 digits are 0.009 rad/s."""
+    """Measure a slow rotation: 59 digits are 0.009 rad/s."""
     rig, gyro = _scripted(fixes)
     return properties.rotation_sign(rig, gyro, Z, 59).shown(_rates(rig, gyro, 0.03))
 
 
 def unknown_axis(fixes: Fixes) -> Evidence:
-    """An axis that GYRO.h does not have."""
+    """Ask for the rate of an axis that GYRO.h does not have."""
     rig, _ = _scripted(fixes)
     rig.fw.gyro.get_GYRO(3, 0.0)
     # Once every case gives the result a value, the missing case alone is the cause, and is what is told.
@@ -230,7 +230,7 @@ def unknown_axis(fixes: Fixes) -> Evidence:
 
 
 def answer_unchecked(fixes: Fixes) -> Evidence:
-    """Nobody answers on the gyro's bus during a mission; two tasks' periods and a turn of the wheels are 0.2 s."""
+    """Silence the gyro's bus during a mission.  Two tasks' periods and a turn of the wheels take 0.2 s."""
     distance_m = main_robot_guards.distance_despite(fixes, "gyro-miso-stuck:level=1", 0.3)
     return measured("way in a second, 0.3 s after the gyro fell silent", distance_m, "m", high=0.005)
 

@@ -16,7 +16,7 @@ PRESSED, FREE = 0, 1
 
 
 def clock_before_task(fixes: Fixes) -> Evidence:
-    """The releases that wait for TaskGYRO and TaskODO while Init_GYRO takes its two seconds."""
+    """Count the releases that wait for TaskGYRO and TaskODO while Init_GYRO takes its two seconds."""
     times: list[float] = []
     waiting: dict[str, list[int]] = {"TaskGYRO": [], "TaskODO": []}
     with robot(fixes, boot=False, static=False) as bench:
@@ -34,7 +34,7 @@ def clock_before_task(fixes: Fixes) -> Evidence:
 
 
 def us_period(fixes: Fixes) -> Evidence:
-    """Three seconds of reading the sonars."""
+    """Let the robot read the sonars for three seconds."""
     with robot(fixes, watch=False, static=False) as bench:
         bench.findings.clear()
         bench.run_for(3.0)
@@ -42,7 +42,7 @@ def us_period(fixes: Fixes) -> Evidence:
 
 
 def gyro_period(fixes: Fixes) -> Evidence:
-    """Three seconds of reading the gyro, after the releases of start-up are worked off."""
+    """Let the robot read the gyro for three seconds, after the releases of start-up are done."""
     with robot(fixes, watch=False, static=False) as bench:
         bench.run_for(1.0)
         bench.findings.clear()
@@ -51,13 +51,13 @@ def gyro_period(fixes: Fixes) -> Evidence:
 
 
 def us_first_read(fixes: Fixes) -> Evidence:
-    """The first distances after power-up."""
+    """Read the first distances after power-up."""
     with robot(fixes, watch=False, static=False) as bench:
         return reported(bench.findings, "startup-read", object="sonar")
 
 
 def calib_task(fixes: Fixes) -> Evidence:
-    """The last period of the five seconds of CALIBRATION, beside TaskGYRO on the same bus."""
+    """Run the last period of the five seconds of CALIBRATION, while TaskGYRO uses the same bus."""
     with robot(fixes, static=False) as bench:
         bench.run_for(0.8)
         bench.firmware.main_robot.cuenta_gyro = 101
@@ -67,8 +67,8 @@ def calib_task(fixes: Fixes) -> Evidence:
 
 
 def calib_span(fixes: Fixes) -> Evidence:
-    """The robot turns when the order comes and rests half a second later; somebody rocks it once a second by 50 digits
-    around an offset of 100, which five seconds average away."""
+    """Calibrate while the robot still turns for half a second, and is then rocked once a second by 50 digits around an
+    offset of 100, which five seconds average away."""
     period = -1
 
     def navigation() -> None:
@@ -88,7 +88,7 @@ def calib_span(fixes: Fixes) -> Evidence:
 
 
 def calib_repeats(fixes: Fixes) -> Evidence:
-    """A calibration that takes its time at rest, and after it 7 s in somebody's hands; another order has not come."""
+    """Calibrate at rest, then move the robot by hand for 7 s without another order."""
     period = -1
 
     def navigation() -> None:
@@ -106,7 +106,7 @@ def calib_repeats(fixes: Fixes) -> Evidence:
 
 
 def calib_resumed(fixes: Fixes) -> Evidence:
-    """Three seconds of a calibration, a STOP, and how long the next one takes."""
+    """Calibrate for three seconds, send a STOP, and measure how long the next calibration takes."""
     rig = TaskRig(fixes, Read_Bumper=lambda: FREE, getZ=lambda: 0)
     main, states = rig.fw.main_robot, rig.fw.robot_types.STATUS
     for state, periods in ((states.CALIBRATION, 60), (states.STOP, 1)):
@@ -122,18 +122,18 @@ def calib_resumed(fixes: Fixes) -> Evidence:
 
 
 def unused_objects(fixes: Fixes) -> Evidence:
-    """Objects at file scope that no statement mentions."""
+    """Look for objects at file scope that no statement uses."""
     names = {f"main_robot.{name}" for name in ("d", "Iwl", "Iwr", "Wl_ref_pi", "Wr_ref_pi")}
     return reported([f for f in TaskRig(fixes).findings if f.object in names], "unused-object")
 
 
 def titaref_unread(fixes: Fixes) -> Evidence:
-    """What TaskNAVIGATION sets is hidden where it would be read."""
+    """Look for `titaref` in Position, where another name hides the object that TaskNAVIGATION sets."""
     return reported(TaskRig(fixes).findings, "hidden-name", function="Position", object="titaref")
 
 
 def _navigate(fixes: Fixes, turns: int, status: str, bumper: int = FREE, **objects: Any) -> tuple[TaskRig, list[float]]:
-    """TaskNAVIGATION in a state; returns every speed (m/s) that it hands on to TaskSERVO."""
+    """Run TaskNAVIGATION in a state; return every speed (m/s) that it passes to TaskSERVO."""
     speeds: list[float] = []
     rig = TaskRig(
         fixes, Read_Bumper=lambda: bumper, getZ=lambda: 0, age_US=lambda: 0,  # TaskUS does not turn here
@@ -149,7 +149,7 @@ def _navigate(fixes: Fixes, turns: int, status: str, bumper: int = FREE, **objec
 
 
 def bump_clears(fixes: Fixes) -> Evidence:
-    """Ten periods against an obstacle: the mission has to know that, to reverse after sixty."""
+    """Press the bumper for ten periods: the mission must know it, to reverse after sixty."""
     rig, _ = _navigate(fixes, 10, "MISSION", PRESSED)
     return measured(
         "periods that the mission knows of, of ten with the bumper pressed", rig.fw.main_robot.caso2, low=10
@@ -157,31 +157,31 @@ def bump_clears(fixes: Fixes) -> Evidence:
 
 
 def tele_twice(fixes: Fixes) -> Evidence:
-    """The speeds that TaskSERVO may see while the bumper is pressed and the console wants 0.2 m/s."""
+    """List the speeds that TaskSERVO may see while the bumper is pressed and the console orders 0.2 m/s."""
     _, speeds = _navigate(fixes, 5, "TELEMANIPULATION", PRESSED, tele_v=0.2)
     return measured("greatest speed handed on with the bumper pressed", max(speeds), "m/s", high=0.0)
 
 
 def bump_holds(fixes: Fixes) -> Evidence:
-    """The console drives backwards, away from the obstacle."""
+    """Order the robot to drive backwards, away from the obstacle."""
     _, speeds = _navigate(fixes, 5, "TELEMANIPULATION", PRESSED, tele_v=-0.1)
     return measured("speed when the console backs off from an obstacle", speeds[-1], "m/s", high=-0.09)
 
 
 def state_reset(fixes: Fixes) -> Evidence:
-    """Before an obstacle the mission is in FRENTE (2); the bumper adds nothing to that."""
+    """Press the bumper before an obstacle, where the mission is in FRENTE (2): the state must stay."""
     rig, _ = _navigate(fixes, 1, "MISSION", PRESSED, EstadoNav=2)
     return measured("EstadoNav with the bumper pressed after FRENTE", rig.fw.main_robot.EstadoNav, low=2, high=2)
 
 
 def mission_resumed(fixes: Fixes) -> Evidence:
-    """A mission that was stopped after 50 of the 60 periods that it waits before an obstacle."""
+    """Stop a mission after 50 of the 60 periods that it waits before an obstacle."""
     rig, _ = _navigate(fixes, 1, "STOP", caso=50)
     return measured("periods of waiting left from the mission before", rig.fw.main_robot.caso, high=0)
 
 
 def _orders(fixes: Fixes, *frames: str, posts: int = 0, **externs: Callable[..., Any]) -> TaskRig:
-    """TaskORD with these frames received one by one."""
+    """Run TaskORD on these frames, which arrive one by one."""
     queue = list(frames)
 
     def read_frame(data: Any) -> None:
@@ -202,21 +202,21 @@ def _orders(fixes: Fixes, *frames: str, posts: int = 0, **externs: Callable[...,
 
 
 def order_twice(fixes: Fixes) -> Evidence:
-    """Two frames arrive before TaskORD runs: two posts, one frame left in XBee.c."""
+    """Receive two frames before TaskORD runs: there are two posts, but one frame is left in XBee.c."""
     states: list[int] = []
     _orders(fixes, "#STOP\r", posts=2, write_STATUS=states.append)
     return measured("executions of one frame", len(states), low=1, high=1)
 
 
 def stop_keeps_reference(fixes: Fixes) -> Evidence:
-    """The reference that the next TELE starts with."""
+    """Measure the reference with which the next TELE starts."""
     rig = _orders(fixes, "#TELE\r", "#SETR0.2,0.1\r", "#STOP\r", "#TELE\r")
     speed = rig.fw.servidores.Telemanipulation_Reference.V
     return measured("speed with which TELE begins after STOP", speed, "m/s", low=0.0, high=0.0)
 
 
 def reference_outlives(fixes: Fixes) -> Evidence:
-    """The reference that TELE starts with after a SETR in another state, and after a mission."""
+    """Measure the reference with which TELE starts after a SETR in another state, and after a mission."""
     before = ("#SETR0.2,0.1\r",), ("#TELE\r", "#SETR0.2,0.1\r", "#MISN\r")
     speeds = [float(_orders(fixes, *orders, "#TELE\r").fw.servidores.Telemanipulation_Reference.V) for orders in before]
     what = "greatest speed with which TELE begins after SETR in STOP, or a mission"
@@ -224,14 +224,14 @@ def reference_outlives(fixes: Fixes) -> Evidence:
 
 
 def init_reference(fixes: Fixes) -> Evidence:
-    """The same after INIT."""
+    """Measure the reference with which TELE starts after INIT."""
     rig = _orders(fixes, "#TELE\r", "#SETR0.2,0.1\r", "#INIT\r", "#TELE\r")
     speed = rig.fw.servidores.Telemanipulation_Reference.V
     return measured("speed with which TELE begins after INIT", speed, "m/s", low=0.0, high=0.0)
 
 
 def odo_commanded(fixes: Fixes) -> Evidence:
-    """0.3 m/s is ordered for 0.1 s of each period of TaskODO, which looks once."""
+    """Order 0.3 m/s for 0.1 s of each period of TaskODO, which reads the reference once."""
     with robot(fixes, world="room", watch=False, static=False) as bench:
         bench.run_for(0.8)
         bench.feed(b"#TELE\r")
@@ -253,7 +253,8 @@ def odo_commanded(fixes: Fixes) -> Evidence:
 
 
 def odo_race(fixes: Fixes) -> Evidence:
-    """TaskODO uses the references that TaskNAVIGATION, above it, writes; the three distances are the same matter."""
+    """Find TaskODO's use of references that TaskNAVIGATION, a higher task, writes; the three distances have the same
+    defect."""
     with robot(fixes, static=False) as bench:
         bench.run_for(1.0)
         bench.feed(b"#MISN\r")
@@ -262,7 +263,7 @@ def odo_race(fixes: Fixes) -> Evidence:
 
 
 def init_others(fixes: Fixes) -> Evidence:
-    """Objects of TaskSERVO and TaskUS, which run above TaskNAVIGATION and share no gate with it."""
+    """Find objects of TaskSERVO and TaskUS, which are above TaskNAVIGATION and share no gate with it."""
     theirs = ("Wl", "Wr", "Wl_ref", "Wr_ref", "U_l", "U_r", "Left_distance", "Front_distance", "Right_distance")
     with robot(fixes, static=False) as bench:
         bench.run_for(0.8)
@@ -273,7 +274,7 @@ def init_others(fixes: Fixes) -> Evidence:
 
 
 def init_odometry(fixes: Fixes) -> Evidence:
-    """INITIALITATION is to make everything new; the pose is what the user sees of it."""
+    """Order INITIALITATION, which must reset everything; the user sees the pose."""
     rig = TaskRig(fixes)
     pose = rig.fw.servidores.ROBOT_Odometry_T
     pose.X, pose.Y, pose.tita = 500.0, 300.0, 1.0
@@ -283,7 +284,7 @@ def init_odometry(fixes: Fixes) -> Evidence:
 
 
 def init_distances(fixes: Fixes) -> Evidence:
-    """What the frames hold half a second after INIT, in the middle of a room."""
+    """Read the distances in the frames half a second after INIT, in the middle of a room."""
     with robot(fixes, world="room", watch=False, static=False) as bench:
         bench.run_for(0.8)
         bench.feed(b"#INIT\r")

@@ -19,7 +19,8 @@ PERIOD_S: Final = 0.05
 
 
 def distance_despite(fixes: Fixes, fault: str, within_s: float, *, orders: bytes = b"#MISN\r") -> float:
-    """How far the wheels roll in the second that begins `within_s` after a fault (m); the robot drives by then."""
+    """Return how far the wheels roll (m) in the second that begins `within_s` after a fault; the robot drives by then.
+    """
     with robot(fixes, watch=False, static=False) as bench:
         bench.run_for(0.8)
         bench.feed(orders)
@@ -40,14 +41,14 @@ _STANDS_M: Final = 0.005
 
 
 def watchdog(fixes: Fixes) -> Evidence:
-    """TaskNAVIGATION hangs for ten seconds: it may be three periods late, the reset comes 105 ms later, and the wheels
-    coast for some 0.3 s."""
+    """Hang TaskNAVIGATION for ten seconds.  It may be three periods late, the reset comes 105 ms later, and the wheels
+    coast for about 0.3 s."""
     distance_m = distance_despite(fixes, "task-slow:task=TaskNAVIGATION,us=1e7", 0.9)
     return measured("way in a second, 0.9 s after TaskNAVIGATION hangs", distance_m, "m", high=_STANDS_M)
 
 
 def distance_unchecked(fixes: Fixes) -> Evidence:
-    """The front distance is no number, which is no reason to drive."""
+    """Make the front distance NaN: the robot must not drive."""
     speeds: list[float] = []
     rig = TaskRig(
         fixes, Read_Bumper=lambda: FREE, getZ=lambda: 0,
@@ -61,25 +62,26 @@ def distance_unchecked(fixes: Fixes) -> Evidence:
 
 
 def front_stuck(fixes: Fixes) -> Evidence:
-    """The front sonar says 2 m, whatever stands there: 25 cm at 0.15 m/s are 1.7 s."""
+    """Fix the front sonar at 2 m, whatever is there: 25 cm at 0.15 m/s take 1.7 s."""
     distance_m = distance_despite(fixes, "sonar-stuck:sensor=FRONT,range=2", 2.5)
     return measured("way in a second, 2.5 s after the front sonar is stuck", distance_m, "m", high=_STANDS_M)
 
 
 def link_silent(fixes: Fixes) -> Evidence:
-    """SETR, and nothing more: 3 s later."""
+    """Send SETR and nothing more; look 3 s later."""
     distance_m = distance_despite(fixes, "", 2.0, orders=b"#TELE\r#SETR0.1,0.0\r")
     return measured("way in a second, 3 s after the last order", distance_m, "m", high=_STANDS_M)
 
 
 def turn_unchecked(fixes: Fixes) -> Evidence:
-    """The gyro is at the end of its range, 250 degrees/s; a difference of 0.4 rad/s is to be seen within 0.5 s."""
+    """Hold the gyro at the end of its range, 250 degrees/s: the robot must notice a difference of 0.4 rad/s within 0.5
+    s."""
     distance_m = distance_despite(fixes, "gyro-saturation:sign=+", 0.5)
     return measured("way in a second, 0.5 s after the gyro is at its end", distance_m, "m", high=_STANDS_M)
 
 
 def actuator_limits(fixes: Fixes) -> Evidence:
-    """A bit of the reference has flipped: 100 m/s.  0.3 m/s are 11.2 rad/s of a wheel of 27 mm."""
+    """Flip a bit of the reference, which becomes 100 m/s.  0.3 m/s are 11.2 rad/s of a wheel of 27 mm."""
     rig = TaskRig(fixes)
     rig.fw.servidores.ROBOT_Reference.V = 100.0
     rig.turns("TaskSERVO")
@@ -87,13 +89,13 @@ def actuator_limits(fixes: Fixes) -> Evidence:
 
 
 def wheel_unchecked(fixes: Fixes) -> Evidence:
-    """The left wheel is held; 0.4 s, a period of TaskNAVIGATION and one of TaskSERVO later the right one stands too."""
+    """Hold the left wheel.  The right one must stop 0.4 s, a period of TaskNAVIGATION and one of TaskSERVO later."""
     distance_m = distance_despite(fixes, "wheel-blocked:side=left", 0.7)
     return measured("way of a wheel in a second, 0.7 s after the other is held", distance_m, "m", high=_STANDS_M)
 
 
 def _slanted() -> WorldMap:
-    """A hall too wide for the sonars; the middle of a wall is 50 cm from the start, 50 degrees to the left."""
+    """A hall that is too wide for the sonars; the middle of a wall is 50 cm from the start, 50 degrees to the left."""
     hall = (-6.0, -6.0), (6.0, -6.0), (6.0, 6.0), (-6.0, 6.0), (-6.0, -6.0)
     x, y = 0.5 * cos(radians(50.0)), 0.5 * sin(radians(50.0))
     wall = Segment(x + 5 * y, y - 5 * x, x - 5 * y, y + 5 * x)
@@ -104,7 +106,8 @@ _SLANTED: Final = _slanted()
 
 
 def push_unnoticed(fixes: Fixes) -> Evidence:
-    """A mission towards a wall at 50 degrees, which the front sonar does not hear: it is there after some 4 s."""
+    """Drive a mission towards a wall at 50 degrees, which the front sonar does not detect; it arrives after about 4 s.
+    """
     with robot(fixes, world_map=_SLANTED, watch=False, static=False) as bench:
         bench.run_for(0.8)
         bench.feed(b"#MISN\r")
@@ -118,7 +121,7 @@ def push_unnoticed(fixes: Fixes) -> Evidence:
 
 
 def bumper_stuck(fixes: Fixes) -> Evidence:
-    """The bumper is pressed for 12 s; the safety distance is 40 cm."""
+    """Press the bumper for 12 s; the safety distance is 40 cm."""
     rig = TaskRig(fixes)
     main = rig.fw.main_robot
     main.bumper, main.df, main.dl, main.dr = PRESSED, 300.0, 100.0, 100.0

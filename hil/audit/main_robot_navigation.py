@@ -20,14 +20,14 @@ NOTHING_CM: Final = 655.0
 
 
 def _mission(fixes: Fixes, calls: int, *, bumper: int = FREE, df: float, dl: float, dr: float) -> Rig:
-    """A rig on which MISION_4 has been called with the same distances (cm) for some periods."""
+    """Return a rig on which MISION_4 has been called with the same distances (cm) for some periods."""
     rig = TaskRig(fixes)
     _go(rig, calls, bumper=bumper, df=df, dl=dl, dr=dr)
     return rig
 
 
 def _go(rig: Rig, calls: int, *, bumper: int = FREE, df: float, dl: float, dr: float) -> list[float]:
-    """The commanded speeds (m/s) of `calls` periods of the mission."""
+    """Return the commanded speeds (m/s) of `calls` periods of the mission."""
     main = rig.fw.main_robot
     main.bumper, main.df, main.dl, main.dr = bumper, df, dl, dr
     speeds = []
@@ -38,19 +38,20 @@ def _go(rig: Rig, calls: int, *, bumper: int = FREE, df: float, dl: float, dr: f
 
 
 def safety_distance(fixes: Fixes) -> Evidence:
-    """42 cm ahead are more than the safety distance of the text, so the robot still drives (slowly)."""
+    """Show a wall 42 cm ahead, beyond the safety distance of the text: the robot must still drive (slowly)."""
     rig = _mission(fixes, 1, df=42.0, dl=100.0, dr=100.0)
     return measured("speed 42 cm before a wall", rig.fw.main_robot.Robot_Reference_N.V, "m/s", low=0.09)
 
 
 def turn_moving(fixes: Fixes) -> Evidence:
-    """After three seconds before a wall the robot turns; it is to stand while it does."""
+    """Wait three seconds before a wall: the robot then turns, and must stay in place meanwhile."""
     rig = _mission(fixes, 62, df=38.0, dl=100.0, dr=50.0)
     return measured("speed while turning", rig.fw.main_robot.Robot_Reference_N.V, "m/s", low=0.0, high=0.0)
 
 
 def turn_not_kept(fixes: Fixes) -> Evidence:
-    """A turn to the left before the end of the corridor; a wall is surely seen within 20 degrees of its normal."""
+    """Turn to the left before the end of the corridor.  A wall is certainly detected within 20 degrees of its normal.
+    """
     with robot(fixes, world="corridor", watch=False, static=False) as bench:
         bench.run_for(0.8)
         bench.world.place(Pose(3.13, 0.6, 0.0))
@@ -65,14 +66,14 @@ def turn_not_kept(fixes: Fixes) -> Evidence:
 
 
 def equal_distances(fixes: Fixes) -> Evidence:
-    """The same distance on both sides: to the left or to the right, but the robot must turn."""
+    """Show the same distance on both sides: the robot must turn to the left or to the right."""
     rig = _mission(fixes, 62, df=38.0, dl=100.0, dr=100.0)
     turning = abs(rig.fw.main_robot.Robot_Reference_N.W)
     return measured("rate commanded between equal distances", turning, "rad/s", low=0.1)
 
 
 def reverse_unbounded(fixes: Fixes) -> Evidence:
-    """Something stays 20 cm ahead for 9 s; the robot has no eyes behind, and the safety distance is 40 cm."""
+    """Keep an obstacle 20 cm ahead for 9 s.  The robot has no sensor behind; the safety distance is 40 cm."""
     rig = TaskRig(fixes)
     speeds = _go(rig, 180, df=20.0, dl=100.0, dr=80.0)
     way = list(accumulate(-min(v, 0.0) * PERIOD_S for v in speeds))
@@ -84,7 +85,7 @@ def reverse_unbounded(fixes: Fixes) -> Evidence:
 
 
 def side_correction(fixes: Fixes) -> Evidence:
-    """Walls on both sides, the left one nearer: the robot is to bear to the right, which is negative."""
+    """Show walls on both sides, the left one nearer: the robot must turn to the right, which is negative."""
     rig = _mission(fixes, 1, df=300.0, dl=20.0, dr=28.0)
     evidence = measured("rate 20 cm from the left wall", rig.fw.main_robot.Robot_Reference_N.W, "rad/s", high=-0.03)
     lines = []
@@ -98,7 +99,7 @@ def side_correction(fixes: Fixes) -> Evidence:
 
 
 def _walls_near(bench: Bench, reach_m: float) -> Series:
-    """The walls as far as they are within `reach_m` of where the robot is."""
+    """Return the parts of the walls within `reach_m` of the robot."""
     points: list[tuple[float, float]] = []
     for (ax, ay), (bx, by) in bench.walls:
         wall = [(ax + (bx - ax) * i / 500, ay + (by - ay) * i / 500) for i in range(501)]
@@ -107,7 +108,8 @@ def _walls_near(bench: Bench, reach_m: float) -> Series:
 
 
 def blind_spot(fixes: Fixes) -> Evidence:
-    """Out of the corridor's bend, all walls at 45 degrees: no sonar hears anything, and a wall comes nearer."""
+    """Leave the corridor's bend, where all walls are at 45 degrees: no sonar detects anything while a wall comes
+    nearer."""
     with robot(fixes, world="corridor", watch=False, static=False) as bench:
         bench.run_for(0.8)
         bench.world.place(Pose(3.15, 1.0, radians(90.0)))
@@ -121,12 +123,12 @@ def blind_spot(fixes: Fixes) -> Evidence:
 
 
 def ciego_unused(fixes: Fixes) -> Evidence:
-    """Nothing calls the function that section 3.2.2 credits with few collisions."""
+    """Look for calls of the function that section 3.2.2 credits with few collisions."""
     return reported(Rig(fixes).findings, "never-called", function="P_ciego")
 
 
 def bump_repeats(fixes: Fixes) -> Evidence:
-    """Off the wall again after reversing, with nothing heard ahead: the robot is not to drive at it once more."""
+    """Reverse from a wall that the sonar does not detect: the robot must not drive at it once more."""
     rig = TaskRig(fixes)
     _go(rig, 65, bumper=PRESSED, df=NOTHING_CM, dl=100.0, dr=100.0)
     speeds = _go(rig, 60, df=NOTHING_CM, dl=100.0, dr=100.0)
@@ -134,14 +136,14 @@ def bump_repeats(fixes: Fixes) -> Evidence:
 
 
 def bump_turn(fixes: Fixes) -> Evidence:
-    """Three seconds before a wall, then the bumper is pressed."""
+    """Wait three seconds before a wall, then press the bumper."""
     rig = _mission(fixes, 62, df=38.0, dl=100.0, dr=50.0)
     speed = _go(rig, 1, bumper=PRESSED, df=38.0, dl=100.0, dr=50.0)[-1]
     return measured("speed with the bumper pressed, at the time of a turn", speed, "m/s", high=0.0)
 
 
 def dead_sonar(fixes: Fixes) -> Evidence:
-    """A mission of three seconds and more whose front sonar gives 0 V."""
+    """Drive a mission of more than three seconds whose front sonar gives 0 V."""
     rig = TaskRig(fixes)
     us = rig.fw.us
     us.Init_US()
@@ -152,14 +154,14 @@ def dead_sonar(fixes: Fixes) -> Evidence:
 
 
 def state_surrounded(fixes: Fixes) -> Evidence:
-    """Too near for three seconds: the robot reverses, which the text calls RODEADO (5)."""
+    """Stay too near for three seconds: the robot reverses, which the text calls RODEADO (5)."""
     rig = _mission(fixes, 62, df=20.0, dl=100.0, dr=80.0)
     main = rig.fw.main_robot
     return measured("EstadoNav while reversing from an obstacle", main.EstadoNav, low=5, high=5)
 
 
 def pi_period(fixes: Fixes) -> Evidence:
-    """A unit error for one period with a unit gain must add one period, 0.05 s, to the integral."""
+    """Give a unit error for one period with a unit gain: the integral must grow by one period, 0.05 s."""
     rig = Rig(fixes)
     integral = rig.fw.new("float32", 0.0)
     rig.fw.main_robot.PI(1.0, 0.0, 0.0, 1.0, integral, 10.0, -10.0)
@@ -167,48 +169,50 @@ def pi_period(fixes: Fixes) -> Evidence:
 
 
 def hidden_names(fixes: Fixes) -> Evidence:
-    """Parameters and locals with names of objects at file scope; titaref is MAIN-titaref-unread."""
+    """List parameters and locals with names of objects at file scope, without titaref (MAIN-titaref-unread)."""
     names = {"PI.kp", "PI.ki", "Comp.dF_ant", "velocity.Wpi", "Position.Wpos"}
     findings = [f for f in Rig(fixes).findings if f.object.removeprefix("main_robot.") in names]
     return reported(findings, "hidden-name")
 
 
 def comp_undefined(fixes: Fixes) -> Evidence:
-    """The variation of the distance is used whether it was computed or not."""
+    """Show that the change of the distance is used whether it was computed or not."""
     return reported(Rig(fixes).findings, "maybe-uninitialised", function="Comp", object="X")
 
 
 def _comp(fixes: Fixes, before_cm: float, now: int) -> float:
-    """The result of Comp for a front distance that was `before_cm`, when converter and server both give `now`."""
+    """Return the result of Comp for a front distance that was `before_cm`, when converter and server both give `now`.
+    """
     rig = TaskRig(fixes, Read_Channel=lambda _ch: now, read_front_distance=lambda: float(now))
     return float(rig.fw.main_robot.Comp(51, before_cm))
 
 
 def comp_unit(fixes: Fixes) -> Evidence:
-    """Standing 65 cm before a wall, where the converter yields 213 counts."""
+    """Stand 65 cm before a wall, where the converter gives 213 counts."""
     rig = TaskRig(fixes, Read_Channel=lambda _ch: 213, read_front_distance=lambda: 65.0)
     return measured("speed of a standing robot", rig.fw.main_robot.Comp(51, 65.0), "m/s", low=0.0, high=0.0)
 
 
 def comp_sign(fixes: Fixes) -> Evidence:
-    """The wall ahead comes nearer by 100: the robot drives forward, which is positive."""
+    """Bring the wall ahead nearer by 100: the robot drives forward, which is positive."""
     return measured("speed towards a wall", _comp(fixes, 300.0, 200), "m/s", low=0.05)
 
 
 def comp_span(fixes: Fixes) -> Evidence:
-    """42 cm, either way, between the 10th and the 52nd period of 50 ms: 2.1 s, so 0.2 m/s."""
+    """Change the distance by 42 cm in either direction between the 10th and the 52nd period of 50 ms: 2.1 s, so 0.2
+    m/s."""
     speed = max(_comp(fixes, 100.0, 142), _comp(fixes, 100.0, 58))
     return measured("speed over 42 cm in 42 periods", speed, "m/s", low=0.198, high=0.202)
 
 
 def speed_control_unused(fixes: Fixes) -> Evidence:
-    """The image's call graph."""
+    """Look for calls in the call graph of the image."""
     names = ("main_robot.Lineal_velocity", "main_robot.velocity")
     return reported([f for f in Rig(fixes).findings if f.object in names], "never-called")
 
 
 def lineal_range(fixes: Fixes) -> Evidence:
-    """The range in which the front sonar measures speed well is asked for and not checked."""
+    """Look for the test of the range in which the front sonar measures speed well: its result is constant."""
     return reported(Rig(fixes).findings, "constant-condition", function="Lineal_velocity", object="25 < df")
 
 
@@ -222,25 +226,25 @@ def _lineal(fixes: Fixes, wz: float) -> Rig:
 
 
 def lineal_turning(fixes: Fixes) -> Evidence:
-    """While the robot turns to the right the front distance says nothing about its speed."""
+    """Turn to the right: the front distance then does not show the robot's speed."""
     rig = _lineal(fixes, -1.5)
     return measured("speed measured while turning right at 1.5 rad/s", rig.fw.main_robot.hayComp, low=0, high=0)
 
 
 def lineal_straightens(fixes: Fixes) -> Evidence:
-    """Regulating the speed must leave the commanded rate alone."""
+    """Control the speed: the commanded rate must not change."""
     rig = _lineal(fixes, 0.3)
     rate = rig.fw.main_robot.Robot_Reference_N.W
     return measured("a commanded rate of 0.3 after Lineal_velocity", rate, "rad/s", low=0.299, high=0.301)
 
 
 def velocity_reference(fixes: Fixes) -> Evidence:
-    """The rate that velocity is asked for."""
+    """Look for uses of the rate that velocity is called with."""
     return reported(Rig(fixes).findings, "unused-parameter", function="velocity", object="Wref")
 
 
 def position_count(fixes: Fixes) -> Evidence:
-    """Every 60th call is to pause the controller: 6 s of an angle that does not come are 120 calls."""
+    """Call the controller 120 times, 6 s of an angle that is not reached: it must pause at every 60th call."""
     rig = Rig(fixes)
     pauses = 0
     for _ in range(120):
@@ -250,7 +254,7 @@ def position_count(fixes: Fixes) -> Evidence:
 
 
 def position_radians(fixes: Fixes) -> Evidence:
-    """45 degrees are 0.785398 rad; the proportional gain is 1."""
+    """Turn by 45 degrees, which are 0.785398 rad; the proportional gain is 1."""
     rig = Rig(fixes)
     rig.fw.main_robot.Position(45.0, 0.0)
     rate = rig.fw.main_robot.Robot_Reference_N.W
@@ -264,27 +268,28 @@ def _ciego(fixes: Fixes, t: int) -> Rig:
 
 
 def ciego_forgets(fixes: Fixes) -> Evidence:
-    """What P_ciego keeps for the next call is gone then."""
+    """Look for the value that P_ciego should keep for its next call: the store is lost."""
     return reported(Rig(fixes).findings, "dead-store", function="P_ciego", object="d_ant")
 
 
 def ciego_overflow(fixes: Fixes) -> Evidence:
-    """1639 s are 32780 periods."""
+    """Drive blind for 1639 s, which are 32780 periods."""
     return reported(_ciego(fixes, 1639).findings, "overflow", function="P_ciego")
 
 
 def ciego_zero(fixes: Fixes) -> Evidence:
-    """No time at all."""
+    """Drive blind for no time at all."""
     return reported(_ciego(fixes, 0).findings, "division-by-zero", function="P_ciego")
 
 
 def ciego_limits(fixes: Fixes) -> Evidence:
-    """The limits of the distances that count."""
+    """Look for uses of the limits of the distances that count."""
     return reported(Rig(fixes).findings, "unused-parameter", function="P_ciego", object="dm")
 
 
 def init_offset(fixes: Fixes) -> Evidence:
-    """The gyro's calibration of 30 digits must outlive INITIALITATION: nothing measures it again."""
+    """Calibrate the gyro to 30 digits, then order INITIALITATION: the offset must stay, because nothing measures it
+    again."""
     rig = TaskRig(fixes)
     rig.fw.main_robot.vZ_b = 30.0
     rig.fw.main_robot.Inicializa()
@@ -292,7 +297,7 @@ def init_offset(fixes: Fixes) -> Evidence:
 
 
 def init_pointer(fixes: Fixes) -> Evidence:
-    """The integral of the position controller, wherever it lies, is cleared by INITIALITATION."""
+    """Order INITIALITATION: it must clear the integral of the position controller, wherever it is stored."""
     rig = TaskRig(fixes)
     cell = rig.fw.main_robot.Ix
     address = cell.addr if cell else 0
@@ -303,7 +308,7 @@ def init_pointer(fixes: Fixes) -> Evidence:
 
 
 def null_integrators(fixes: Fixes) -> Evidence:
-    """Two periods of the position controller."""
+    """Run two periods of the position controller."""
     rig = Rig(fixes)
     rig.fw.main_robot.Position(2.0, 0.1)
     rig.fw.main_robot.Position(2.0, 0.1)
@@ -311,7 +316,7 @@ def null_integrators(fixes: Fixes) -> Evidence:
 
 
 def kix_annex(fixes: Fixes) -> Evidence:
-    """What one unit of error adds in one call: annex 4 tuned Ki = 10 with the step of 2.5 ms that PI has."""
+    """Measure what one unit of error adds in one call: annex 4 tuned Ki = 10 with the step of 2.5 ms that PI has."""
     rig = Rig(fixes)
     integral = rig.fw.new("float32", 0.0)
     rig.fw.main_robot.PI(1.0, 0.0, 0.0, rig.fw.main_robot.kix, integral, 10.0, -10.0)
@@ -319,7 +324,7 @@ def kix_annex(fixes: Fixes) -> Evidence:
 
 
 def heading(fixes: Fixes) -> Evidence:
-    """A second at 0.3 rad/s: TaskGYRO as often as its period says, TaskNAVIGATION every 50 ms."""
+    """Turn for a second at 0.3 rad/s, with TaskGYRO at its period and TaskNAVIGATION every 50 ms."""
     def offset(_axis: int) -> float:
         """Measured on a robot that stands; the correction asks whether it did."""
         if hasattr(rig.fw.gyro, "Rested"):

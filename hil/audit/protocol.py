@@ -20,20 +20,20 @@ COMMA: Final = ord(",")
 
 
 def frame_rewritten(fixes: Fixes) -> Evidence:
-    """The robot's start-up."""
+    """Run the robot's start-up."""
     with robot(fixes) as bench:
         return reported(bench.findings, "buffer-rewritten", function="Send_ODO_Trayect")
 
 
 def coordinate_range(fixes: Fixes) -> Evidence:
-    """40 m from where the robot began."""
+    """Send a frame 40 m from the robot's start."""
     rig = _rig(fixes)
     properties.frame_sent(rig, MonitorValues(x_mm=40000.0))
     return reported(rig.findings, "float-to-int", function="Send_ODO_Trayect")
 
 
 def angle_unit(fixes: Fixes) -> Evidence:
-    """A heading of 1.5 rad."""
+    """Send a heading of 1.5 rad."""
     rig, headings = _rig(fixes), [math.tau * i / 100 for i in range(100)]
     sent = [float(properties.frame_sent(rig, MonitorValues(heading_rad=heading)).split(",")[2]) for heading in headings]
     lines = [
@@ -45,22 +45,22 @@ def angle_unit(fixes: Fixes) -> Evidence:
 
 
 def order_prefix(fixes: Fixes) -> Evidence:
-    """A word that begins like an order."""
+    """Send a word that begins like an order."""
     return properties.order_read(_rig(fixes), b"#STOPWATCH\r")
 
 
 def numbers_unchecked(fixes: Fixes) -> Evidence:
-    """Letters for numbers."""
+    """Send letters in place of numbers."""
     return properties.order_read(_rig(fixes), b"#SETRabc,def\r")
 
 
 def reference_range(fixes: Fixes) -> Evidence:
-    """A slipped decimal point."""
+    """Send a number whose decimal point has slipped."""
     return properties.reference_read(_rig(fixes), b"#SETR9.9,0.0\r")
 
 
 def damage_unseen(fixes: Fixes) -> Evidence:
-    """Each bit of each character of a reference is flipped once: of one with a check, if the robot understands that."""
+    """Flip each bit of each character of a reference once.  If the robot understands a check, the reference has one."""
     rig = _rig(fixes)
     protocol, orders = rig.fw.protocol, rig.fw.protocol.ORDER
 
@@ -86,7 +86,7 @@ def damage_unseen(fixes: Fixes) -> Evidence:
 
 
 def comma_missing(fixes: Fixes) -> Evidence:
-    """One number, in a frame buffer of 80 characters with a comma somewhere behind it."""
+    """Send one number, in a frame buffer of 80 characters with a comma somewhere after it."""
     rig = _rig(fixes)
     frame = rig.frame("#SETR0.2\r", room=80)
     rig.fw.array("char", [COMMA])

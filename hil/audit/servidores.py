@@ -10,12 +10,12 @@ from hil.audit.rig import Fixes, Rig, robot
 
 
 def unused_object(fixes: Fixes) -> Evidence:
-    """The typed tree of the image."""
+    """Look for the object in the typed tree of the image."""
     return reported(Rig(fixes).findings, "unused-object", object="ROBOT_Odometry")
 
 
 def distances_apart(fixes: Fixes) -> Evidence:
-    """A measurement of three times 2 cm arrives where a reader of three times 1 cm has left the gate once."""
+    """Store a measurement of three times 2 cm when a reader of three times 1 cm has left the gate once."""
     arrived = False
 
     def measurement(distance_cm: float) -> None:
@@ -40,7 +40,7 @@ def distances_apart(fixes: Fixes) -> Evidence:
 
 
 def trayect_gate(fixes: Fixes) -> Evidence:
-    """A second of the robot."""
+    """Run the robot for a second."""
     with robot(fixes) as bench:
         bench.run_for(1.0)
         bench.close()  # what was never used shows at the end

@@ -18,7 +18,7 @@ FAR, NEAR, OUTLIER = 400, 160, 300
 
 
 def _reading(fixes: Fixes, codes: list[int], **options: object) -> tuple[Rig, float]:
-    """One calibrated reading of the left sensor over these conversions, which repeat."""
+    """Return one calibrated reading of the left sensor over these conversions, which repeat."""
     rig = _rig(fixes, keep_locals=True, **options)  # type: ignore[arg-type]
     rig.fw.us.Init_US()
     rig.codes(iter((codes * 2)[: len(codes) + 1]))
@@ -27,7 +27,7 @@ def _reading(fixes: Fixes, codes: list[int], **options: object) -> tuple[Rig, fl
 
 
 def start_before_ready(fixes: Fixes) -> Evidence:
-    """Board and sonars switched on together; do the sonars range within the second after Init_US?"""
+    """Switch board and sonars on together; do the sonars range within the second after Init_US?"""
     rig = _rig(fixes, sonars_powered_up=False)
     rig.fw.us.Init_US()
     rig.wait(1.0)
@@ -36,7 +36,7 @@ def start_before_ready(fixes: Fixes) -> Evidence:
 
 
 def channel_unchecked(fixes: Fixes) -> Evidence:
-    """A channel that us.h does not have."""
+    """Read a channel that us.h does not have."""
     rig = _rig(fixes)
     rig.fw.us.Init_US()
     rig.call(rig.fw.us.Read_Channel, 3)
@@ -44,7 +44,7 @@ def channel_unchecked(fixes: Fixes) -> Evidence:
 
 
 def poll_forever(fixes: Fixes) -> Evidence:
-    """A converter that does not answer."""
+    """Read a converter that does not answer."""
     rig = _rig(fixes)
     rig.fw.us.Init_US()
     rig.board.adc["A"].stopped_by_fault = True
@@ -53,13 +53,13 @@ def poll_forever(fixes: Fixes) -> Evidence:
 
 
 def implausible(fixes: Fixes) -> Evidence:
-    """A wire that has come off and is pulled up: all codes are the converter's last."""
+    """Read a broken wire that is pulled up: all codes are the largest of the converter."""
     _, distance = _reading(fixes, [4095] * 13)
     return measured("distance of an input at the converter's end", distance, "cm", high=0.0)
 
 
 def _conversions(fixes: Fixes) -> int:
-    """How many conversions one reading takes."""
+    """Return the number of conversions of one reading."""
     rig = _rig(fixes)
     rig.fw.us.Init_US()
     count = 0
@@ -75,12 +75,12 @@ def _conversions(fixes: Fixes) -> int:
 
 
 def samples_12(fixes: Fixes) -> Evidence:
-    """Conversions of one reading."""
+    """Count the conversions of one reading."""
     return measured("conversions in a reading", _conversions(fixes), low=13, high=13)
 
 
 def accumulator(fixes: Fixes) -> Evidence:
-    """Readings of the left sensor, which sees the same wall all the time."""
+    """Read the left sensor repeatedly; it always sees the same wall."""
     rig, first = _reading(fixes, [NEAR] * 12, fill="stack")
     rig.codes(lambda _soc: NEAR)
     distances = [first, *(rig.fw.us.Read_Distance(rig.fw.us.US_SENSOR.LEFT) for _ in range(19))]
@@ -92,14 +92,14 @@ def accumulator(fixes: Fixes) -> Evidence:
 
 
 def index_before_start(fixes: Fixes) -> Evidence:
-    """One reading of the left sensor."""
+    """Read the left sensor once."""
     rig, _ = _reading(fixes, [NEAR] * 12)
     hits = [reported(rig.findings, "index", function=name) for name in ("Read_Distance", "Measure")]
     return next((hit for hit in hits if hit.seen), hits[0])
 
 
 def _outlier(fixes: Fixes, index: int) -> Evidence:
-    """One wrong sample among samples of a wall at 1.2 m."""
+    """Put one wrong sample among samples of a wall at 1.2 m."""
     rig, clean = _rig(fixes), [FAR] * properties.CONVERSIONS
     wrong = range(FAR - OUTLIER, FAR + OUTLIER + 1, 20)
     distances = [properties.distance_read(rig, [*clean[:index], code, *clean[index + 1 :]]) for code in wrong]
@@ -110,24 +110,24 @@ def _outlier(fixes: Fixes, index: int) -> Evidence:
 
 
 def correction_after_sum(fixes: Fixes) -> Evidence:
-    """One long echo at a distance where the window applies."""
+    """Give one long echo at a distance where the window applies."""
     return _outlier(fixes, 5)
 
 
 def window_one_sided(fixes: Fixes) -> Evidence:
-    """The last sample rises, so that no fall follows."""
+    """Let the last sample rise, so that no fall follows."""
     return _outlier(fixes, _conversions(fixes) - 1)
 
 
 def _window(fixes: Fixes, codes: list[int]) -> list[float]:
-    """The samples of a reading as the window leaves them."""
+    """Return the samples of a reading after the window."""
     rig, _ = _reading(fixes, codes)
     path = next(p for p in ("us.Measure", "us.Read_Distance") if p in rig.fw.linked.last_locals)
     return [value for value in rig.fw.last_locals(path)["v"] if value is not None]
 
 
 def window_far_only(fixes: Fixes) -> Evidence:
-    """A sample that falls back to 50 cm: is it limited there too?  The samples show it: the sum comes before."""
+    """Let a sample fall back to 50 cm: is it limited there too?  The samples show it, because the sum comes before."""
     codes = [NEAR] * 13
     codes[5] = NEAR + OUTLIER
     window = _window(fixes, codes)
@@ -139,7 +139,7 @@ def window_far_only(fixes: Fixes) -> Evidence:
 
 
 def median_unused(fixes: Fixes) -> Evidence:
-    """The image's call graph."""
+    """Look for calls in the call graph of the image."""
     return reported(Rig(fixes).findings, "never-called", object="median")
 
 
@@ -150,42 +150,42 @@ def _median(fixes: Fixes, values: list[float]) -> Rig:
 
 
 def median_octets(fixes: Fixes) -> Evidence:
-    """Thirteen values, as the text has it."""
+    """Take the median of thirteen values, as the text does."""
     rig = _median(fixes, [float(i) for i in range(13)])
     return reported(rig.findings, "memcpy-octets", function="median")
 
 
 def median_many(fixes: Fixes) -> Evidence:
-    """Thirty values."""
+    """Take the median of thirty values."""
     rig = _median(fixes, [float(i) for i in range(30)])
     return reported(rig.findings, "index", function="median", object="aux")
 
 
 def median_empty(fixes: Fixes) -> Evidence:
-    """No values."""
+    """Take the median of no values."""
     rig = _median(fixes, [])
     return reported(rig.findings, "uninitialised", function="median")
 
 
 def median_even(fixes: Fixes) -> Evidence:
-    """Four values."""
+    """Take the median of four values."""
     return properties.median(_rig(fixes), [1.0, 2.0, 3.0, 4.0])
 
 
 def average_unused(fixes: Fixes) -> Evidence:
-    """The image's call graph."""
+    """Look for calls in the call graph of the image."""
     return reported(Rig(fixes).findings, "never-called", object="average")
 
 
 def average_accumulator(fixes: Fixes) -> Evidence:
-    """Two values."""
+    """Take the average of two values."""
     rig = _rig(fixes)
     rig.fw.us.average(rig.fw.array("float32", [1.0, 2.0]), 2)
     return reported(rig.findings, "uninitialised", function="average")
 
 
 def average_empty(fixes: Fixes) -> Evidence:
-    """No values."""
+    """Take the average of no values."""
     rig = _rig(fixes)
     rig.fw.us.average(rig.fw.array("float32", [1.0]), 0)
     return reported(rig.findings, "division-by-zero", function="average")

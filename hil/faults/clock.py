@@ -1,9 +1,10 @@
-"""Faults of time: an oscillator that runs away, a task that takes longer.
+"""Faults of time: an oscillator with a wrong frequency, a task that takes longer.
 
-The chip's cycles are the emulator's time, so a faster oscillator shows in all that keeps its own: a PC whose bits are
-longer, both ways, a world that moves less in a cycle, gyro and sonars whose periods last more cycles.
-Not modelled: other parts' own time (accelerometer, LiDAR, XBee, the bounce of a contact), the carrier's ripple.
-A task's extra time is executed at the first instruction of each activation: whoever is above it may preempt it.
+The chip's cycles are the emulator's time.  So a faster oscillator shows in all parts with a clock of their own: the
+bits of the PC are longer in both directions, the world moves less in a cycle, the periods of gyro and sonars have more
+cycles.
+Not modelled: the clocks of other parts (accelerometer, LiDAR, XBee, the bounce of a contact), the carrier's ripple.
+A task's extra time is executed at the first instruction of each activation; a higher task may preempt it.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Faults of wheels: edges that are lost, phases that are swapped, a wheel that slips or blocks.
 
-CHOICE: a lost edge is one of a dirty slit: the count is one less, the sense stays.  Swapped phases count backwards.
-A slipping wheel loses a part of its way; a blocked one is held by more torque than its motor has (NXT: stall 0.5 N.m).
+CHOICE: a lost edge is that of a dirty slit: the count is one less, the direction stays.  Swapped phases count
+backwards.  A slipping wheel loses a part of its distance.  A blocked wheel is held by more torque than its motor has
+(NXT: stall 0.5 N.m).
 """
 
 from __future__ import annotations

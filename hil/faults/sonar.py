@@ -1,9 +1,9 @@
-"""Faults of a sonar: it hears nothing, always the same, or the pings of somebody else's.
+"""Faults of a sonar: it detects nothing, always the same range, or the pings of another robot.
 
-A sensor that hears nothing reports its ceiling of 255 inches (EZ, range).  CHOICE: a stuck one hears its own ring-down
-as an echo.  Foreign pings come at random times; those that come before the own echo are taken for it, as the device
-does with the pings of its own ring.
-The firmware meets it with the first conversion after AN has settled on it, 44.3 ms after the ping.
+A sensor that detects nothing reports its ceiling of 255 inches (EZ, range).  CHOICE: a stuck sensor takes its own
+ring-down for an echo.  Foreign pings come at random times; one that comes before the own echo is taken for it, as the
+device does with the pings of its own ring.
+The firmware meets the fault with the first conversion after AN has settled on it, 44.3 ms after the ping.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
-"""Faults of supplies: the motors' sags, the sensors' 3.3 V breaks in.
+"""Faults of supplies: the motors' supply sags, the sensors' 3.3 V is interrupted.
 
-A brown-out leaves `volts` of both supplies.  Bridges work from 2.5 V on (LB), sonars too (EZ): below, motors are
-without current and sonars dark, AN at ground; they start up again as after power-up, 250 ms and a calibration at their
-first command.  Below 2.4 V (L3G) the gyro is reset, and answers nothing while it lasts.
-Not modelled: the chip's own reset: it is taken to ride through on its capacitors.  The kernel's tasks run on stacks of
-Python, and nothing can begin them, and the memory of C, anew within a run.
+A brown-out leaves `volts` of both supplies.  Bridges work from 2.5 V on (LB), sonars too (EZ).  Below, motors have no
+current, and sonars are off with AN at ground; they start up again as after power-up, with 250 ms and a calibration at
+their first command.  Below 2.4 V (L3G) the gyro is reset, and does not answer until the supply returns.
+Not modelled: the chip's own reset; its capacitors are assumed to supply it meanwhile.  The kernel's tasks run on stacks
+of Python, so neither they nor the memory of C can begin anew within a run.
 """
 
 from __future__ import annotations

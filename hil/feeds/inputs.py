@@ -1,8 +1,8 @@
-"""What of a board can be fed: ADC inputs by their pin, and faces of parts; and how each is fed.
+"""What of a board can be fed, ADC inputs by their pin and faces of parts, and how each is fed.
 
-Sensors that can be asked when they look follow a course to the cycle: an ADC input, a gyro, a sonar, the encoder of a
-motor.  A switch, and any other face, is set when the course says that something changes, along a curve every
-millisecond.  CHOICE: a gyro that is fed turns about z only; what a sonar is fed with is a wall that it hears well.
+Sensors that can compute their value on demand follow a course to the cycle: an ADC input, a gyro, a sonar, the encoder
+of a motor.  A switch, or any other face, is set when the course changes, and along a curve every millisecond.
+CHOICE: a gyro that is fed turns about z only.  A sonar is fed with a wall that it always detects.
 """
 
 from __future__ import annotations

@@ -1,21 +1,21 @@
-"""Response-time analysis with fixed priorities: exact, and the bounds that a course puts beside it.
+"""Response-time analysis with fixed priorities: the exact one, and the bounds that a course adds.
 
 Modelled
     The busy window (Joseph and Pandya 1986; Lehoczky 1990 and Tindell 1994 for deadlines beyond the period and release
     jitter).  Blocking under three protocols:
 
-    ceiling      immediate ceiling: the longest single section of a less urgent task in a gate that somebody of this
+    ceiling      immediate ceiling: the longest single section of a less urgent task in a gate that a task of this
                  priority or above enters, too.
     inheritance  Sha, Rajkumar, Lehoczky 1990: each less urgent task blocks at most once, each gate at most once; the
                  worst such choice.  `GateMutexPri` does this as long as no gate is entered within another: the owner
-                 is raised when somebody more urgent waits, and lowered as it leaves.
-    none         a less urgent owner keeps its priority, and whoever lies between runs before it: all tasks down to the
-                 least urgent owner that matters count as if they were above, with what they have left over from before.
+                 is raised when a more urgent task waits, and lowered when it leaves.
+    none         a less urgent owner keeps its priority, and tasks in between run before it: all tasks down to the least
+                 urgent owner that matters count as if they were above, with the work that was left from before.
 
-    With gates in gates, `GateMutexPri` raises only the owner of the gate, not whom that one waits for, and drops it at
-    the first `leave`: then nothing better than `none` holds, and `inheritance` is computed as that.  Who may wait in a
-    circle has no bound but under `ceiling`, where nobody waits.
-    Tasks of one priority hold each other up (CHOICE: each counts as if it was above the other, which is never too low).
+    With nested gates, `GateMutexPri` raises only the owner of the gate, not the task that this owner waits for, and
+    lowers it at the first `leave`.  Then no bound better than `none` holds, and `inheritance` is computed as `none`.
+    Tasks that may wait in a circle have no bound, except under `ceiling`, where no task waits.
+    Tasks of one priority delay each other (CHOICE: each counts as if it was above the other, which is never too low).
 Not modelled
     Tasks that wait in the middle of an activation for anything but a gate (`Task_sleep`).
 Time

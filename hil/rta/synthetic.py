@@ -1,10 +1,10 @@
 """A task set as tasks on the emulated kernel: each computes for its time, enters its gates, and waits for its release.
 
 Modelled
-    The kernel is `emulator.sysbios` with the costs of its services: what a task computes in the end is its time of the
-    sheet and the calls of the kernel around it.  The gates are `GateMutexPri` (inheritance), `GateMutex` (none), or
-    `GateMutexPri` within `Task_setPri` to the ceiling (ceiling).  Where in an activation a gate is entered is drawn
-    anew each time.  Releases and interrupts come as Hwis; there is no tick besides those of the sheet.
+    The kernel is `emulator.sysbios` with the costs of its services.  The computation of a task is the time in the
+    sheet, plus the calls of the kernel around it.  The gates are `GateMutexPri` (inheritance), `GateMutex` (none), or
+    `GateMutexPri` within `Task_setPri` to the ceiling (ceiling).  The point of an activation at which a gate is entered
+    is drawn anew each time.  Releases and interrupts come as Hwis; there is no tick besides those of the sheet.
 Not modelled
     Start-up; computation times below the largest.
 Time

@@ -1,14 +1,15 @@
 """A pseudo-terminal: what a program on this machine opens like a serial device.
 
-Raw and without echo before anybody can open it, or the robot would hear its own frames.  The robot's process keeps
-the slave open for its whole life: a program that opens and closes a hundred times never hangs the line up.
+It is raw and without echo before anybody can open it; otherwise the robot would receive its own frames.  The robot's
+process keeps the slave open for its whole life, so a program that opens and closes it a hundred times never hangs the
+line up.
 
-When nobody reads, the kernel would keep the *oldest* 20 KB (minutes of frames) and refuse the newest.  So frames
-that lie unread are watched through the slave, and as soon as more than `keep` lie there all are taken back and the
-newest put in again: what a late reader finds is the recent past, whole frames in order.  The rest of a frame of which
-somebody has read a part stays in front of them: a slow reader gets that one whole, too.
+When nobody reads, the kernel would keep the *oldest* 20 KB (minutes of frames) and refuse the newest.  So unread frames
+are watched through the slave.  As soon as more than `keep` are unread, all are taken back and the newest are put in
+again: a late reader gets the latest frames, whole and in order.  If somebody has read a part of a frame, its rest stays
+in front of them, so a slow reader gets that frame whole, too.
 
-Not modelled: the baud rate, parity and modem lines that a program sets (the line is 9600 8N1 whatever it says).
+Not modelled: the baud rate, parity and modem lines that a program sets (the line is always 9600 8N1).
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """A TCP server for pyserial's ``rfc2217://host:port``: Telnet with the COM port control option (RFC 2217).
 
-The Telnet side is pyserial's own `PortManager`; the serial port it manages is a record of settings, because the
-robot's line is 9600 8N1 whatever a program asks for.  Purging the receive buffer works: it forgets what waits.
-A client that breaks the protocol, or never collects what it asks for, is disconnected and counted.
+The Telnet side is pyserial's own `PortManager`.  The serial port that it manages is only a record of settings, because
+the robot's line is always 9600 8N1.  Purging the receive buffer works: it discards the waiting bytes.
+A client that breaks the protocol, or never reads what it requests, is disconnected and counted.
 
 Not modelled: break, modem lines that change (CTS, DSR and CD are always on), flow control suspend and resume.
 """

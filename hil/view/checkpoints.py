@@ -1,12 +1,12 @@
 """A run that can go back in time: every input with its cycle, and the moments to return to.
 
-What determines a run is its `Setup` and what was done to it from outside: bytes on the line, values put to faces of its
-parts, faults, hands on the world.  All are logged here with the cycle at which they were done, so a new bench given the
-same at the same cycles is the same run, byte for byte.  That is how an earlier moment is reached: executed again from
+A run is determined by its `Setup` and its inputs: bytes on the line, values set at faces of its parts, faults, changes
+of the world by hand.  All inputs are logged here with their cycle.  So a new bench with the same inputs at the same
+cycles is the same run, byte for byte.  An earlier moment is reached in this way: the run is executed again from
 power-up, at full speed.
 
-After going back, what was done later in the run lies ahead and is done again at its cycles, until somebody does
-something else: then the rest is forgotten and a new future begins.
+After going back, the later inputs of the run are repeated at their cycles, until somebody does something else.  Then
+they are dropped, and a new future begins.
 
 Not modelled: a copy of the running machine (greenlets cannot be copied), so going back costs executing up to there.
 """

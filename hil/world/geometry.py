@@ -6,10 +6,10 @@ Modelled
 Not modelled
     Height, thickness (a wall that has two faces is two segments), curved walls (use short segments).
 Time
-    None: pure functions of positions in metres.  Plain floats on purpose: measured with
-    `python -m tests.benchmarks.geometry` for maps of about ten walls they answer a ray 10 times and a clearance 2.5
-    times faster than shapely; beyond some 40 walls shapely's clearance wins, which is asked only when the robot has
-    used up its last one.  shapely is the oracle in the tests.
+    None: pure functions of positions in metres.  They use plain floats on purpose.  Measured with
+    `python -m tests.benchmarks.geometry` for maps of about ten walls, they are 10 times faster than shapely for a ray,
+    and 2.5 times for a clearance.  Beyond some 40 walls shapely's clearance is faster, but a clearance is computed only
+    when the robot has used up its last one.  The tests compare with shapely.
 Sources
     Elementary geometry.
 """

@@ -1,12 +1,12 @@
 """Obstacles that move on a path over virtual time.
 
 Modelled
-    A post that goes along a polyline at one speed, from a virtual time on, once or to and fro for ever.  Where it is
+    A post that moves along a polyline at one speed, from a virtual time on, once or back and forth for ever.  Its place
     follows from the time alone, so that two runs see it in the same places.
 Not modelled
     Obstacles that see the robot: one that meets it pushes it aside (`robot.PUSH_M_S`).
 Time
-    Seconds of virtual time since power-up.  `World` puts it where it is every 10 ms.
+    Seconds of virtual time since power-up.  `World` moves it to its place every 10 ms.
 Sources
     None.
 """

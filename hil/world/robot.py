@@ -1,10 +1,10 @@
 """The robot: two NXT motors, a differential drive on tyres, a round body with a bumper in front.
 
 Modelled
-    Chassis mass and yaw inertia reflected to both motors; dry friction with sticking; tyres that hold up to
-    a limit and slide beyond it, along the wheel; small lasting differences between the wheels when realistic;
-    rolling resistance; a round body, ahead of the axle, that is stopped by walls and posts and rubs on them, so that a
-    glancing hit turns the robot along the wall; an obstacle put or dragged onto it moves it aside; a bumper in front.
+    Chassis mass and yaw inertia reflected to both motors; dry friction with sticking; tyres that grip up to a limit and
+    slide beyond it, along the wheel; small constant differences between the wheels when realistic; rolling resistance;
+    a round body, ahead of the axle.  Walls and posts stop the body, and it rubs on them, so that a glancing hit turns
+    the robot along the wall.  An obstacle put or dragged onto it moves it aside.  A bumper in front.
 Not modelled
     Sideways slip, tilting, the caster, cable or battery weight shifts, elasticity, corners of the body.
 Time

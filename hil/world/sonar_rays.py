@@ -1,10 +1,10 @@
 """The reflectors in the beam of each sonar: walls as mirrors, corners, posts, in order of range.
 
 Modelled
-    A wall answers from the foot of its perpendicular, if the foot lies on the wall and nothing stands in
-    between, as surely as the angle off the boresight allows; a concave corner of about 90 degrees answers like a wall
-    at the corner's distance; a post answers from its near side by its diameter; what stands behind is in the list too.
-    Cross-talk: the length of the path from one sonar by way of one mirror or post to another.
+    A wall answers from the foot of its perpendicular, if the foot is on the wall and nothing is in between, with the
+    probability of its angle off the boresight.  A concave corner of about 90 degrees answers like a wall at the
+    corner's distance.  A post answers from its near side, by its diameter.  Reflectors behind others are in the list
+    too.  Cross-talk: the length of the path from one sonar by way of one mirror or post to another.
 Not modelled
     Diffraction at edges and convex corners, paths of more than one bounce other than corners, reflections from the
     floor or the robot itself, side lobes.

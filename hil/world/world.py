@@ -1,14 +1,14 @@
 """The world: a map, a robot in it, and virtual time.
 
 Modelled
-    Lazy integration: nothing moves until somebody looks; then everything moves up to exactly that time.  The bumper
-    and walls are looked at every 10 ms at the latest.  Obstacles that the bench adds, moves and removes, and posts
+    Lazy integration: nothing moves until a reader needs it; then everything moves up to exactly that time.  The bumper
+    and walls are checked every 10 ms at the latest.  Obstacles that the bench adds, moves and removes, and posts
     that move by themselves, every 10 ms.
 Not modelled
     Other robots, people, noise of the room.
 Time
     `sync(cycles)` integrates from the last time to exactly `cycles`.  After `attach(clock)` it is called by encoder
-    readers, before any change of a motor input, by `range_source` and `rate_source`, and by an event each 10 ms.
+    readers, before any change of a motor input, by `range_source` and `rate_source`, and by an event every 10 ms.
 Sources
     None of its own.
 """
