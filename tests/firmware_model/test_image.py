@@ -139,7 +139,7 @@ def test_a_local_of_a_call_that_an_exception_has_ended_dangles(tmp_path: Path) -
 def test_a_recursion_without_end_is_a_finding_and_a_line(tmp_path: Path) -> None:
     fw = linked(tmp_path, "def Down(n: int16) -> int16:\n    v: array[int16, 8]\n    v[0] = n\n    return Down(v[0])\n")
     sp = fw.runtime.cpu.sp
-    with pytest.raises(RecursionError, match=r"^driver\.Down: calls within calls without an end"):
+    with pytest.raises(RecursionError, match=r"^driver\.Down: unbounded recursion"):
         fw.driver.Down(1)
     assert [finding.rule for finding in fw.runtime.findings] == ["stack-overflow"]
     assert fw.runtime.cpu.sp == sp

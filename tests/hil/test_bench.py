@@ -72,7 +72,7 @@ def test_a_time_that_cannot_be_is_told_at_the_call(driven: Bench, duration_s: fl
 
 
 def test_a_bench_that_is_off_says_so() -> None:
-    with pytest.raises(ValueError, match=r"boot\(\) comes first"):
+    with pytest.raises(ValueError, match=r"call boot\(\) first"):
         Bench("box").run_for(1.0)
 
 

@@ -322,7 +322,7 @@ def test_a_face_may_be_worked_out_by_the_part_or_asked_for_by_a_function() -> No
     assert [part.value(face.name) for face in faces] == [50.0, 2.0, 4.0]
     assert [part.is_set(face.name) for face in faces] == [False, True, False]
     for name in ("lux", "heat"):
-        with pytest.raises(ValueError, match=f"lamp.{name} is only seen, not set"):
+        with pytest.raises(ValueError, match=f"lamp.{name} can only be read"):
             part.put(name, 1.0)
     part.put("level", 0)
     assert part.value("lux") is None, "a look that fails ends nothing"
@@ -360,5 +360,5 @@ def test_a_heap_without_room_for_a_block_is_refused() -> None:
 
         heap_words = 3
 
-    with pytest.raises(ValueError, match="a heap of 3 words has no room for a block: expected 4 at least"):
+    with pytest.raises(ValueError, match="a heap of 3 words is too small: expected at least 4"):
         Tiny()

@@ -132,7 +132,7 @@ def test_a_firmware_that_stops_fails_with_its_findings(capfd: pytest.CaptureFixt
     [
         (["--fail-on", "often"], "fail_on 'often': must be error, warning, note or never"),
         (["--baseline", "none.json"], "none.json: there is no such baseline"),
-        (["--update-baseline"], "--update-baseline: which file?"),
+        (["--update-baseline"], "--update-baseline: no file given"),
         (["--html", "no/where.html"], "no/where.html: there is no folder"),
         (["--order", "jump"], "no order 'jump'"),
         (["--world", "moon"], "moon"),

@@ -54,7 +54,7 @@ def test_tables_of_each_kind(tmp_path: Path, text: str) -> None:
         (b"time_s,A\n0,\xff\n", ": byte 11 is not UTF-8"),
         ("time_s,channel,name,value\n0,adc,ADCINA3 sonars.FRONT,x\n", ":2: column 'value': 'x' is not a number"),
         ("time_s,channel,name,value\n0,kernel,switch,TaskUS\n", ": no sensor values: record them with hil run"),
-        ('{"hil_trace": 1, "cycles_per_second": 200000000, "channels": ["kernel"]}\n', ": nothing that sensors saw"),
+        ('{"hil_trace": 1, "cycles_per_second": 200000000, "channels": ["kernel"]}\n', ": no sensor values"),
         ('{"hil_trace": 1, "cycles_per_second": 200000000, "channels": ["adc"]}\n[1,"adc","X",""]\n', ":2: expected ["),
     ],
 )  # fmt: skip

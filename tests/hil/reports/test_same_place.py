@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from emulator.rules import RULES
 from hil.bench import Bench
 from hil.cli import invoke
 from hil.reports.json_report import finding_of
@@ -237,7 +238,8 @@ def test_the_view_and_the_console_show_a_finding_where_all_others_do() -> None:
     bench.close()
     for finding in bench.findings:
         (told,) = of_json([finding_of(finding) | {"how": "dynamic"}])
-        _, what, where, _ = row_of(finding).cells
+        severity = RULES[finding.rule].severity
+        _, what, where, _ = row_of(finding, severity).cells
         assert (what.text, what.more, f"{where.text} ({where.title})") == row(told)
-        _, rule, *_, place = (cell.plain for cell in _row(finding))
+        _, rule, *_, place = (cell.plain for cell in _row(finding, severity))
         assert (rule, told.object, place) == row(told)

@@ -80,7 +80,7 @@ def test_a_map_beside_the_file_is_found_from_anywhere(tmp_path: Path, monkeypatc
         ("[[expect]]\nname = 'a'\n\n[[expect]]\nname = 'b'\nstate = 'STOP'", "drive.toml:1: expect[0]: one of"),
         ("[[expect]]\nname = 'a'\nstate = 'STOP'\nmost = 1", "drive.toml:1: expect[0]: most is no key of state"),
         ("[[expect]]\nname = 'a'\nquantity = 'x_m'", "expect[0]: least or most must be given"),
-        ("[[expect]]\nname = 'a'\nframe = '('", "expect[0]: frame: no regular expression"),
+        ("[[expect]]\nname = 'a'\nframe = '('", "expect[0]: frame: not a regular expression"),
         ("[start]\nx_m = 1", "drive.toml:1: start: y_m is missing"),
         ("[start]\nx_m = 0\ny_m = 0", "drive.toml:1: start: 0.000 m from a wall"),
         ("seed = 1\nfixes = ['US-nothing']", "drive.toml:2: fixes: no correction 'US-nothing'"),
