@@ -275,7 +275,7 @@ class CanBus:
     def disturb(self, frames: int = 1, bit: int = 20) -> None:
         """Invert bit number `bit` of each of the next `frames` frames, as a disturbance on the line does."""
         if bit < 1 or frames < 0:
-            raise ValueError(f"spoil bit {bit} of {frames} frames: expected a bit behind the start of frame")
+            raise ValueError(f"disturb bit {bit} of {frames} frames: expected a bit behind the start of frame")
         self._disturbed += [bit] * frames
 
     @property

@@ -81,7 +81,7 @@ class _Signal:
 
 
 class Replay:
-    """A run for a page.  A `hil.instruments.recorder.Taker`: events of one channel come in the order of time."""
+    """A run for a page.  A `hil.instruments.recorder.EventSink`: events of one channel come in the order of time."""
 
     def __init__(self, about: Mapping[str, str], policy: Policy | None = None) -> None:
         """`about` says what ran; `policy` weighs the findings (None: by their rules)."""

@@ -10,7 +10,7 @@ from hil.board import Board
 
 
 class BoardTarget:
-    """A test's board as a `hil.faults.FaultTarget` and a `hil.feeds.feeding.Fed`."""
+    """A test's board as a `hil.faults.FaultTarget` and a `hil.feeds.feeding.FeedTarget`."""
 
     start_up_cycles = 0
 

@@ -178,7 +178,7 @@ def test_a_spoilt_frame_is_sent_again() -> None:
     clock.advance_to(1_000_000)
     assert sender.errors == [CanError.BIT1, CanError.BIT0]
     assert listener.frames == [CanFrame(0, b"z")]
-    with pytest.raises(ValueError, match="spoil bit 0"):
+    with pytest.raises(ValueError, match="disturb bit 0"):
         bus.disturb(bit=0)
 
 
