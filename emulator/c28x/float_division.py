@@ -30,8 +30,8 @@ FLOAT_DIVISIONS: Final[Mapping[str, FloatDivision]] = MappingProxyType({
     "calibrated": FloatDivision(60),
     # `--tmu_support=tmu0 --fp_mode=relaxed`: one instruction, DIVF32.
     "tmu": FloatDivision(5, constant_multiplies=True),
-    # `--fp_mode=relaxed` without TMU.  CHOICE: what TI's fast library does (EINVF32, two Newton-Raphson steps), but
-    # in line, without its call.
+    # `--fp_mode=relaxed` without TMU.  CHOICE: the code of TI's fast library (EINVF32, two Newton-Raphson steps), but
+    # inlined, without its call.
     "fast": FloatDivision(23, constant_multiplies=True),
     # `--fp_mode=strict`, the compiler's default: a call (LCR, 4 cycles) of FS$$DIV, 217 with its return.  CHOICE: what
     # was counted could not be confirmed to be this function, so the number is uncertain.

@@ -22,8 +22,8 @@ def _single(function: Callable[..., float]) -> Callable[..., float]:
     return single
 
 
-#: The trigonometric unit (SPRUHS1, TMU): angles of `pu` are in turns.  CHOICE: the correctly rounded value, from which
-#: the unit's differs in the last bits.
+#: The trigonometric unit (SPRUHS1, TMU): angles of `pu` are in turns.  CHOICE: the correctly rounded value; the unit's
+#: value differs from it in the last bits.
 FLOATS: Final[dict[str, Callable[..., Any]]] = {
     name: _single(function)
     for name, function in (

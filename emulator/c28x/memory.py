@@ -408,7 +408,7 @@ class Memory:
             return register
         if any(low <= addr < high for low, high in RAM):
             return self.policy.fill_word(addr)
-        return 0  # CHOICE: an address where nothing is reads 0.
+        return 0  # CHOICE: an address without memory reads 0.
 
     def write_word(self, addr: int, word: int) -> None:
         """Write one word of an object, a register or plain RAM."""

@@ -96,7 +96,7 @@ class OutputRegisters:
         fifo = self._fifo
         held = self._held[axis]
         if fifo.active:
-            # CHOICE: an empty memory leaves the set that was read last.
+            # CHOICE: while the memory is empty, the outputs keep the set that was read last.
             shown = fifo.oldest() or self._shown[axis]
         else:
             shown = self._shown[axis] if held else self.newest

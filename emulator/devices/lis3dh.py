@@ -67,14 +67,14 @@ HIGH_RESOLUTION: Final = (12, (1, 2, 4, 12))
 NORMAL: Final = (10, (4, 8, 16, 48))
 LOW_POWER: Final = (8, (16, 32, 64, 192))
 
-#: CHOICE: noise density at 2 g in g a root of Hz, the same in each mode and full scale.
+#: CHOICE: noise density at 2 g, in g per root of Hz, the same in each mode and full scale.
 NOISE_G: Final = 220e-6
-#: CHOICE: zero-g level of a specimen in g, even between the typical figures.
+#: CHOICE: zero-g level of a specimen in g, evenly distributed between the typical figures.
 OFFSET_G: Final = 0.040
 #: CHOICE: the data rate of a specimen is within 2 % (the sheet gives no figure).
 ODR_SPREAD: Final = 0.02
-#: Table 11, of a change of mode: 7 periods to high resolution, else 1.  CHOICE: the same from power-down, and the first
-#: sample comes when the output is settled.
+#: Table 11, for a change of mode: 7 periods to high resolution, else 1.
+#: CHOICE: it takes the same time from power-down, and the first sample comes when the output has settled.
 SETTLING_PERIODS: Final = (1, 7)
 
 
@@ -238,7 +238,7 @@ class Lis3dh:
                 self._words[axis] = newer
                 self._newer[axis] = None
         if high:
-            # CHOICE: as in the gyro of this maker, reading the high byte takes the sample away.
+            # CHOICE: a read of the high byte consumes the sample, as in the gyro of this maker.
             self._status &= ~(0x11 << axis)
         # BLE swaps the bytes, in high resolution alone.
         big = self.registers[CTRL_REG4] & 0x48 == 0x48
@@ -280,7 +280,7 @@ class Lis3dh:
             value_g = felt[axis] / GRAVITY_M_S2 + self.offset_g[axis]
             if not self._ideal:
                 value_g += self._rng.gauss(0.0, self.noise_g)
-            # CHOICE: it goes to the last digit, so beyond 16 g: as users of the part report.
+            # CHOICE: it reaches the last digit, so more than 16 g, as users of the part report.
             limit = 1 << (bits - 1)
             digits = min(max(round(1000.0 * value_g / mg), -limit), limit - 1)
             word = digits << (16 - bits) & 0xFFFF

@@ -262,7 +262,7 @@ class LvMaxSonar:
         if self._calibrated:
             self._range()
         else:
-            # CHOICE: whichever command comes first, the calibration cycle goes before its range cycle.
+            # CHOICE: the calibration cycle precedes the range cycle of the first command, whichever it is.
             self._next = self.clock.after(self.cycle_cycles, self._calibration_done)
 
     def _calibration_done(self) -> None:
@@ -270,7 +270,7 @@ class LvMaxSonar:
         if self._watch is not None:
             self.held.set_conversion_callback(self._watch.converted)
         echo = None if self.ideal else self.range_source(self.name, self.clock.now)
-        # CHOICE: "may be ignored" is one chance in two.
+        # CHOICE: "may be ignored" has a probability of one half.
         if echo is not None and echo.range_m / INCH_M < CALIBRATION_CLEAR_IN and self._rng.random() < 0.5:
             self._blind_in = math.floor(echo.range_m / INCH_M)
         self._range()

@@ -16,7 +16,8 @@ from typing import Final
 
 INCH_M: Final = 0.0254
 
-#: CHOICE: a wall is always heard up to A0 off its perpendicular, never beyond A1; in between the chance falls linearly.
+#: CHOICE: a wall is always detected up to A0 off its perpendicular, and never beyond A1.  In between the probability
+#: falls linearly.
 A0_RAD: Final = math.radians(20.0)
 A1_RAD: Final = math.radians(30.0)
 

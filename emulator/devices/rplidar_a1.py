@@ -33,7 +33,7 @@ BAUD: Final = 115_200
 SAMPLE_CYCLES: Final = 500 * CYCLES_PER_US
 TURNS_HZ: Final = 5.5
 NEAREST_M: Final = 0.15
-#: CHOICE: see above.
+#: CHOICE: an early specimen; see the head of this file.
 FARTHEST_M: Final = 6.0
 #: All bytes of a request must have come within this time.
 REQUEST_CYCLES: Final = 5000 * CYCLES_PER_MS

@@ -17,7 +17,7 @@ from emulator.signal import Signal
 from emulator.signals import Wire
 
 SERIES_OHM: Final = 2_200.0
-#: CHOICE: bounce lasts 1 to 10 ms (unconfirmed) with one to four bounces.
+#: CHOICE: contact bounce lasts 1 to 10 ms (unconfirmed), with one to four bounces.
 BOUNCE_CYCLES: Final = (1 * CYCLES_PER_MS, 10 * CYCLES_PER_MS)
 MAX_BOUNCES: Final = 4
 

@@ -34,7 +34,8 @@ class WireLink:
     ) -> None:
         #: (data, cycles): the PC has received bytes from the robot.
         self.received: Signal[bytes, int] = Signal()
-        #: Characters from the robot whose stop bit was not seen.  CHOICE: dropped, as a PC's UART marks them.
+        #: Characters from the robot whose stop bit was not seen.  CHOICE: they are dropped, because
+        #: a PC's UART marks them as errors.
         self.framing_errors = 0
         self._pacer = LinePacer(clock, uart_out, baud)
         self._bit_cycles = SYSCLK_HZ / baud

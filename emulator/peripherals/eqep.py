@@ -205,7 +205,7 @@ class EQep:
         if not self._source:
             self.phase_error()
         elif self._on:
-            # CHOICE: A changes with B as if one came right after the other, going forward.
+            # CHOICE: if A and B change together, they count as two edges in the forward direction.
             self._derive(2, cycles, cycles)
 
     def _tell_error(self) -> None:

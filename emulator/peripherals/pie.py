@@ -220,7 +220,7 @@ class Pie:
     def _fetch(self, x: int) -> None:
         """The CPU takes INT(x+1).  The lowest latched and enabled line gives the vector; its flag is cleared."""
         if not self._ctrl.value & 1:
-            # CHOICE: disabled between latch and fetch, nothing runs (silicon would use the boot ROM's vector).
+            # CHOICE: if disabled between latch and fetch, nothing runs (silicon would use the boot ROM's vector).
             return
         bit = self._next(x)
         self._ifr[x].value &= ~bit

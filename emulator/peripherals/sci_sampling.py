@@ -117,6 +117,6 @@ def sample(waveform: LineWaveform, own: Format, start: float = 0.0) -> Iterator[
         if own.parity is not None:
             parity_error = vote(stop) != parity_bit(data, own.parity)
             stop += 1
-        # CHOICE: the middle vote ends the character: a start bit on the heels of a short stop bit is not missed.
+        # CHOICE: the middle vote ends the character, so that a start bit right after a short stop bit is not missed.
         hunt = edge + (stop + VOTES[1]) * bit
         yield Character(data, parity_error, not vote(stop), hunt)

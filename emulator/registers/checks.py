@@ -77,7 +77,7 @@ def gated_read(register: Cell) -> Callable[[], int]:
     """The read of a module whose clock is off."""
 
     def read_gated() -> int:
-        # CHOICE: a gated module reads 0 (the usual observation; unconfirmed).
+        # CHOICE: the registers of a gated module read 0 (usually observed, unconfirmed).
         register.block.cpu.findings.report(
             "clock-gated", f"{register.path} was read while its module's clock is off: it reads 0",
             object=register.path,

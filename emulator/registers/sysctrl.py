@@ -291,7 +291,7 @@ class AUXPLLMULT(Register, bits=32, eallow=True):
 
 class AUXPLLSTS(Register, bits=32, eallow=True):
     """Second PLL, status.  TRM CLK_CFG_REGS; HDR AUXPLLSTS_BITS."""
-    # CHOICE: always locked, as the first one.
+    # CHOICE: always locked, like the first PLL.
     SLIPS = F(1, R, 0, "PLL slipped")
     LOCKS = F(0, R, 1, "PLL locked")
 
@@ -351,7 +351,7 @@ class MCDCR(Register, bits=32, eallow=True):
 
 class X1CNT(Register, bits=32, eallow=True):
     """Counter of the crystal's cycles.  TRM CLK_CFG_REGS; HDR X1CNT_BITS."""
-    # CHOICE: the crystal has run long enough: the counter stands at its end.
+    # CHOICE: the crystal has run long enough, so the counter is at its end.
     X1CNT = F(9, 0, R, 0x3FF, "cycles of X1, up to 0x3FF")
 
 

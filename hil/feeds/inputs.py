@@ -34,7 +34,7 @@ _EDGE_RAD: Final = 2.0 * pi / EDGES_PER_REVOLUTION
 _SAMPLE_CYCLES: Final = 10 * CYCLES_PER_MS
 
 #: Units that a column may have instead of its input's: that unit, how much it is of it, and what is added.
-#: CHOICE: the count of an encoder stands for the middle between two edges.
+#: CHOICE: the count of an encoder means the middle between two edges.
 UNITS: Final = {
     "deg/s": ("rad/s", radians(1.0), 0.0), "dps": ("rad/s", radians(1.0), 0.0),
     "deg": ("rad", radians(1.0), 0.0), "rev": ("rad", 2.0 * pi, 0.0), "edges": ("rad", _EDGE_RAD, 0.5 * _EDGE_RAD),

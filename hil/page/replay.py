@@ -27,7 +27,7 @@ from hil.world.robot_params import RobotParams
 
 #: Units a metre, and a radian.
 UNITS: Final = 10_000
-#: CHOICE: what is written within a second of CPU after Ctrl-C.  Two million stretches are ten minutes of the robot.
+#: CHOICE: as many as are written within a second of CPU after Ctrl-C.  Two million spans are ten minutes of the robot.
 MOST_SPANS: Final = 2_000_000
 MOST_SAMPLES: Final = 100_000
 MOST_LINES: Final = 100_000

@@ -19,7 +19,7 @@ from hil.recording.log import Direction, LogWriter, Record
 
 #: Longer stretches without the end of a frame are written as they are.
 LONGEST_STRETCH: Final = 256
-#: CHOICE: silence that ends a stretch.  USB adapters hand over what they have every 16 ms, so more than that.
+#: CHOICE: the silence that ends a record.  It is longer than the 16 ms after which USB adapters pass on their bytes.
 PAUSE_NS: Final = 40_000_000
 
 

@@ -30,7 +30,7 @@ OTHER_FILL: Final = "ones"
 #: CHOICE: what is tried, one after the other, when an object reaches nothing with the second fill: numbers of all sizes
 #: and signs.  That something reaches nothing cannot be proven by trying; the report says what was tried.
 FURTHER_FILLS: Final = ("random:1", "random:2")
-#: CHOICE: how much of M0 RAM from address 0 on is changed; a structure behind a null pointer may be as long.
+#: CHOICE: the part of M0 RAM from address 0 on that is changed; a structure at a null pointer may have this length.
 M0_WORDS: Final = 32
 
 #: What is done to a robot before it has power, with which fill.

@@ -46,7 +46,7 @@ XBEE_BAUD: Final = 9600
 #: CHOICE: motor bridge inputs (IN1, IN2) and encoder pins (A, B).
 BRIDGES: Final = {"left": (2, 3), "right": (12, 13)}
 ENCODERS: Final = {"left": (10, 11), "right": (62, 63)}
-#: Motor supply: the regulator of the robot admits up to 7.5 V (TFG 2.2.1); CHOICE 7.2 V.
+#: Motor supply: the regulator of the robot allows up to 7.5 V (TFG 2.2.1).  CHOICE: 7.2 V.
 MOTOR_SUPPLY_V: Final = 7.2
 
 

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 
 from hil.client.decode import FrameDecoder
 
-#: CHOICE: how many ends of lines are remembered at least; 40,000 are 2.8 hours of a robot that sends four a second.
+#: CHOICE: the least number of line ends that are kept; 40,000 are 2.8 hours of a robot that sends four lines a second.
 REMEMBERED: Final = 40_000
 _END: Final = 0x0D
 

@@ -27,8 +27,8 @@ FRAME_END: Final = 0x0D  # '\r'
 LONGEST_UNIT: Final = 256
 #: Silence after which an unfinished unit is handed over: five byte times of 9600 baud, rounded.
 PAUSE_CYCLES: Final = 5 * CYCLES_PER_MS
-#: CHOICE: 6 s of odometry.  Less loses frames for a program that reads every few seconds; more shows a program
-#: that was busy elsewhere an older past first.  A kernel's own buffer (4095 bytes) would hold 38 s.
+#: CHOICE: 6 s of odometry.  With less, a program that reads every few seconds loses frames; with more, a program that
+#: was busy gets older frames first.  A kernel's own buffer (4095 bytes) would hold 38 s.
 DEFAULT_KEEP: Final = 24
 
 

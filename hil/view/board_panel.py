@@ -19,7 +19,7 @@ from hil.view.snapshot import Snapshot
 
 #: CHOICE: steps of a slider from one end to the other.
 STEPS: Final = 200
-#: CHOICE: so long after a hand was on it a slider is not set back to what the run said before.
+#: CHOICE: for this time after the user moved a slider, the run does not set it back.
 HOLD_S: Final = 0.5
 HELP: Final = "What is set here stays until it is set again, also against a world."
 NO_FACES: Final = "There is nothing to set: no part has a face."

@@ -23,7 +23,7 @@ from hil.serial_url import gone, open_url
 
 #: A port that takes no byte for so long is not being read.
 WRITE_TIMEOUT_S: Final = 0.5
-#: CHOICE: what is kept: the points of 3 hours at least, the text of 2 minutes.
+#: CHOICE: the points of at least 3 hours are kept, and the text of 2 minutes.
 MOST_FRAMES: Final = 45_000
 MOST_ENTRIES: Final = 500
 #: What ends an entry of the log: of the robot, whose frames end in line feed and carriage return, and of any board.

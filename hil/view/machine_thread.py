@@ -32,7 +32,7 @@ from hil.view.snapshot import Mode
 from hil.view.stepping import Step, StepEnd, Stepper
 from hil.view.taps import RegisterTaps
 
-#: CHOICE: a moment to go back to is noted by itself this often.
+#: CHOICE: the interval of automatic checkpoints.
 MOMENT_CYCLES: Final = 10 * SYSCLK_HZ
 #: How long before a finding each statement is looked at: longer than a slice.
 BEFORE_CYCLES: Final = SYSCLK_HZ // 100

@@ -27,7 +27,7 @@ from hil.view.snapshot import Snapshot
 from hil.view.taps import LastWriter, RegisterTaps
 
 EVERY: Final = 5
-#: CHOICE: registers that are shown of a search; a person types on rather than reads more.
+#: CHOICE: the most registers that a search shows; with more, a user types on.
 MOST: Final = 60
 REGISTERS: Final = ("register", "value", "last written by")
 FIELDS: Final = ("field", "value", "what it is")

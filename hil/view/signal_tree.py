@@ -9,7 +9,7 @@ from nicegui import events, ui
 
 from hil.view.probes import is_words, pin_number
 
-#: CHOICE: matches that are shown of a search; a person types on rather than reads more.
+#: CHOICE: the most matches that a search shows; with more, a user types on.
 MOST: Final = 60
 GROUP: Final = "group "
 #: Beginnings of names, and the group that they stand in; the rest are variables of the firmware and registers.

@@ -10,7 +10,7 @@ from emulator.signal import Signal
 #: (time_s, x_m, y_m, heading_rad)
 Point = tuple[float, float, float, float]
 
-#: CHOICE: more than any picture shows; 640 kB.
+#: CHOICE: more points than any picture shows; they take 640 kB.
 MOST_POINTS: Final = 20_000
 _FIELDS: Final = 4
 

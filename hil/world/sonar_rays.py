@@ -35,7 +35,7 @@ from hil.world.geometry import Corner, Post, Segment, corners, in_sight
 
 #: EZ: detects up to 254 inches.
 MAX_RANGE_M: Final = 254 * 0.0254
-#: CHOICE: a corner throws sound back fully up to 5 degrees off the right angle and not at all beyond 15.
+#: CHOICE: a corner reflects sound fully up to 5 degrees off the right angle, and not at all beyond 15.
 CORNER_FULL_DEG: Final = 5.0
 CORNER_NONE_DEG: Final = 15.0
 
@@ -49,7 +49,8 @@ class SonarMount:
     bearing_rad: float
 
 
-#: Named as in us.h.  CHOICE: on the upper front of a body that reaches 0.12 m ahead of the axle (TFG: no measures).
+#: Named as in us.h.  CHOICE: they sit on the upper front of a body that reaches 0.12 m ahead of the axle (TFG: no
+#: dimensions).
 DEFAULT_MOUNTS: Final[Mapping[str, SonarMount]] = MappingProxyType(
     {
         "LEFT": SonarMount(0.055, 0.055, pi / 2.0),

@@ -58,7 +58,7 @@ from emulator.c28x.tree_queries import assigned_variables, blocks, children, par
 
 #: After so many turns, the walk gives up what it knows at the head of a loop.
 _TURNS: Final = 8
-#: CHOICE: only so many conditions are kept, the newest ones, so that a function with thousands is analysed quickly.
+#: CHOICE: only the newest conditions are kept, so that a function with thousands of them is analysed quickly.
 _CONDITIONS: Final = 100
 
 

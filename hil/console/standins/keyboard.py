@@ -18,11 +18,11 @@ import tkinter
 from dataclasses import dataclass
 from typing import Any
 
-#: CHOICE: longer than the two events of one repetition are apart, shorter than a finger.
+#: CHOICE: longer than the time between the two events of one repetition, shorter than a keystroke.
 SETTLE_S = 0.02
-#: CHOICE: longer than a loop needs from its ``update`` to its first question (measured: about 1 ms).
+#: CHOICE: longer than a loop takes from its ``update`` to its first query (measured: about 1 ms).
 DELAY_S = 0.02
-#: CHOICE: the slowest loop of the thesis console asks once a second.
+#: CHOICE: the slowest loop of the thesis console queries once a second.
 TAP_S = 1.2
 
 #: Names of the original package -> Tk's key symbols.  Other keys: their character, or Tk's own symbol.

@@ -17,7 +17,7 @@ from hil.world.world import World
 DIAGONAL_MOUNTS: Final[Mapping[str, SonarMount]] = {
     name: SonarMount(one.x_m, one.y_m, one.bearing_rad) for name, one in DIAGONALS.items()
 }
-#: CHOICE: the LiDAR stands over the middle of the body, high enough to see over the sonars; its 0 is straight ahead.
+#: CHOICE: the LiDAR is above the middle of the body, high enough to see over the sonars; its 0 is straight ahead.
 LIDAR_AHEAD_M: Final = 0.025
 
 

@@ -13,7 +13,7 @@ from typing import Final
 from emulator.devices.rplidar_a1 import RplidarA1
 from hil.board import Board, Face
 
-#: CHOICE: pins of SCI-B that nothing else of the robot has (multiplexer 6).
+#: CHOICE: pins of SCI-B that no other part of the robot uses (multiplexer 6).
 TX_GPIO: Final = 70
 RX_GPIO: Final = 71
 

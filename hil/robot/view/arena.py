@@ -25,7 +25,7 @@ from hil.world.robot_params import Pose
 
 #: Points of a stroke that are sent again when it grows.
 OPEN_POINTS: Final = 200
-#: CHOICE: as much of a cloud as can still be read as a picture.
+#: CHOICE: the most points of a cloud that are still readable as a picture.
 MOST_POINTS: Final = 6000
 #: Slices of the page's 20 Hz between two looks at ways and clouds.
 SLOW: Final = 5

@@ -15,7 +15,7 @@ from hil.client.orders import order, set_reference
 PERIOD_S: Final = 0.1
 #: Browsers repeat a held key after half a second at the latest.
 FORGET_S: Final = 0.8
-#: The stick at its edge.  CHOICE: what the firmware's mission drives at, and a quarter turn in less than 2 s.
+#: The stick at its edge.  CHOICE: the speed of the firmware's mission, and a quarter turn in less than 2 s.
 STICK_V_M_S: Final = 0.2
 STICK_W_RAD_S: Final = 1.0
 
