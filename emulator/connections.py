@@ -66,7 +66,7 @@ FIFO_DEPTH: Final = 16
 #: Value of CTRIPHSEL and CTRIPLSEL: the output of the digital filter.
 FILTERED: Final = 2
 #: Nothing is reported for fewer edges, messages or frames than these.
-LEAST_EDGES: Final = 8
+MIN_EDGES: Final = 8
 #: Value of TZA and TZB: a trip does not change the output.
 NO_CHANGE: Final = 3
 #: Value of LOADAMODE: the active register is never loaded from the shadow register.
@@ -600,7 +600,7 @@ class Connections:
             if qualifier is None or not self._chip.pins[pin].drivers():
                 continue
             lost = qualifier.edges - qualifier.passed
-            if qualifier.edges < LEAST_EDGES or lost < qualifier.edges // 4:
+            if qualifier.edges < MIN_EDGES or lost < qualifier.edges // 4:
                 continue
             block, name = _split(user) if "." in user else (user, "")
             place = self._qualified(pin) or self._source.last(block, name)
@@ -898,7 +898,7 @@ class Connections:
             ram = self._chip.can[letter].ram
             again = max(range(1, OBJECTS + 1), key=lambda number: ram[number].read_again)
             place = self._source.reads[block, "CAN_NDAT_21"][0]
-            if ram[again].read_again >= LEAST_EDGES and not any(
+            if ram[again].read_again >= MIN_EDGES and not any(
                 self._requests(command, writing=False) for command in commands
             ):  # fmt: skip
                 self._chip.findings.report_at(
@@ -911,7 +911,7 @@ class Connections:
     def _own_frames(self, block: str, letter: str) -> None:
         """A controller in loopback receives only its own frames, and an object waits for a frame that never passes."""
         can = self._chip.can[letter]
-        number = can.ram.idle_receiver() if can.passed_by >= LEAST_EDGES else 0
+        number = can.ram.idle_receiver() if can.passed_by >= MIN_EDGES else 0
         if not number:
             return
         waiting = can.ram[number]

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, Final, TextIO
 
 #: Larger than any scenario, map, table or baseline that somebody writes; a log of a day fits, too.
-MOST_BYTES: Final = 64 << 20
+MAX_BYTES: Final = 64 << 20
 _AT_LINE: Final = re.compile(r" \(at line (\d+), column \d+\)")
 # A FIFO that nobody writes to would keep a plain open waiting.
 _FLAGS: Final = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
@@ -30,7 +30,7 @@ def opened(path: str | Path) -> BinaryIO:
     return open(handle, "rb")
 
 
-def read_bytes(path: str | Path, most: int = MOST_BYTES) -> bytes:
+def read_bytes(path: str | Path, most: int = MAX_BYTES) -> bytes:
     """The whole of a plain file: a device could go on for ever.
 
     Raises ValueError, naming the file, for anything else and for more than `most` bytes; OSError.
@@ -42,7 +42,7 @@ def read_bytes(path: str | Path, most: int = MOST_BYTES) -> bytes:
     return content
 
 
-def read_text(path: str | Path, most: int = MOST_BYTES) -> str:
+def read_text(path: str | Path, most: int = MAX_BYTES) -> str:
     """The same as text, without a byte order mark.  Raises ValueError, naming the file and the byte, for no UTF-8."""
     try:
         return read_bytes(path, most).decode("utf-8-sig")

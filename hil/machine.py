@@ -54,7 +54,7 @@ def internal_error(error: Exception, board_file: str = "") -> str:
 
 
 #: What a field of a setup takes, in words.
-_WANTED: Final = {str: "a text", int: "a whole number", bool: "True or False", tuple: "a text, or several"}
+_EXPECTED: Final = {str: "a text", int: "a whole number", bool: "True or False", tuple: "a text, or several"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +119,7 @@ class Setup:
             elif wanted is tuple and isinstance(value, list):
                 settings[name] = tuple(value)
             elif not isinstance(value, wanted) or (wanted is int and isinstance(value, bool)):
-                raise TypeError(f"{name}={value!r}: expected {_WANTED[wanted]}")
+                raise TypeError(f"{name}={value!r}: expected {_EXPECTED[wanted]}")
         return replace(setup or cls(), **settings)
 
     def as_dict(self) -> dict[str, Any]:

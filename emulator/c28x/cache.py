@@ -32,7 +32,7 @@ from emulator.c28x.symbols import EnumType, Module, Symbol
 from emulator.c28x.tree import Function
 
 #: How many programs the folder keeps: the most recently used ones.
-KEPT: Final = 64
+MAX_PROGRAMS: Final = 64
 PACKAGE: Final = Path(__file__).resolve().parent.parent
 #: Folders that a translation depends on in addition to the firmware, and whether their subfolders count too.
 TRANSLATOR: Final = (("", False), ("c28x", True), ("registers", False), ("sysbios", False))
@@ -184,7 +184,7 @@ def _signature(file: Path) -> tuple[int, int]:
     return (found.st_size, found.st_ino)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=MAX_PROGRAMS)
 def _load(file: str, size: int, inode: int) -> CachedProgram | None:
     """A kept program; None if it is missing or damaged.  Images of one process share it, so it must not be changed."""
     if not size:
@@ -238,7 +238,7 @@ def _itself(ctype: CType) -> CType:
 
 
 def _keep(file: Path, kept: CachedProgram) -> None:
-    """Write a program to its file, completely or not at all; delete the oldest files beyond `KEPT`."""
+    """Write a program to its file, completely or not at all; delete the oldest files beyond `MAX_PROGRAMS`."""
     limit = sys.getrecursionlimit()
     sys.setrecursionlimit(max(limit, 20_000))
     temporary = ""
@@ -252,7 +252,7 @@ def _keep(file: Path, kept: CachedProgram) -> None:
             target.write(content)
         os.replace(temporary, file)
         programs = sorted(file.parent.glob("*.program"), key=lambda p: p.stat().st_mtime_ns)
-        for old in programs[:-KEPT]:
+        for old in programs[:-MAX_PROGRAMS]:
             old.unlink()
     except (OSError, pickle.PicklingError, TypeError, AttributeError, RecursionError):
         with suppress(OSError):

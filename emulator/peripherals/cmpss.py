@@ -9,7 +9,7 @@ Not modelled: propagation delay and offset of the comparators, settling of the D
     answer the CPU, and continues with its last settings.
 Time: the positive input is a voltage that may change at any time.  CHOICE: it is compared when the wire reports a step
     and when a register of the module is accessed; while the comparators are on and an input is not steady, also every
-    `look_cycles` (1 us).  So the time of a crossing is known within that interval, and a shorter pulse may be missed.
+    `compare_cycles` (1 us).  So the time of a crossing is known within that time, and a shorter pulse may be missed.
     The filter samples between two comparisons have the level of the last one.  With steady inputs, only filter and
     ramp have events, and these are exact.
 CHOICE: while COMPDACE is 0 all outputs are low, inverted or not.
@@ -41,9 +41,9 @@ LOCKS: Final = {
 CODES: Final = 4096
 #: The typical hysteresis, in codes, and the most of them.
 HYSTERESIS_CODES: Final = 12
-MOST_HYSTERESIS: Final = 4
+MAX_HYSTERESIS: Final = 4
 #: Cycles between two comparisons of a voltage that may change without a report.
-LOOK_CYCLES: Final = 200
+COMPARE_CYCLES: Final = 200
 #: The fields of the high comparator in COMPCTL; those of the low one lie 8 bits further up.
 _SOURCE: Final = COMPCTL.COMPHSOURCE.mask
 _INVERTED: Final = COMPCTL.COMPHINV.mask
@@ -83,24 +83,39 @@ class Cmpss:
 
     `high` and `low` have the output wires.  `sync_listen(n, on)` is called when the module begins (or ceases) to need
     EPWMSYNCPER of ePWM `n`; each pulse must call `sync`.  `epwms` is the number of ePWMs.  References are in volts.
-    `look_cycles` may be changed.
+    `compare_cycles` may be changed.
     """
 
     __slots__ = (
-        "_both", "_clock", "_control", "_epwms", "_event", "_findings", "_negative", "_positive", "_quiet", "_ramp",
-        "_references_v", "_regs", "_sync_listen", "_sync_source", "high", "look_cycles", "low",
+        "_both",
+        "_clock",
+        "_control",
+        "_epwms",
+        "_event",
+        "_findings",
+        "_negative",
+        "_positive",
+        "_quiet",
+        "_ramp",
+        "_references_v",
+        "_regs",
+        "_sync_listen",
+        "_sync_source",
+        "compare_cycles",
+        "high",
+        "low",
     )  # fmt: skip
 
     def __init__(
         self, clock: Clock, cpu: Cpu, regs: CmpssRegs, positive: AnalogWire, negative: AnalogWire, *, number: int,
         vdda_v: float, vdac_v: float, sync_listen: Callable[[int, bool], None], epwms: int,
-        look_cycles: int = LOOK_CYCLES,
+        compare_cycles: int = COMPARE_CYCLES,
     ) -> None:  # fmt: skip
         self._clock, self._findings, self._regs = clock, cpu.findings, regs
         self._positive, self._negative = positive, negative
         self._references_v = vdda_v, vdac_v
         self._sync_listen, self._epwms = sync_listen, epwms
-        self.look_cycles = look_cycles
+        self.compare_cycles = compare_cycles
         self._control = regs.registers["COMPCTL"]
         self.high, self.low = ComparatorChannel(f"CMPSS{number}", "H"), ComparatorChannel(f"CMPSS{number}", "L")
         self._both = (self.high, self.low)
@@ -179,7 +194,7 @@ class Cmpss:
         else:
             negative_v = self._code(half, cycles) * self._reference_v / CODES
         if half.raw:
-            steps = min(self._regs.registers["COMPHYSCTL"].value, MOST_HYSTERESIS)
+            steps = min(self._regs.registers["COMPHYSCTL"].value, MAX_HYSTERESIS)
             negative_v -= steps * HYSTERESIS_CODES * self._reference_v / CODES
         return negative_v
 
@@ -222,7 +237,7 @@ class Cmpss:
             falls = self._ramp.running and self._on_ramp
             if not self._positive.steady or (by_pin and not self._negative.steady):
                 self._quiet = time == NEVER and not by_pin and not falls
-                time = min(time, now + self.look_cycles)
+                time = min(time, now + self.compare_cycles)
             elif falls:
                 time = min(time, self._crossing())
         if self._quiet:
@@ -252,7 +267,7 @@ class Cmpss:
             volts = self._positive.volts(self._clock.now)
             high, low = self.high, self.low
             if (volts > high.limit_v) == high.raw and (volts > low.limit_v) == low.raw:
-                self._event = self._clock.after(self.look_cycles, self._due)
+                self._event = self._clock.after(self.compare_cycles, self._due)
                 return
         self._refresh()
 

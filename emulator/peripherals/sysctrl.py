@@ -56,7 +56,7 @@ _SETTLED: Final = 1000 * CYCLES_PER_US
 _SYSCLK: Final = 0
 _OSCILLATORS: Final = (1, 2, 3)
 #: TMR2CLKPRESCALE: /1 to /16.
-_MOST_PRESCALE: Final = 4
+_MAX_PRESCALE: Final = 4
 
 
 class SysCtrl:
@@ -170,7 +170,7 @@ class SysCtrl:
         quarters = self._quarters
         divider = 2 * (self._clkcfg.registers["SYSCLKDIVSEL"].value & 0x3F) or 1
         cycles = round(quarters / (4 * divider)) if quarters > 3 else _WITHOUT_PLL
-        return max(1, cycles) << min(control >> 3 & 7, _MOST_PRESCALE)
+        return max(1, cycles) << min(control >> 3 & 7, _MAX_PRESCALE)
 
     @property
     def lspclk_divider(self) -> int:

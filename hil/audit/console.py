@@ -29,7 +29,7 @@ IDS: Final = frozenset(name for name, entry in CATALOGUE.items() if entry.kind i
 #: When the window can be clicked.
 READY_S: Final = 3.5
 #: A robot that stands moves by less than a millimetre.
-STANDS_M: Final = 1e-3
+STOPPED_M: Final = 1e-3
 #: The console's own period of orders.
 CLICK_S: Final = 0.1
 
@@ -70,7 +70,7 @@ def speed(bench: Bench) -> Series:
 def _still_drives(what: str, bench: Bench, _desk: Desk) -> Evidence:
     """Measure the distance of two seconds that begin a second from now."""
     bench.run_for(1.0)
-    evidence = measured(f"way in 2 s, a second after {what}", distance(bench, 2.0), "m", high=STANDS_M)
+    evidence = measured(f"way in 2 s, a second after {what}", distance(bench, 2.0), "m", high=STOPPED_M)
     return evidence.shown(Picture("The robot's true speed", "time in s", "speed in m/s", [speed(bench)]))
 
 

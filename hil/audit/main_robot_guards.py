@@ -19,8 +19,7 @@ PERIOD_S: Final = 0.05
 
 
 def distance_despite(fixes: Fixes, fault: str, within_s: float, *, orders: bytes = b"#MISN\r") -> float:
-    """Return how far the wheels roll (m) in the second that begins `within_s` after a fault; the robot drives by then.
-    """
+    """Return the roll of the wheels (m) in the second that begins `within_s` after a fault; the robot then drives."""
     with robot(fixes, watch=False, static=False) as bench:
         bench.run_for(0.8)
         bench.feed(orders)
@@ -37,14 +36,14 @@ def distance_despite(fixes: Fixes, fault: str, within_s: float, *, orders: bytes
 
 
 #: A wheel that is braked may still be pushed a little.
-_STANDS_M: Final = 0.005
+_STOPPED_M: Final = 0.005
 
 
 def watchdog(fixes: Fixes) -> Evidence:
     """Hang TaskNAVIGATION for ten seconds.  It may be three periods late, the reset comes 105 ms later, and the wheels
     coast for about 0.3 s."""
     distance_m = distance_despite(fixes, "task-slow:task=TaskNAVIGATION,us=1e7", 0.9)
-    return measured("way in a second, 0.9 s after TaskNAVIGATION hangs", distance_m, "m", high=_STANDS_M)
+    return measured("way in a second, 0.9 s after TaskNAVIGATION hangs", distance_m, "m", high=_STOPPED_M)
 
 
 def distance_unchecked(fixes: Fixes) -> Evidence:
@@ -64,20 +63,20 @@ def distance_unchecked(fixes: Fixes) -> Evidence:
 def front_stuck(fixes: Fixes) -> Evidence:
     """Fix the front sonar at 2 m, whatever is there: 25 cm at 0.15 m/s take 1.7 s."""
     distance_m = distance_despite(fixes, "sonar-stuck:sensor=FRONT,range=2", 2.5)
-    return measured("way in a second, 2.5 s after the front sonar is stuck", distance_m, "m", high=_STANDS_M)
+    return measured("way in a second, 2.5 s after the front sonar is stuck", distance_m, "m", high=_STOPPED_M)
 
 
 def link_silent(fixes: Fixes) -> Evidence:
     """Send SETR and nothing more; look 3 s later."""
     distance_m = distance_despite(fixes, "", 2.0, orders=b"#TELE\r#SETR0.1,0.0\r")
-    return measured("way in a second, 3 s after the last order", distance_m, "m", high=_STANDS_M)
+    return measured("way in a second, 3 s after the last order", distance_m, "m", high=_STOPPED_M)
 
 
 def turn_unchecked(fixes: Fixes) -> Evidence:
     """Hold the gyro at the end of its range, 250 degrees/s: the robot must notice a difference of 0.4 rad/s within 0.5
     s."""
     distance_m = distance_despite(fixes, "gyro-saturation:sign=+", 0.5)
-    return measured("way in a second, 0.5 s after the gyro is at its end", distance_m, "m", high=_STANDS_M)
+    return measured("way in a second, 0.5 s after the gyro is at its end", distance_m, "m", high=_STOPPED_M)
 
 
 def actuator_limits(fixes: Fixes) -> Evidence:
@@ -91,7 +90,7 @@ def actuator_limits(fixes: Fixes) -> Evidence:
 def wheel_unchecked(fixes: Fixes) -> Evidence:
     """Hold the left wheel.  The right one must stop 0.4 s, a period of TaskNAVIGATION and one of TaskSERVO later."""
     distance_m = distance_despite(fixes, "wheel-blocked:side=left", 0.7)
-    return measured("way of a wheel in a second, 0.7 s after the other is held", distance_m, "m", high=_STANDS_M)
+    return measured("way of a wheel in a second, 0.7 s after the other is held", distance_m, "m", high=_STOPPED_M)
 
 
 def _slanted() -> WorldMap:
@@ -106,8 +105,7 @@ _SLANTED: Final = _slanted()
 
 
 def push_unnoticed(fixes: Fixes) -> Evidence:
-    """Drive a mission towards a wall at 50 degrees, which the front sonar does not detect; it arrives after about 4 s.
-    """
+    """Drive a mission towards a wall at 50 degrees, which the front sonar misses; it arrives after some 4 s."""
     with robot(fixes, world_map=_SLANTED, watch=False, static=False) as bench:
         bench.run_for(0.8)
         bench.feed(b"#MISN\r")

@@ -25,10 +25,10 @@ ORDER_S: Final = 6.25e-3
 WHEELS_S: Final = ORDER_S + 50e-3 + 25e-3 + 1.1e-3
 #: TFG 3.2.3: the fastest it drives.  It goes on until the wheels are told, then brakes with the motor's time constant
 #: (0.085 s, `servos.c`).
-STOP_WAY_M: Final = 0.3 * (WHEELS_S + 0.085)
+STOPPING_M: Final = 0.3 * (WHEELS_S + 0.085)
 _SAMPLE_CYCLES: Final = 250 * CYCLES_PER_US
 #: How long nothing happens before an order counts as lost.
-_PATIENCE_S: Final = 0.25
+_TIMEOUT_S: Final = 0.25
 _STATES: Final = {
     b"STOP": "STOP", b"MISN": "MISSION", b"TELE": "TELEMANIPULATION", b"CALB": "CALIBRATION", b"INIT": "INITIALITATION",
 }  # fmt: skip
@@ -85,18 +85,18 @@ def _sampled(bench: Bench, look: Callable[[], Any], duration_s: float) -> list[t
     return seen
 
 
-def _fed(bench: Bench, orders: bytes, after_s: float, patience_s: float) -> list[tuple[float, OrderEffect]]:
+def _fed(bench: Bench, orders: bytes, after_s: float, timeout_s: float) -> list[tuple[float, OrderEffect]]:
     """What was understood, by the time (s) since the last character of `orders`, which begin in `after_s`."""
     bench.clock.after(round(after_s * SYSCLK_HZ) + 1, lambda: bench.feed(orders))
     on_line_s = after_s + len(orders) * CHARACTER_S
-    changes = _sampled(bench, lambda: understood(bench), on_line_s + patience_s)
+    changes = _sampled(bench, lambda: understood(bench), on_line_s + timeout_s)
     return [(time_s - on_line_s, what) for time_s, what in changes]
 
 
 def order_latency(bench: Bench, order: bytes, after_s: float) -> Evidence:
     """`order-latency`: an order that changes something, begun in `after_s`, is executed within 6.25 ms of its last
     character (TFG 3.4.3: no later than the next one can be complete), in the start-up of a bench not booted too."""
-    changes = _fed(bench, order, after_s, _PATIENCE_S if bench.clock.now else 2.5)
+    changes = _fed(bench, order, after_s, _TIMEOUT_S if bench.clock.now else 2.5)
     right = changes[0][1].after(order)
     latency_s = next((time_s for time_s, what in changes[1:] if what == right), math.inf)
     return measured(f"{order!r} is executed after", 1e3 * latency_s, "ms", high=1e3 * ORDER_S)
@@ -104,7 +104,7 @@ def order_latency(bench: Bench, order: bytes, after_s: float) -> Evidence:
 
 def two_orders(bench: Bench, first: bytes, second: bytes, after_s: float) -> Evidence:
     """`order-latency`: of two orders without a pause between them, the first obeyed and then the second (count)."""
-    changes = [what for _, what in _fed(bench, first + second, after_s, _PATIENCE_S if bench.clock.now else 2.5)]
+    changes = [what for _, what in _fed(bench, first + second, after_s, _TIMEOUT_S if bench.clock.now else 2.5)]
     obeyed, expected = 0, changes[0]
     for order in (first, second):
         expected = expected.after(order)
@@ -122,7 +122,7 @@ def wheels_obey(bench: Bench, v_m_s: float, w_rad_s: float, after_s: float) -> E
     order = f"#SETR{v_m_s:.3f},{w_rad_s:.3f}\r".encode()
     bench.clock.after(round(after_s * SYSCLK_HZ) + 1, lambda: bench.feed(order))
     on_line_s = after_s + len(order) * CHARACTER_S
-    changes = _sampled(bench, lambda: drive(bench), on_line_s + _PATIENCE_S)
+    changes = _sampled(bench, lambda: drive(bench), on_line_s + _TIMEOUT_S)
     latency_s = changes[1][0] - on_line_s if len(changes) > 1 else math.inf
     return measured(f"{order!r} moves a wheel after", 1e3 * latency_s, "ms", high=1e3 * WHEELS_S)
 
@@ -167,7 +167,7 @@ def stopping_distance(bench: Bench, orders: Sequence[bytes], after_s: float) -> 
     bench.run_for(2.0)
     bench.world.sync_now()
     way = math.dist(begin[:2], bench.world.pose[:2])
-    return measured(f"way after {b''.join(orders)!r} and STOP", way, "m", high=STOP_WAY_M)
+    return measured(f"way after {b''.join(orders)!r} and STOP", way, "m", high=STOPPING_M)
 
 
 def stop_forgets(bench: Bench, v_m_s: float, w_rad_s: float) -> Evidence:
@@ -194,7 +194,7 @@ class ReferenceStep(NamedTuple):
 _HEADING_SHARE: Final = 0.02
 _HEADING_RAD_S: Final = math.radians(0.03 + 5 / 60)
 #: A wheel loses up to 1 % of its way.
-_WAY_SHARE: Final = 0.01
+_DISTANCE_SHARE: Final = 0.01
 
 
 def odometry_follows(bench: Bench, start: Pose, legs: Sequence[ReferenceStep]) -> Evidence:
@@ -218,7 +218,7 @@ def odometry_follows(bench: Bench, start: Pose, legs: Sequence[ReferenceStep]) -
     turned = sum(abs(leg.w_rad_s) * leg.duration_s for leg in legs)
     time_s = sum(leg.duration_s for leg in legs) + 1.0
     ends = sum(abs(leg.v_m_s * leg.w_rad_s) for leg in legs) * 0.25**2 / 2
-    bound = 0.002 + _WAY_SHARE * way + way / 2 * (_HEADING_SHARE * turned + _HEADING_RAD_S * time_s) + 2 * ends
+    bound = 0.002 + _DISTANCE_SHARE * way + way / 2 * (_HEADING_SHARE * turned + _HEADING_RAD_S * time_s) + 2 * ends
     error = math.dist(believed[:2], true[:2])
     return measured(f"error of the odometry after {way:.2f} m", error, "m", high=bound)
 

@@ -23,7 +23,7 @@ NAMES: Final = (
 #: Those in the file of another.
 IN_FILE_OF: Final = {"replay": "record", "compare": "record"}
 #: Commands whose arguments may look like options: negative speeds.
-TAKE_WHAT_LOOKS_LIKE_OPTIONS: Final = ("drive",)
+ACCEPT_NEGATIVE_NUMBERS: Final = ("drive",)
 
 
 class LazyCommand(TyperCommand):
@@ -59,7 +59,7 @@ class LazyCommand(TyperCommand):
     def whole(self) -> TyperCommand:
         """The command with its arguments and options."""
         alone = typer.Typer(add_completion=False, rich_markup_mode="rich", pretty_exceptions_enable=False)
-        settings = {"ignore_unknown_options": self.name in TAKE_WHAT_LOOKS_LIKE_OPTIONS}
+        settings = {"ignore_unknown_options": self.name in ACCEPT_NEGATIVE_NUMBERS}
         alone.command(self.name, cls=Command, context_settings=settings)(self.function)
         return cast(TyperCommand, typer.main.get_command(alone))
 

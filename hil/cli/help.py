@@ -7,7 +7,7 @@ from typing import Any, Final
 from typer.core import TyperCommand, TyperOption
 
 #: A command with more options than this has them in groups.
-MOST_UNGROUPED: Final = 8
+MAX_UNGROUPED: Final = 8
 #: The groups in their order, and the parameters of all commands that belong to each.
 GROUPS: Final = {
     "Robot and world": (
@@ -38,11 +38,11 @@ class Command(TyperCommand):
     def __init__(self, *arguments: Any, **more: Any) -> None:
         super().__init__(*arguments, **more)
         options = [each for each in self.params if isinstance(each, TyperOption)]
-        if len(options) > MOST_UNGROUPED:
+        if len(options) > MAX_UNGROUPED:
             for each in options:
                 each.rich_help_panel = _GROUP_OF.get(each.name or "")
             self.params.sort(key=lambda each: _ORDER.index(getattr(each, "rich_help_panel", None) or ""))
-        self._grouped = len(options) > MOST_UNGROUPED
+        self._grouped = len(options) > MAX_UNGROUPED
         self.help = with_lists(self.help or "")
 
     def get_help_option(self, ctx: Any) -> Any:

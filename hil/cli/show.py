@@ -230,7 +230,7 @@ def print_report(report: Report) -> None:
     """A report as the end of a command shows it: the worst findings as a table; nothing if there are none."""
     from hil.reports import terminal
 
-    terminal.print_report(report, console(), most=terminal.MOST_SHOWN)
+    terminal.print_report(report, console(), most=terminal.MAX_SHOWN)
 
 
 @contextmanager

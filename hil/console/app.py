@@ -18,7 +18,7 @@ from hil.files import read_bytes
 
 _DRIVE_PATH = re.compile(r"[A-Za-z]:/[^\n]*")
 #: A larger file is no console program.
-MOST_BYTES: Final = 4 << 20
+MAX_BYTES: Final = 4 << 20
 #: Part of Python, but often installed apart.
 _APART: Final = frozenset({"tkinter"})
 
@@ -45,7 +45,7 @@ def read_app(path: Path) -> App:
         inside = path / "main.py"
         raise ValueError(f"{path}: is a folder" + (f"; give {inside}" if inside.is_file() else ""))
     try:
-        tree = ast.parse(read_bytes(path, MOST_BYTES), str(path))
+        tree = ast.parse(read_bytes(path, MAX_BYTES), str(path))
     except (SyntaxError, ValueError) as error:  # ValueError: a null byte
         line = getattr(error, "lineno", None)
         where = f", line {line}" if line else ""

@@ -15,7 +15,7 @@ from typing import Final
 from hil.console.app import App
 
 #: The question takes a second at most where everything is well; a display that does not answer takes for ever.
-PATIENCE_S: Final = 30.0
+TIMEOUT_S: Final = 30.0
 #: The back end of matplotlib that lives in the same windows as the app.
 BACK_END: Final = "TkAgg"
 _BACK_END_NEEDS: Final = "PIL.ImageTk"
@@ -86,12 +86,12 @@ def _ask(app: App, python: str, names: list[str]) -> _Answer:
     command = [python, "-c", _QUESTION, str(app.path.parent), windows, *names]
     try:
         done = subprocess.run(
-            command, env=environment(app), capture_output=True, text=True, timeout=PATIENCE_S, check=True
+            command, env=environment(app), capture_output=True, text=True, timeout=TIMEOUT_S, check=True
         )
         answer = json.loads(done.stdout)
         return _Answer(tuple(answer["missing"]), " ".join(answer["display"].split()))
     except subprocess.TimeoutExpired:
-        raise ValueError(f"{python}: gave no answer in {PATIENCE_S:.0f} s; does the display answer?") from None
+        raise ValueError(f"{python}: gave no answer in {TIMEOUT_S:.0f} s; does the display answer?") from None
     except (subprocess.CalledProcessError, json.JSONDecodeError, KeyError):
         raise ValueError(f"{python}: is no working Python 3") from None
 

@@ -30,7 +30,7 @@ _LIMIT_S: Final = 0.02
 #: Virtual time of a call that goes before: drivers wait for their parts.
 _BEFORE_S: Final = 3.0
 #: Calls that do not come to their end, after which a function is left alone.
-_PATIENCE: Final = 3
+_MAX_UNENDED: Final = 3
 #: Differences of a function that are told.
 _MOST: Final = 5
 
@@ -185,7 +185,7 @@ class Caller:
                     side.image.close()
                 sides = None
             unended += not (seen.ended and own_seen.ended)
-            if unended >= _PATIENCE or len(called.differences) + len(called.findings) >= _MOST:
+            if unended >= _MAX_UNENDED or len(called.differences) + len(called.findings) >= _MOST:
                 break
         for side in sides or ():
             side.image.close()

@@ -49,7 +49,7 @@ PROBES: Final = 8
 #: Virtual time after a call, for the interrupts that it has started.
 SETTLE_MS: Final = 5
 #: A function is tried after at most this many other functions.
-_MOST_OTHERS: Final = 16
+_MAX_OTHERS: Final = 16
 #: Numbers that initialising functions get as arguments.
 _SIZES: Final = (1, 10, 100)
 #: A function is not called any more after this many calls that computed for too long.
@@ -275,9 +275,7 @@ class CallChecker:
         where = function.where
         place = Place(where.file, where.line, function.name, function.c_file, where.column)
         declared = f"declared in line {one.declared.line}: hil: {one.declared.word} {one.declared.text}".rstrip()
-        return Finding(
-            "declared-property", message, function.path, "", place, (place,), "main", 0, details=(declared,)
-        )
+        return Finding("declared-property", message, function.path, "", place, (place,), "main", 0, details=(declared,))
 
     def _alone(self, candidate: Candidate) -> PreparedImage | None:
         """A fresh image after the calls that the function needs; None if there is none."""
@@ -400,9 +398,7 @@ class CallChecker:
     def _initialising(self, besides: Candidate | None, size: int) -> tuple[Step, ...]:
         """Calls of the initialising functions: first those that switch clocks on, then those that set pins."""
         deciders = self._decided_by(besides) if besides else {c.function.path for c in self.callables}
-        chosen = [
-            c for c in self.callables if c is not besides and self._prepares(c) and c.function.path in deciders
-        ]
+        chosen = [c for c in self.callables if c is not besides and self._prepares(c) and c.function.path in deciders]
         chosen.sort(key=lambda c: 0 if self._switches(c, _CLOCKS) else 1 if self._switches(c, _PINS) else 2)
         return tuple((c, moderate(c.parameters, size)) for c in chosen)
 
@@ -441,7 +437,7 @@ class CallChecker:
                 yield self._initialising(candidate, size)
             yield ()
             yield (*ready, *steps((c for c in others if not self._prepares(c)), 1))
-            for other in others[:_MOST_OTHERS]:
+            for other in others[:_MAX_OTHERS]:
                 yield (*ready, *steps([other], 1))
                 yield steps([other], 1)
 

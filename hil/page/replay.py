@@ -28,9 +28,9 @@ from hil.world.robot_params import RobotParams
 #: Units a metre, and a radian.
 UNITS: Final = 10_000
 #: CHOICE: as many as are written within a second of CPU after Ctrl-C.  Two million spans are ten minutes of the robot.
-MOST_SPANS: Final = 2_000_000
-MOST_SAMPLES: Final = 100_000
-MOST_LINES: Final = 100_000
+MAX_SPANS: Final = 2_000_000
+MAX_SAMPLES: Final = 100_000
+MAX_LINES: Final = 100_000
 #: The lane of what is left of the time.
 IDLE: Final = "Idle"
 _STATES: Final = {TaskState.RUNNING: "running", TaskState.READY: "ready", TaskState.WAITING: "waiting"}
@@ -124,7 +124,7 @@ class Replay:
                 self._sample(cycles, channel, name, value)
 
     def _kernel(self, cycles: int, kind: str, name: str) -> None:
-        if self._spans >= MOST_SPANS:
+        if self._spans >= MAX_SPANS:
             self._full.setdefault("what tasks do", cycles)
             return
         self._tasks.take(cycles, kind, name)
@@ -142,7 +142,7 @@ class Replay:
         spans.clear()
 
     def _add_line(self, line: ReceivedLine) -> None:
-        if len(self._line_rows) < MOST_LINES:
+        if len(self._line_rows) < MAX_LINES:
             if line.content.strip():
                 self._line_rows.append(line)
         else:
@@ -164,7 +164,7 @@ class Replay:
 
     def _sample(self, cycles: int, channel: str, name: str, value: float) -> None:
         signal = self._signals.setdefault((channel, name), _Signal())
-        if len(signal.values) >= MOST_SAMPLES:
+        if len(signal.values) >= MAX_SAMPLES:
             self._full.setdefault(name, cycles)
         elif not signal.values or signal.values[-1] != value:
             signal.times.append(cycles)

@@ -41,7 +41,7 @@ READINGS: Final = 10
 RESOLUTION_CM: Final = 2.54
 DEVIATIONS: Final = 3.5
 #: Largest table that is read.
-_MOST_BYTES: Final = 1_000_000
+_MAX_BYTES: Final = 1_000_000
 #: Longer than the sonars of the ring take to range one after the other: each reading is of a new ping.
 _BETWEEN_READINGS_CYCLES: Final = SYSCLK_HZ // 5
 
@@ -142,7 +142,7 @@ class Calibration:
 
 def read(path: str | Path) -> Table:
     """A table from a CSV file: `distance_cm`, then a column a sonar.  Raises ValueError, OSError."""
-    return parse(read_text(path, _MOST_BYTES), str(path))
+    return parse(read_text(path, _MAX_BYTES), str(path))
 
 
 def of_the_thesis() -> Table:

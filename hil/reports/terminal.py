@@ -21,7 +21,7 @@ STYLE: Final = {Severity.ERROR: "bold red", Severity.WARNING: "yellow", Severity
 #: How many differing outputs a finding's details show.
 OUTPUTS_SHOWN: Final = 6
 #: Findings that the end of a run shows; `hil check`, and the JSON of each command, have them all.
-MOST_SHOWN: Final = 30
+MAX_SHOWN: Final = 30
 #: From this width on everything has a column of its own.
 WIDE: Final = 140
 

@@ -30,7 +30,7 @@ _WIDTH_IN, _DPI = 7.0, 100
 #: Margin around the walls in m.
 _MARGIN_M: Final = 0.3
 #: A drive in a world without walls is drawn in a square as large as this at least.
-_LEAST_M: Final = 1.0
+_MIN_M: Final = 1.0
 
 
 def save_moving(
@@ -135,7 +135,7 @@ def _bounds(robot: RobotMachine, path: Sequence[PathPoint]) -> tuple[tuple[float
     points = [*(end for wall in robot.walls for end in wall), *((point.x_m, point.y_m) for point in path)]
     points += [(x + sign * radius, y + sign * radius) for x, y, radius in robot.posts for sign in (-1, 1)]
     low, high = (tuple(pick(axis) for axis in zip(*points, strict=True)) for pick in (min, max))
-    wide = max(_LEAST_M, high[0] - low[0]), max(_LEAST_M, high[1] - low[1])
+    wide = max(_MIN_M, high[0] - low[0]), max(_MIN_M, high[1] - low[1])
     return (low[0] - _MARGIN_M, low[1] - _MARGIN_M), (low[0] + wide[0] + _MARGIN_M, low[1] + wide[1] + _MARGIN_M)
 
 

@@ -36,7 +36,7 @@ from typing import Final
 from hil.rta.task_set import Arrival, Section, TaskModel, TaskSet
 
 #: After so many activations in one busy window the search ends: the processor is full, or next to it.
-_MOST_ACTIVATIONS: Final = 10_000
+_MAX_ACTIVATIONS: Final = 10_000
 #: How often something comes in a window, and what it takes each time.
 _Demand = tuple[Callable[[int], int], int]
 
@@ -213,9 +213,9 @@ def _responses(
         others.append((partial(_with_carry_in, other.arrival, response), other.computation_ns + switches))
     own, arrival = task.computation_ns + switches, task.arrival
     window = worst = worst_ready = 0
-    for number in range(_MOST_ACTIVATIONS):
+    for number in range(_MAX_ACTIVATIONS):
         work = (number + 1) * own + blocked_ns
-        found = _least_window(work, max(window, work), others, _MOST_ACTIVATIONS * arrival.period_ns)
+        found = _least_window(work, max(window, work), others, _MAX_ACTIVATIONS * arrival.period_ns)
         if found is None:
             return None
         window = found

@@ -32,7 +32,7 @@ from hil.rta.task_set import Interrupt, Section, TaskModel, TaskSet
 _RELEASE: Final = 13
 _FIRST_VECTOR: Final = 32
 _VECTORS_OF_A_GROUP: Final = 8
-MOST_INTERRUPTS: Final = 12
+MAX_INTERRUPTS: Final = 12
 _FOREVER: Final = 0xFFFFFFFF
 #: Nobody runs for so long between two phasings.
 _QUIET_CYCLES: Final = CYCLES_PER_MS
@@ -78,8 +78,8 @@ class SyntheticTasks:
     def __init__(
         self, task_set: TaskSet, protocol: Protocol, *, seed: int = 1, cost_scale: float = KERNEL_COST_SCALE
     ) -> None:  # fmt: skip
-        if len(task_set.interrupts) > MOST_INTERRUPTS:
-            raise CannotRunError(f"{len(task_set.interrupts)} interrupts: {MOST_INTERRUPTS} at most can run here")
+        if len(task_set.interrupts) > MAX_INTERRUPTS:
+            raise CannotRunError(f"{len(task_set.interrupts)} interrupts: {MAX_INTERRUPTS} at most can run here")
         for task in task_set.tasks:
             if task.priority > 15:
                 raise CannotRunError(f"{task.name}: priority {task.priority}: the kernel has those from 1 to 15")

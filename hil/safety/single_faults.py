@@ -38,8 +38,8 @@ REPEAT_S: Final = 0.1
 #: The speed in m/s of a mission on a free way, which is also the console's order.
 SPEED_M_S: Final = 0.15
 #: A robot slower than this stands.
-STANDS_M_S: Final = 0.005
-STANDS_RAD_S: Final = 0.05
+STOPPED_M_S: Final = 0.005
+STOPPED_RAD_S: Final = 0.05
 #: One that is faster than this backwards goes back; one below this share of its speed is slower.
 BACKS_M_S: Final = 0.02
 SLOWER: Final = 0.85
@@ -160,7 +160,7 @@ class RobotSample:
     @property
     def is_still(self) -> bool:
         """Whether it neither drives nor turns."""
-        return abs(self.v_m_s) < STANDS_M_S and abs(self.w_rad_s) < STANDS_RAD_S
+        return abs(self.v_m_s) < STOPPED_M_S and abs(self.w_rad_s) < STOPPED_RAD_S
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ _HIT_SEEN_S: Final = 0.5
 _HIT_M_S: Final = 0.02
 #: A wheel slower than this stands; a motor that is driven by less than this share may be held by friction alone
 #: (`NxtMotorParams.static_nm`: 0.08 to 0.12 without a load).
-_STANDS_RAD_S: Final = 0.2
+_STOPPED_RAD_S: Final = 0.2
 _DRIVEN: Final = 0.3
 
 
@@ -335,7 +335,7 @@ class _StallCounter:
         """Look, and again."""
         clock, _ = self._bench.clock, self._bench.world.pose  # the plant is moved up to now
         for motor, since in self._since.items():
-            if _driven(motor) < _DRIVEN or abs(motor.omega_rad_s) > _STANDS_RAD_S:
+            if _driven(motor) < _DRIVEN or abs(motor.omega_rad_s) > _STOPPED_RAD_S:
                 self._since[motor] = clock.now
             else:
                 self.longest_s = max(self.longest_s, (clock.now - since) / SYSCLK_HZ)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 _SETUP: Final = ("world", "seed", "fill", "realistic", "xbee", "divide", "float_division")
 _LISTS: Final = ("fixes", "defines", "options", "put")
 #: No scenario that somebody writes is larger.
-_MOST_BYTES: Final = 1 << 20
+_MAX_BYTES: Final = 1 << 20
 _POLICY: Final = ("baseline", "fail_on", "severity")
 DEFAULT_SECONDS: Final = 10.0
 
@@ -168,7 +168,7 @@ def load_scenario(path: Path, policy: Policy) -> tuple[Scenario, Policy]:
 
     Raises ValueError naming file, line and key for what it does not know; OSError if the file cannot be read.
     """
-    content = read_text(path, most=_MOST_BYTES)
+    content = read_text(path, most=_MAX_BYTES)
     table = parse_toml(content, str(path))
     try:
         check(table)

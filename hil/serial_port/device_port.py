@@ -19,7 +19,7 @@ from hil.serial_port.frames import DEFAULT_KEEP, Delivery
 from hil.serial_url import gone, open_url
 
 #: A frame is at most 48 bytes ("#ODO " and six 16-bit integers): one may wait in the driver.
-MOST_IN_DRIVER: Final = 48
+MAX_IN_DRIVER: Final = 48
 
 
 class DevicePort(SerialPort):
@@ -51,7 +51,7 @@ class DevicePort(SerialPort):
 
     def _ready_for_more(self) -> bool:
         try:
-            return int(getattr(self._serial, "out_waiting", 0)) <= MOST_IN_DRIVER  # URLs do not tell
+            return int(getattr(self._serial, "out_waiting", 0)) <= MAX_IN_DRIVER  # URLs do not tell
         except OSError:
             return True  # gone: the write says so
 

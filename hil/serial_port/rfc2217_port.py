@@ -23,7 +23,7 @@ from hil.serial_url import BAUD
 #: The longest suboption of RFC 2217 that carries data is the signature; 256 is generous.
 LONGEST_SUBOPTION: Final = 256
 #: Answers of the protocol that a client does not collect; beyond this it is not a serial client.
-MOST_CONTROL: Final = 65536
+MAX_CONTROL: Final = 65536
 IAC: Final = b"\xff"
 
 
@@ -106,7 +106,7 @@ class Rfc2217Port(TcpPort):
             broken = manager.suboption is not None and len(manager.suboption) > LONGEST_SUBOPTION
         except (ValueError, KeyError, IndexError, TypeError, struct.error):
             broken = True  # a suboption that says nothing sensible
-        if broken or len(self._control) > MOST_CONTROL:
+        if broken or len(self._control) > MAX_CONTROL:
             self.counters.protocol_errors += 1
             self._hang_up()
         else:

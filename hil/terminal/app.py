@@ -38,7 +38,7 @@ REFRESH_S: Final = 0.1
 #: The robot sends every 250 ms: after this it is said to be silent.
 SILENT_S: Final = 1.5
 #: Lines that the list of frames remembers: more than any screen has.
-MOST_LINES: Final = 200
+MAX_LINES: Final = 200
 STYLES: Final = {
     Layer.NOTHING: "", Layer.CLOUD: "red", Layer.PATH: "", Layer.ROBOT: "bold magenta", Layer.TEXT: "",
 }  # fmt: skip
@@ -65,7 +65,7 @@ class FrameList(Widget):
 
     def __init__(self) -> None:
         super().__init__(id="frames")
-        self._lines: deque[str] = deque(maxlen=MOST_LINES)
+        self._lines: deque[str] = deque(maxlen=MAX_LINES)
 
     def add(self, lines: Iterable[str]) -> None:
         """Lines below the others."""

@@ -17,10 +17,10 @@ from hil.client.plot import Point, sonar_points
 from hil.terminal.canvas import BRAILLE, Canvas, Layer, Raster
 
 #: Remembered: 20 minutes of a moving robot.
-MOST_POSES: Final = 4800
-MOST_ECHOES: Final = 3 * MOST_POSES
+MAX_POSES: Final = 4800
+MAX_ECHOES: Final = 3 * MAX_POSES
 #: The least that is shown, so that a robot at rest is no microscope picture.
-LEAST_EXTENT_M: Final = 1.0
+MIN_EXTENT_M: Final = 1.0
 #: Dots left free at the rim.
 MARGIN: Final = 1
 #: Dots of the line that shows the heading.
@@ -46,7 +46,7 @@ class View:
         low, high = min(y for _, y in known), max(y for _, y in known)
         # A dot more than the margin: rounding may move a point by one.
         across, up = (max(1, dots - 2 * MARGIN - 1) for dots in (width, height))
-        needed = max((right - left) / across, (high - low) / up, LEAST_EXTENT_M / min(across, up))
+        needed = max((right - left) / across, (high - low) / up, MIN_EXTENT_M / min(across, up))
         m_per_dot = 10 ** (math.ceil(10 * math.log10(needed)) / 10)
         return View((left + right) / 2, (low + high) / 2, m_per_dot, width, height)
 
@@ -61,8 +61,8 @@ class ArenaHistory:
     """The frames' poses and sonar points so far; the oldest are dropped."""
 
     def __init__(self) -> None:
-        self._path: deque[Point] = deque(maxlen=MOST_POSES)
-        self._echoes: deque[Point] = deque(maxlen=MOST_ECHOES)
+        self._path: deque[Point] = deque(maxlen=MAX_POSES)
+        self._echoes: deque[Point] = deque(maxlen=MAX_ECHOES)
         self._last: OdometryFrame | None = None
 
     def add(self, frame: OdometryFrame) -> None:

@@ -29,9 +29,9 @@ WRITE_TIMEOUT_S: Final = 1.0
 CHUNK: Final = 1024
 FULL_CHUNK_PAUSE_S: Final = 0.01
 #: Events that wait for the screen: a minute of frames.
-MOST_EVENTS: Final = 240
+MAX_EVENTS: Final = 240
 #: Orders that wait for the line.
-MOST_ORDERS: Final = 16
+MAX_ORDERS: Final = 16
 #: Between ``#TELE`` and the ``#SETR`` of a SET, as in the thesis console.
 SET_DELAY_S: Final = 0.5
 #: How long leaving waits for the last order: the write's own limit and some room.
@@ -78,7 +78,7 @@ class Link:
         self._line = open_url(port, read_timeout_s=READ_TIMEOUT_S, write_timeout_s=WRITE_TIMEOUT_S)
         self._decoder = FrameDecoder()
         self._changed = threading.Condition()
-        self._events: deque[Event] = deque(maxlen=MOST_EVENTS)
+        self._events: deque[Event] = deque(maxlen=MAX_EVENTS)
         self._orders: deque[_Waiting] = deque()
         self._tele = TerminalTele()
         self._tick_s = 0.0
@@ -93,7 +93,7 @@ class Link:
     # For the screen
 
     def take(self) -> list[Event]:
-        """What happened since the last call, the oldest first; at most `MOST_EVENTS`."""
+        """What happened since the last call, the oldest first; at most `MAX_EVENTS`."""
         with self._changed:
             events = list(self._events)
             self._events.clear()
@@ -175,7 +175,7 @@ class Link:
             self._tele.end()
             # What was to follow an earlier order has been overtaken.
             self._orders = deque(waiting for waiting in self._orders if waiting.due_s <= now_s)
-            if self.failure or self._closing or len(self._orders) >= MOST_ORDERS:
+            if self.failure or self._closing or len(self._orders) >= MAX_ORDERS:
                 return False
             self._orders.append(_Waiting(now_s, data))
             if later is not None:
@@ -194,7 +194,7 @@ class Link:
                 return
             frames = self._decoder.feed(data)
             with self._changed:
-                self._unseen += max(0, len(self._events) + len(frames) - MOST_EVENTS)
+                self._unseen += max(0, len(self._events) + len(frames) - MAX_EVENTS)
                 self._events.extend(frames)
             if len(data) == CHUNK:
                 self._ended.wait(FULL_CHUNK_PAUSE_S)

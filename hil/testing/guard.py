@@ -23,7 +23,7 @@ from hil.testing.waits import PollingLoop, PollingLoops
 
 #: How often a call is looked at, and what it may compute before its loop is examined: a hundredth of a second of the
 #: chip's, less than half of one of this machine's; or how many interrupts it may be interrupted by, which is as long.
-_LOOK_CYCLES: Final = 10 * CYCLES_PER_MS
+_CHECK_CYCLES: Final = 10 * CYCLES_PER_MS
 _COMPUTED_CYCLES: Final = 2_000_000
 _ROUTINES: Final = 1000
 #: So many turns of a loop follow the look at which nothing was left that could end it.
@@ -66,7 +66,7 @@ class _CallWatch:
         self._core, self._clock, self._findings = board.cpu, board.clock, linked.runtime.findings
         self._waits = PollingLoops(board, linked)
         self._limit = round(limit_s * SYSCLK_HZ)
-        self._every = min(_LOOK_CYCLES, max(1, self._limit // 4))
+        self._every = min(_CHECK_CYCLES, max(1, self._limit // 4))
         #: Those that have not returned, the innermost last.
         self._calls: list[_Call] = []
         #: How many interrupt routines have returned, and how long they took, all in all (those of others among them
@@ -90,7 +90,7 @@ class _CallWatch:
             calls.append(one)
             if len(calls) == 1:
                 self._before.clear()
-                self._next = clock.after(self._every, self._look)
+                self._next = clock.after(self._every, self._check)
             try:
                 return function(*arguments)
             finally:
@@ -115,9 +115,9 @@ class _CallWatch:
 
         return run
 
-    def _look(self) -> None:
+    def _check(self) -> None:
         clock = self._clock
-        self._next = clock.after(self._every, self._look)
+        self._next = clock.after(self._every, self._check)
         for call in reversed(self._calls):
             if not call.events:
                 call.events = (

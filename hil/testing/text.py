@@ -10,14 +10,14 @@ from emulator.c28x.findings import Finding
 from emulator.clock import ms
 from hil.reports.excerpt import location, shown, source_line
 from hil.reports.model import Report, ReportEntry
-from hil.reports.terminal import MOST_SHOWN, print_report
+from hil.reports.terminal import MAX_SHOWN, print_report
 
 
 def table(report: Report, width: int, *, coloured: bool) -> str:
     """The table of findings that every command shows."""
     written = io.StringIO()
     terminal = Console(file=written, width=width, force_terminal=coloured, highlight=False, emoji=False)
-    print_report(report, terminal, most=MOST_SHOWN)
+    print_report(report, terminal, most=MAX_SHOWN)
     return written.getvalue().rstrip()
 
 

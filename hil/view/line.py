@@ -24,8 +24,8 @@ from hil.serial_url import gone, open_url
 #: A port that takes no byte for so long is not being read.
 WRITE_TIMEOUT_S: Final = 0.5
 #: CHOICE: the points of at least 3 hours are kept, and the text of 2 minutes.
-MOST_FRAMES: Final = 45_000
-MOST_ENTRIES: Final = 500
+MAX_FRAMES: Final = 45_000
+MAX_ENTRIES: Final = 500
 #: What ends an entry of the log: of the robot, whose frames end in line feed and carriage return, and of any board.
 FRAME_END: Final = b"\r"
 LINE_ENDS: Final = b"\r\n"
@@ -46,7 +46,7 @@ class LineLog:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._entries: deque[LogEntry] = deque(maxlen=MOST_ENTRIES)
+        self._entries: deque[LogEntry] = deque(maxlen=MAX_ENTRIES)
         #: Six numbers a frame.
         self._frames = array("h")
         self._decoder = FrameDecoder()
@@ -72,8 +72,8 @@ class LineLog:
             for frame in self._decoder.feed(data):
                 self._frames.extend(frame.values)
                 self.frame_count += 1
-            if len(self._frames) >= 2 * 6 * MOST_FRAMES:
-                del self._frames[: 6 * MOST_FRAMES]
+            if len(self._frames) >= 2 * 6 * MAX_FRAMES:
+                del self._frames[: 6 * MAX_FRAMES]
             self.malformed = self._decoder.malformed
 
     def sent(self, data: bytes, time_s: float) -> None:

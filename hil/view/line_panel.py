@@ -9,7 +9,7 @@ from nicegui import ui
 from hil.view.line import RobotLine
 
 #: Each is an element of the page, and all of them are gone through 20 times a second.
-MOST_LINES: Final = 100
+MAX_LINES: Final = 100
 ENDS: Final = {"\r": "CR", "\n": "LF", "\r\n": "CR LF", "": "nothing"}
 
 
@@ -28,7 +28,7 @@ class LinePanel:
             ui.button("Send", on_click=self._send).props("no-caps dense outline")
             ui.space()
             self._counts = ui.label().classes("soft value")
-        self._log = ui.log(max_lines=MOST_LINES).classes("w-full mono").style("height:260px").mark("log")
+        self._log = ui.log(max_lines=MAX_LINES).classes("w-full mono").style("height:260px").mark("log")
 
     def update(self, _now: object = None) -> None:
         """20 times a second."""
@@ -42,7 +42,7 @@ class LinePanel:
         elif log.count == self._next:
             return
         # A line may bring more in this time than a page can show.
-        for entry in log.entries_since(max(self._next, log.count - MOST_LINES)):
+        for entry in log.entries_since(max(self._next, log.count - MAX_LINES)):
             self._log.push(f"{entry.time_s:9.3f} s  {'->' if entry.to_robot else '<-'}  {entry.text}")
             self._next = entry.number + 1
 

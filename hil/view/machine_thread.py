@@ -33,7 +33,7 @@ from hil.view.stepping import Step, StepEnd, Stepper
 from hil.view.taps import RegisterTaps
 
 #: CHOICE: the interval of automatic checkpoints.
-MOMENT_CYCLES: Final = 10 * SYSCLK_HZ
+CHECKPOINT_CYCLES: Final = 10 * SYSCLK_HZ
 #: How long before a finding each statement is looked at: longer than a slice.
 BEFORE_CYCLES: Final = SYSCLK_HZ // 100
 
@@ -209,7 +209,7 @@ class MachineThread:
         self._serve()
         self._publish_when_due()
         last = self.moments.all[-1].cycles
-        if now - last >= MOMENT_CYCLES:
+        if now - last >= CHECKPOINT_CYCLES:
             self.moments.note(now, "")
         if self._ended or self._goal is not None or self._release or not (self._running or self._stepper.armed):
             session.stop()

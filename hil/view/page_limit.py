@@ -16,11 +16,11 @@ from nicegui import app as nicegui_app
 from starlette.responses import HTMLResponse
 
 #: CHOICE: pages at once.  Six take half a core of the server; browsers on the same computer need more than that.
-MOST_PAGES: Final = 6
+MAX_PAGES: Final = 6
 #: How often a page that found no room asks again, in seconds.
 RETRY_S: Final = 5
 _SENTENCE: Final = (
-    f"This view has {MOST_PAGES} pages open and no room for one more: close one of them, and the view appears here."
+    f"This view has {MAX_PAGES} pages open and no room for one more: close one of them, and the view appears here."
 )
 _TOO_MANY: Final = f"""<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>one page too many - c2000-hil</title>
@@ -57,7 +57,7 @@ class PageLimit:
         Client.prune_instances(client_age_threshold=self._loading_s)  # asked for, and nobody came
         others = [client for client in Client.instances.values() if client is not new]
         left = [client for client in others if client in self._came and not client.has_socket_connection]
-        return len(others) - len(left) < MOST_PAGES and len(others) < 2 * MOST_PAGES
+        return len(others) - len(left) < MAX_PAGES and len(others) < 2 * MAX_PAGES
 
     def _gone(self, client: Client) -> None:
         """Free the memory of a page that has gone: it is a cycle, and `hil.collector` makes Python collect rarely."""

@@ -41,8 +41,8 @@ from hil.view.words import DecodedWord, SpiTransfer, character
 #: CHOICE: 5 ms between two samples resolves tasks of 20 ms; can be changed.
 PERIOD_CYCLES: Final = 5 * CYCLES_PER_MS
 #: Values kept of each signal: 100 s at 5 ms.  Events of the kernel kept: some 14 s of a mission.
-MOST_VALUES: Final = 20_000
-MOST_EVENTS: Final = 100_000
+MAX_VALUES: Final = 20_000
+MAX_EVENTS: Final = 100_000
 
 Sample = tuple[int, float]
 
@@ -52,7 +52,7 @@ class Probes:
 
     def __init__(self) -> None:
         self.period_cycles = PERIOD_CYCLES
-        self.events: deque[tuple[int, str, str]] = deque(maxlen=MOST_EVENTS)
+        self.events: deque[tuple[int, str, str]] = deque(maxlen=MAX_EVENTS)
         self._values: dict[str, deque[Sample]] = {}
         #: Of what is words: also when each began, and what it means.
         self._words: dict[str, deque[DecodedWord]] = {}
@@ -88,9 +88,9 @@ class Probes:
     def add(self, name: str) -> None:
         """Record a signal from now on.  Raises ValueError for a name there is none of."""
         if name not in self._values:
-            self._values[name] = deque(maxlen=MOST_VALUES)
+            self._values[name] = deque(maxlen=MAX_VALUES)
             if is_words(name):
-                self._words[name] = deque(maxlen=MOST_VALUES)
+                self._words[name] = deque(maxlen=MAX_VALUES)
             try:
                 self._connect(name)
             except ValueError:

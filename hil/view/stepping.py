@@ -30,7 +30,7 @@ from emulator.registers.cell import Cell
 from hil.running import RunningBoard
 from hil.view.taps import RegisterTaps
 
-MOST_REGISTERS: Final = 6
+MAX_REGISTERS: Final = 6
 
 
 class Step(Enum):
@@ -162,7 +162,7 @@ class Stepper:
     def _written(self) -> tuple[tuple[str, int, float], ...]:
         """The registers that were written last, as far as that is recorded."""
         now = self._bench.clock.now
-        latest = nlargest(MOST_REGISTERS, self._taps.writers.items(), key=lambda item: item[1][0])
+        latest = nlargest(MAX_REGISTERS, self._taps.writers.items(), key=lambda item: item[1][0])
         return tuple((cell.path, word, (now - cycles) / CYCLES_PER_US) for cell, (cycles, _, _, word) in latest)
 
 

@@ -19,7 +19,7 @@ from hil.world.geometry import TOUCH_M, Post, Segment, clearance, within
 from hil.world.movers import Mover
 
 #: Posts of one fence.
-MOST_OF_FENCE: Final = 1000
+MAX_OF_FENCE: Final = 1000
 #: A start pose needs this much room around the middle between the wheels (robot.RobotParams reaches 0.12 m).
 START_CLEARANCE_M: Final = 0.125
 
@@ -244,8 +244,8 @@ class _MapReader:
         posts: list[Post] = []
         for a, b in pairwise([*points, points[0]]):
             count = max(1, round(hypot(b[0] - a[0], b[1] - a[1]) / every_m))
-            if len(posts) + count > MOST_OF_FENCE:
-                raise self.fail(f"{where}.every_m", f"more than {MOST_OF_FENCE} posts", "set them further apart")
+            if len(posts) + count > MAX_OF_FENCE:
+                raise self.fail(f"{where}.every_m", f"more than {MAX_OF_FENCE} posts", "set them further apart")
             for step in range(count):
                 part = step / count
                 x_m, y_m = a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])

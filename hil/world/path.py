@@ -11,14 +11,14 @@ from emulator.signal import Signal
 Point = tuple[float, float, float, float]
 
 #: CHOICE: more points than any picture shows; they take 640 kB.
-MOST_POINTS: Final = 20_000
+MAX_POINTS: Final = 20_000
 _FIELDS: Final = 4
 
 
 class Path:
     """At most `most` points.  When full, it drops every second point, and from then on keeps half as many new ones."""
 
-    def __init__(self, most: int = MOST_POINTS) -> None:
+    def __init__(self, most: int = MAX_POINTS) -> None:
         self._most = most
         self._values = array("d")
         self._every = 1

@@ -35,7 +35,7 @@ from hil.world.robot_params import Pose, RobotParams
 from hil.world.sonar_rays import DEFAULT_MOUNTS, SonarMount, SonarRays
 
 #: The plant is brought up to date at least this often, so that the bumper is not late.
-LOOK_CYCLES: Final = 10 * CYCLES_PER_MS
+CHECK_CYCLES: Final = 10 * CYCLES_PER_MS
 #: Headings and yaw rates kept for sensors that ask about the past.
 _HISTORY: Final = 512
 #: The logged path: a point after this way or this turn.
@@ -106,7 +106,7 @@ class World:
             motor.encoder.looked_at.connect(self.sync_now)
             motor.bridge.in1.duty_changing.connect(self.sync_now)
             motor.bridge.in2.duty_changing.connect(self.sync_now)
-        clock.after(LOOK_CYCLES, self._look)
+        clock.after(CHECK_CYCLES, self._look)
 
     def _look(self) -> None:
         clock = self.clock
@@ -115,7 +115,7 @@ class World:
         if self._moving:
             since, since_s = self._paced
             self._carry(since_s + (clock.now - since) / self.robot.second_cycles)
-        clock.schedule(clock.now + LOOK_CYCLES, self._look)
+        clock.schedule(clock.now + CHECK_CYCLES, self._look)
 
     def _carry(self, time_s: float) -> None:
         """Put moving posts at their present positions.  Removed posts stay away."""

@@ -21,9 +21,9 @@ from tests.bad_day.figure import Outcome, forked, short
 from tests.hil.waiting import PATIENCE_S
 
 #: More memory than this, beyond what the tests themselves have, is a file without an end that somebody reads.
-MOST_BYTES = 300 << 20
+MAX_BYTES = 300 << 20
 #: Of the processor, for a line that is refused.
-MOST_CPU_S = 2.0
+MAX_CPU_S = 2.0
 
 FILES = (
     "folder", "loop", "fifo", "huge", "empty", "binary", "nested.toml", "nested.json", "nested.c", "nested.py",
@@ -151,8 +151,8 @@ def wrong(outcome: Outcome, *, long: bool = False) -> list[str]:
         found.append("a traceback")
     if lines and max(map(len, lines)) > 2000:
         found.append("an endless line")
-    if outcome.grown_bytes > MOST_BYTES:
+    if outcome.grown_bytes > MAX_BYTES:
         found.append(f"{outcome.grown_bytes >> 20} MB")
-    if outcome.status == 2 and outcome.cpu_s > MOST_CPU_S:
+    if outcome.status == 2 and outcome.cpu_s > MAX_CPU_S:
         found.append(f"{outcome.cpu_s:.1f} s of CPU")
     return found

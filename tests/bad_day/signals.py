@@ -37,7 +37,7 @@ START = (
 #: CHOICE: moments after that, in seconds: half of them while modules are imported.
 EARLY_S, LATE_S = 1.0, 6.0
 #: Processor time from the signal to the end.
-MOST_CPU_S = 1.0
+MAX_CPU_S = 1.0
 
 
 def _cpu_s(pid: int) -> float:
@@ -95,7 +95,7 @@ def case(seed: int) -> str:
         found.append("a traceback")
     if status == 130 and not error.endswith("hil: error: interrupted\n"):
         found.append("it does not say that it was interrupted")
-    if after_s > MOST_CPU_S:
+    if after_s > MAX_CPU_S:
         found.append(f"{after_s:.1f} s of CPU after it")
     if left := [path.name for path in Path().iterdir() if path not in before and path.name.startswith(".")]:
         found.append(f"left {', '.join(left)}")

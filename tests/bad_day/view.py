@@ -23,7 +23,7 @@ CALLERS = 20
 #: So often twenty pages come and go; in the cases of every run once.
 ROUNDS = 3
 #: Six pages are 33 MB: a round that leaves more than this keeps pages that have gone.
-MOST_GROWN_BYTES = 20 << 20
+MAX_GROWN_BYTES = 20 << 20
 PIECES = (
     b"GET / HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n", b"GET /%ff%00 HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n",
     b"GET /_nicegui_ws/socket.io/?EIO=4&transport=polling HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n",
@@ -99,7 +99,7 @@ async def _pages(rounds: int) -> str:
 
     On a server of their own: of those who talk nonsense some have asked for pages.
     """
-    from hil.view.page_limit import MOST_PAGES
+    from hil.view.page_limit import MAX_PAGES
 
     with contextlib.chdir(REPOSITORY):
         view = await asyncio.to_thread(View, "--world", "box", "--no-open")
@@ -112,13 +112,13 @@ async def _pages(rounds: int) -> str:
         await first.end()
         for turn in range(rounds):
             visits = await asyncio.gather(*(_Visit(view.address).begin() for _ in range(CALLERS)))
-            while turn and sum(visit.status == 200 for visit in visits) < MOST_PAGES:
+            while turn and sum(visit.status == 200 for visit in visits) < MAX_PAGES:
                 # Those who were there before may still come back.
                 await asyncio.sleep(1)
                 await next(visit for visit in visits if visit.status != 200).begin()
             within = [visit for visit in visits if visit.status == 200]
-            told = [visit for visit in visits if visit.status == 503 and f"{MOST_PAGES} pages open" in visit.said]
-            if (len(within), len(told)) != (MOST_PAGES, CALLERS - MOST_PAGES):
+            told = [visit for visit in visits if visit.status == 503 and f"{MAX_PAGES} pages open" in visit.said]
+            if (len(within), len(told)) != (MAX_PAGES, CALLERS - MAX_PAGES):
                 found.append(f"round {turn}: {len(within)} pages, and {len(told)} told that they are too many")
             fed = await asyncio.gather(*(visit.fed() for visit in within))
             if not all(fed):
@@ -131,7 +131,7 @@ async def _pages(rounds: int) -> str:
         status, _, errors = await asyncio.to_thread(view.end)
     if status or errors:
         found.append(f"status {status}: {errors[-500:]}")
-    if rounds > 2 and (grown := bytes_after[-1] - bytes_after[1]) > MOST_GROWN_BYTES:
+    if rounds > 2 and (grown := bytes_after[-1] - bytes_after[1]) > MAX_GROWN_BYTES:
         found.append(f"{grown >> 20} MB more after {rounds} rounds")
     return ", ".join(found)
 

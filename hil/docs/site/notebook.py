@@ -7,7 +7,7 @@ from importlib.resources import files
 from pathlib import Path
 
 #: Seconds that a cell may take on a slow machine.
-PATIENCE_S = 300
+TIMEOUT_S = 300
 
 
 def executed(text: str) -> str:
@@ -20,7 +20,7 @@ def executed(text: str) -> str:
     # Where the sources are: places of findings are shown from there.
     root = str(Path(str(files("hil"))).parent)
     client = NotebookClient(
-        notebook, timeout=PATIENCE_S, extra_arguments=["--log-level=ERROR"], resources={"metadata": {"path": root}}
+        notebook, timeout=TIMEOUT_S, extra_arguments=["--log-level=ERROR"], resources={"metadata": {"path": root}}
     )
     search = os.pathsep.join([root, os.environ.get("PYTHONPATH", "")])
     try:

@@ -26,7 +26,7 @@ from hil.world.robot_params import Pose
 #: Points of a stroke that are sent again when it grows.
 OPEN_POINTS: Final = 200
 #: CHOICE: the most points of a cloud that are still readable as a picture.
-MOST_POINTS: Final = 6000
+MAX_POINTS: Final = 6000
 #: Slices of the page's 20 Hz between two looks at ways and clouds.
 SLOW: Final = 5
 TURN_RAD: Final = pi / 12.0
@@ -67,7 +67,7 @@ class PointCloud:
     def __init__(self, log: LineLog) -> None:
         self._log = log
         self._epoch = log.epoch
-        self._next = log.frame_count - MOST_POINTS // 3  # of a long run, what would be drawn
+        self._next = log.frame_count - MAX_POINTS // 3  # of a long run, what would be drawn
         self.points: list[Point] = []
         self.way: list[Point] = []
 
@@ -85,8 +85,8 @@ class PointCloud:
                 self.way.append(at)
         # Seldom and much at once: what is left must be drawn anew.
         for points in (self.points, self.way):
-            if len(points) > MOST_POINTS:
-                del points[: -MOST_POINTS // 2]
+            if len(points) > MAX_POINTS:
+                del points[: -MAX_POINTS // 2]
 
 
 def believed_path(frames: Sequence[OdometryFrame]) -> list[Point]:
@@ -96,7 +96,7 @@ def believed_path(frames: Sequence[OdometryFrame]) -> list[Point]:
 
 def loaded(view: Viewport, frames: Sequence[OdometryFrame], pose: Pose) -> str:
     """A trajectory from a file, which begins at `pose`; of a long one each so-manyth frame."""
-    some = frames[:: 1 + 3 * len(frames) // MOST_POINTS]
+    some = frames[:: 1 + 3 * len(frames) // MAX_POINTS]
     points = [point for frame in some for point in sonar_points(frame)]
     return draw.dots(view, place(points, *pose), "cloud-loaded") + draw.path(
         view, place(believed_path(some), *pose), "trail-loaded"

@@ -18,8 +18,8 @@ from hil.view.line import LogEntry, RobotLine
 #: The console's own name for its file (reference: annex 2).
 FILE: Final = "trayectoria.txt"
 #: Each is an element of the page, and all of them are gone through 20 times a second.
-MOST_LINES: Final = 100
-MOST_UPLOAD: Final = 4_000_000
+MAX_LINES: Final = 100
+MAX_UPLOAD: Final = 4_000_000
 HELP: Final = (
     "In telemanipulation, a held arrow key changes V by 0.01 m/s or W by 0.03 rad/s ten times a second; let go, the "
     "robot drives on. The stick sets both; let go, it stops. Set V, W holds until another order."
@@ -81,11 +81,11 @@ class ConsolePanel:
             ui.space()
             ui.button("Save points", on_click=self._save).props("no-caps dense flat size=sm").mark("save")
             upload = ui.upload(auto_upload=True, max_files=1, on_upload=self._load).props(
-                f"accept=.txt,.csv max-file-size={MOST_UPLOAD}"
+                f"accept=.txt,.csv max-file-size={MAX_UPLOAD}"
             ).classes("unseen").mark("load")  # fmt: skip
             load = ui.button("Load points", on_click=lambda: upload.run_method("pickFiles"))
             load.props("no-caps dense flat size=sm")
-        self._log = ui.log(max_lines=MOST_LINES).classes("w-full mono log").props(
+        self._log = ui.log(max_lines=MAX_LINES).classes("w-full mono log").props(
             'role=log aria-label="line" tabindex=0'
         ).mark("log")  # fmt: skip
         self._failure = ui.label().style("color:var(--bad)")
@@ -156,7 +156,7 @@ class ConsolePanel:
             _text(self._failure, self._line.failure)
             return
         # A line may bring more in this time than a page can show.
-        entries = log.entries_since(max(self._next, log.count - MOST_LINES))
+        entries = log.entries_since(max(self._next, log.count - MAX_LINES))
         for entry in entries:
             self._log.push(f"{entry.time_s:9.3f} s  {'->' if entry.to_robot else '<-'}  {entry.text}")
             self._next = entry.number + 1
@@ -192,8 +192,8 @@ class ConsolePanel:
         ui.download.content(file_of(self._line.log.frames_since(0)), FILE)
 
     async def _load(self, e: events.UploadEventArguments) -> None:
-        if e.file.size() > MOST_UPLOAD:  # the browser's own limit is only the browser's
-            ui.notify(f"{e.file.name}: more than {MOST_UPLOAD / 1e6:g} MB", type="negative")
+        if e.file.size() > MAX_UPLOAD:  # the browser's own limit is only the browser's
+            ui.notify(f"{e.file.name}: more than {MAX_UPLOAD / 1e6:g} MB", type="negative")
             return
         trajectory = parse_trajectory(await e.file.read())
         for problem in trajectory.problems:

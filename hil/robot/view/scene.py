@@ -19,7 +19,7 @@ from hil.world.robot_params import Pose
 from hil.world.sonar_rays import MAX_RANGE_M
 
 #: Points of a path that are shown; more are thinned.
-MOST_POINTS: Final = 3000
+MAX_POINTS: Final = 3000
 STEP_M: Final = 0.005
 
 
@@ -136,4 +136,4 @@ def trails_of(bench: Bench) -> Trails:
 
 def thinned(path: Path) -> list[Point]:
     """No more points of a path than are shown."""
-    return path.points(every=1 + len(path) // MOST_POINTS)
+    return path.points(every=1 + len(path) // MAX_POINTS)

@@ -22,7 +22,7 @@ SCAN = bytes((0xA5, 0x5A, 0x05, 0, 0, 0x40, 0x81))
 INFO = bytes((0xA5, 0x5A, 0x14, 0, 0, 0, 0x04))
 HEALTH = bytes((0xA5, 0x5A, 0x03, 0, 0, 0, 0x06))
 #: The longest answer that may wait on the line: 27 bytes of GET_INFO behind one sample.
-MOST_PENDING = 27 + 5
+MAX_PENDING = 27 + 5
 
 
 class Bench:
@@ -227,7 +227,7 @@ def test_hostile_bytes_neither_stop_it_nor_make_it_grow(bursts: list[bytes]) -> 
     for burst in bursts:
         for byte in burst:
             bench.send(bytes((byte,)), 0.0)
-            assert bench.part._pacer.pending <= MOST_PENDING
+            assert bench.part._pacer.pending <= MAX_PENDING
             assert len(bench.part._request) <= 2 + 1 + 255 + 1
     # No request is longer than 259 bytes: zeros end what was begun.
     bench.send(bytes(259))

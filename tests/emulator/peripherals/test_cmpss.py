@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from emulator.chip import CMPSS_INPUT, Chip
-from emulator.peripherals.cmpss import LOOK_CYCLES
+from emulator.peripherals.cmpss import COMPARE_CYCLES
 from emulator.peripherals.cmpss_filter import DigitalFilter
 from emulator.registers.core import ALL
 
@@ -139,9 +139,9 @@ def test_hysteresis_is_twelve_codes_a_step_below_the_threshold(chip: Chip, steps
     assert levels == [1, 1, 0, 0, 1]
 
 
-@pytest.mark.parametrize("look_cycles", [LOOK_CYCLES, 7])
-def test_a_voltage_that_moves_is_looked_at_while_the_comparators_are_on(chip: Chip, look_cycles: int) -> None:
-    chip.cmpss[1].look_cycles = look_cycles
+@pytest.mark.parametrize("look_cycles", [COMPARE_CYCLES, 7])
+def test_a_voltage_that_moves_is_looked_at_while_the_comparators_are_on(chip: Chip, compare_cycles: int) -> None:
+    chip.cmpss[1].compare_cycles = compare_cycles
     seen: list[tuple[int, int]] = []
     chip.cmpss[1].high.trip.changed.connect(lambda level: seen.append((chip.clock.now, level)))
     # A ramp of 1 V in 1 ms: 1.65 V are at 330 000 cycles.
@@ -151,7 +151,7 @@ def test_a_voltage_that_moves_is_looked_at_while_the_comparators_are_on(chip: Ch
     write(chip, "Cmpss1Regs", "COMPCTL", ON)
     later(chip, 400_000)
     assert [level for _, level in seen] == [1]
-    assert 330_000 < seen[0][0] <= 330_000 + look_cycles
+    assert 330_000 < seen[0][0] <= 330_000 + compare_cycles
     write(chip, "Cmpss1Regs", "COMPCTL", 0)
     assert outputs(chip) == (0, 0, 0, 0)
     # The next sample of both filters, which are settled then.

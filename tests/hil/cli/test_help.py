@@ -9,7 +9,7 @@ import pytest
 from typer.core import TyperOption
 
 from hil.cli import commands, invoke
-from hil.cli.help import GROUPS, MOST_UNGROUPED, with_lists
+from hil.cli.help import GROUPS, MAX_UNGROUPED, with_lists
 from hil.client.orders import KEYWORDS
 
 COMMANDS: dict[str, Any] = {name: unopened.whole for name, unopened in commands.COMMANDS.items()}
@@ -26,7 +26,7 @@ def helped(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch, caps
 @pytest.mark.parametrize("name", sorted(COMMANDS))
 def test_many_options_are_grouped_each_in_one_group(name: str) -> None:
     options = [each for each in COMMANDS[name].params if isinstance(each, TyperOption)]
-    if len(options) > MOST_UNGROUPED:
+    if len(options) > MAX_UNGROUPED:
         groups = {each.name: each.rich_help_panel for each in options}
         assert all(group in GROUPS for group in groups.values()), groups
         assert len(set(groups.values())) > 1

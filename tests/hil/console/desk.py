@@ -13,7 +13,7 @@ from pathlib import Path
 
 from PIL import Image, ImageGrab
 
-from tests.hil.waiting import PATIENCE_S, eventually
+from tests.hil.waiting import TIMEOUT_S, eventually
 
 #: Program -> Debian's package.
 PROGRAMS = {"Xvfb": "xvfb", "xdotool": "xdotool"}
@@ -69,7 +69,7 @@ class Desk:
 
     def xdotool(self, *words: str) -> str:
         return subprocess.run(
-            ["xdotool", *words], env=self.environment, capture_output=True, text=True, timeout=PATIENCE_S, check=True
+            ["xdotool", *words], env=self.environment, capture_output=True, text=True, timeout=TIMEOUT_S, check=True
         ).stdout
 
     def window(self, title: str) -> Window:
@@ -78,7 +78,7 @@ class Desk:
         def find() -> str:
             done = subprocess.run(
                 ["xdotool", "search", "--onlyvisible", "--name", f"^{title}$"],
-                env=self.environment, capture_output=True, text=True, timeout=PATIENCE_S,
+                env=self.environment, capture_output=True, text=True, timeout=TIMEOUT_S,
             )  # fmt: skip
             return done.stdout.strip().partition("\n")[0]
 

@@ -17,7 +17,7 @@ import pytest
 from hil.recording.log import Direction, read_log
 from tests.hil.cli.test_run import HIL
 from tests.hil.scripted_machine import numbered_frame
-from tests.hil.waiting import PATIENCE_S, eventually
+from tests.hil.waiting import TIMEOUT_S, eventually
 
 REPOSITORY = Path(__file__).parents[3]
 APP = Path(__file__).with_name("headless_console.py")
@@ -57,7 +57,7 @@ def hil(*arguments: str, cwd: Path, code: str = HIL, **environment: str) -> Iter
     finally:
         if process.poll() is None:
             process.send_signal(signal.SIGTERM)
-            process.communicate(timeout=PATIENCE_S)
+            process.communicate(timeout=TIMEOUT_S)
 
 
 def app_says(folder: Path, what: str) -> None:
@@ -78,7 +78,7 @@ def test_bytes_pass_whole_and_the_robot_is_stopped_at_the_end(tmp_path: Path) ->
     with hil(
         "console", "--app", str(APP), "--dir", "run", "--wire", "w.log", "--json", cwd=tmp_path, DEED="end", LC_ALL="C"
     ) as process:
-        out, err = process.communicate(timeout=PATIENCE_S)
+        out, err = process.communicate(timeout=TIMEOUT_S)
     assert process.returncode == 0, err
     recording, summary = read_log(tmp_path / "w.log"), json.loads(out)
     assert recording.problems == []
@@ -99,7 +99,7 @@ def test_bytes_pass_whole_and_the_robot_is_stopped_at_the_end(tmp_path: Path) ->
 
 def test_an_app_that_fails_is_one_line_with_its_last_words_and_the_robot_is_stopped(tmp_path: Path) -> None:
     with hil("console", "--app", str(APP), "--wire", "w.log", cwd=tmp_path, DEED="fail") as process:
-        _, err = process.communicate(timeout=PATIENCE_S)
+        _, err = process.communicate(timeout=TIMEOUT_S)
     assert process.returncode == 1
     assert err.startswith("hil: error: headless_console.py ended with status 1: RuntimeError: no battery (its output: ")
     assert err.count("\n") == 1
@@ -111,7 +111,7 @@ def test_a_killed_app_is_said_and_the_robot_is_stopped(tmp_path: Path) -> None:
         pid = app_pid(process)
         app_says(tmp_path / "console-run", "ready")
         os.kill(pid, signal.SIGKILL)
-        _, err = process.communicate(timeout=PATIENCE_S)
+        _, err = process.communicate(timeout=TIMEOUT_S)
     assert process.returncode == 1
     assert "was killed by signal 9" in err
     assert read_log(tmp_path / "w.log").stream(Direction.TO_ROBOT) == ORDERS + b"#STOP\r"
@@ -124,7 +124,7 @@ def test_a_signal_ends_the_app_and_stops_the_robot(tmp_path: Path, deed: str, nu
         pid = app_pid(process)
         app_says(tmp_path / "console-run", "ready" if deed == "stay" else deed)
         process.send_signal(number)
-        _, err = process.communicate(timeout=PATIENCE_S)
+        _, err = process.communicate(timeout=TIMEOUT_S)
     assert (process.returncode, err) == (0, "")
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
@@ -141,10 +141,10 @@ def test_a_robot_that_runs_already_is_reached_through_its_port(tmp_path: Path, l
         with hil(
             "console", "--app", str(APP), "--port", address, "--wire", "w.log", cwd=tmp_path, DEED="end"
         ) as process:
-            _, err = process.communicate(timeout=PATIENCE_S)
+            _, err = process.communicate(timeout=TIMEOUT_S)
         assert process.returncode == 0, err
         robot.send_signal(signal.SIGTERM)
-        out, _ = robot.communicate(timeout=PATIENCE_S)
+        out, _ = robot.communicate(timeout=TIMEOUT_S)
     recording = read_log(tmp_path / "w.log")
     assert recording.header["clock"] == "real"
     assert recording.header["port"] == address
@@ -158,7 +158,7 @@ def test_a_robot_that_runs_already_is_reached_through_its_port(tmp_path: Path, l
 def test_firmware_that_stops_ends_the_app_and_is_one_line(tmp_path: Path) -> None:
     with hil("console", "--app", str(APP), "--wire", "w.log", cwd=tmp_path, code=ENDING, DEED="stay") as process:
         pid = app_pid(process)
-        _, err = process.communicate(timeout=PATIENCE_S)
+        _, err = process.communicate(timeout=TIMEOUT_S)
     assert process.returncode == 1
     assert err == "hil: error: the firmware stopped: a poll that nothing can end\n"
     with pytest.raises(ProcessLookupError):
@@ -170,7 +170,7 @@ def test_two_consoles_in_one_folder_are_refused_in_one_line(tmp_path: Path) -> N
     with hil("console", "--app", str(APP), cwd=tmp_path, DEED="stay") as process:
         app_says(tmp_path / "console-run", "ready")
         with hil("console", "--app", str(APP), cwd=tmp_path, DEED="end") as second:
-            _, err = second.communicate(timeout=PATIENCE_S)
+            _, err = second.communicate(timeout=TIMEOUT_S)
         assert second.returncode == 2
         assert "COM3: is the port of a robot that is running" in err
         assert err.count("\n") == 1

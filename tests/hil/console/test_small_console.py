@@ -16,7 +16,7 @@ from hil.recording.log import Direction, read_log
 from tests.hil.cli.test_run import HIL
 from tests.hil.console.desk import Desk, desk, missing
 from tests.hil.scripted_machine import numbered_frame
-from tests.hil.waiting import PATIENCE_S, eventually
+from tests.hil.waiting import TIMEOUT_S, eventually
 
 REPOSITORY = Path(__file__).parents[3]
 SMALL_CONSOLE = Path(__file__).with_name("small_console.py")
@@ -74,11 +74,11 @@ def test_a_windows_console_finds_all_it_wants(a_desk: Desk, tmp_path: Path) -> N
             eventually(lambda: output.read_text("utf-8").count("driven") == 2, what="Escape in the figure's window")
         a_desk.photograph("small-console")
         window.click(*LEAVE)
-        out, err = process.communicate(timeout=PATIENCE_S)
+        out, err = process.communicate(timeout=TIMEOUT_S)
     finally:
         if process.poll() is None:
             process.send_signal(signal.SIGTERM)
-            process.communicate(timeout=PATIENCE_S)
+            process.communicate(timeout=TIMEOUT_S)
     assert process.returncode == 0, (out, err)
     for line in ("robot answers: True", "subprocess: works", "drawn with: tkagg", "getch: True", "letters: ñ"):
         assert said(line), output.read_text("utf-8")

@@ -27,7 +27,7 @@ from hil.recording.log import Direction, Record, Recording, read_log
 from hil.recording.replay import replay_orders, setup_of
 from hil.session import NS_PER_CYCLE
 from tests.hil.console.desk import Desk, desk, missing
-from tests.hil.waiting import PATIENCE_S, eventually
+from tests.hil.waiting import TIMEOUT_S, eventually
 
 APP = os.environ.get("C2000_HIL_CONSOLE", "")
 REPOSITORY = Path(__file__).parents[3]
@@ -174,7 +174,7 @@ def console(tmp_path: Path) -> Iterator[Console]:
         finally:
             if running.process.poll() is None:
                 running.process.send_signal(signal.SIGTERM)
-            running.process.communicate(timeout=PATIENCE_S)
+            running.process.communicate(timeout=TIMEOUT_S)
 
 
 def drive(orders: list[Record], start: PathPoint, until_ns: int) -> tuple[float, float, float]:
@@ -341,7 +341,7 @@ def leaving_stops_the_robot(console: Console) -> None:
     console.menu("Down")
     console.desk.photograph("9-leaving")
     console.desk.key("Return")
-    out, err = console.process.communicate(timeout=PATIENCE_S)
+    out, err = console.process.communicate(timeout=TIMEOUT_S)
     assert console.process.returncode == 0, err
     assert console.sent(b"#STOP\r") == stops + 1
     assert not (console.folder / "COM3").is_symlink()

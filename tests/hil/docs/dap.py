@@ -16,7 +16,7 @@ from collections import deque
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
-from tests.hil.waiting import PATIENCE_S
+from tests.hil.waiting import TIMEOUT_S
 
 REPOSITORY = Path(__file__).parents[3]
 
@@ -58,7 +58,7 @@ class Debugged:
             assert pipe is not None
             pipe.close()
         try:
-            self._adapter.wait(PATIENCE_S)
+            self._adapter.wait(TIMEOUT_S)
         except subprocess.TimeoutExpired:
             self._adapter.kill()
             raise

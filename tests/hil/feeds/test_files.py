@@ -9,7 +9,7 @@ import pytest
 
 from hil.cli import invoke
 from hil.feeds.files import read
-from hil.files import MOST_BYTES
+from hil.files import MAX_BYTES
 
 S = 200_000_000  # cycles a second
 
@@ -72,7 +72,7 @@ def test_endless_files_end(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="/dev/zero: not a plain file"):
         read("/dev/zero")
     large = table(tmp_path, "time_s,A\n0,1\n")
-    os.truncate(large, MOST_BYTES + 1)
+    os.truncate(large, MAX_BYTES + 1)
     with pytest.raises(ValueError, match=r"t.csv: larger than 67,108,864 bytes"):
         read(large)
 

@@ -170,9 +170,9 @@ def test_a_board_without_wheels_has_faces_and_no_scene(tmp_path: Path) -> None:
 
 
 def test_what_is_more_than_a_page_holds_is_said(trace: RecordedTrace, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "MOST_SPANS", 100)
-    monkeypatch.setattr(module, "MOST_LINES", 2)
-    monkeypatch.setattr(module, "MOST_SAMPLES", 1)
+    monkeypatch.setattr(module, "MAX_SPANS", 100)
+    monkeypatch.setattr(module, "MAX_LINES", 2)
+    monkeypatch.setattr(module, "MAX_SAMPLES", 1)
     found = replayed(trace)
     assert {what for what, _ in found["full"]} >= {"what tasks do", "lines of the serial pins"}
     assert len(found["lines"]["text"]) == 2

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.client.decode import OdometryFrame
-from hil.terminal.arena import LEAST_EXTENT_M, MARGIN, MOST_ECHOES, MOST_POSES, ArenaHistory, View, arrow, scale_bar
+from hil.terminal.arena import MARGIN, MAX_ECHOES, MAX_POSES, MIN_EXTENT_M, ArenaHistory, View, arrow, scale_bar
 from hil.terminal.canvas import BRAILLE, HALF_BLOCKS, Canvas, Layer, Raster
 
 NUMBERS = st.integers(-32768, 32767)
@@ -66,7 +66,7 @@ def test_the_view_is_as_close_as_a_step_of_a_tenth_of_a_decade_allows(
     view = View.fit(points, width, height)
     extents = [max(values) - min(values) for values in zip(*points, strict=True)]
     room = [max(1, dots - 2 * MARGIN - 1) for dots in (width, height)]
-    needed = max(extents[0] / room[0], extents[1] / room[1], LEAST_EXTENT_M / min(room))
+    needed = max(extents[0] / room[0], extents[1] / room[1], MIN_EXTENT_M / min(room))
     assert needed <= view.m_per_dot * (1 + 1e-9)
     assert view.m_per_dot <= needed * 10**0.1 * (1 + 1e-9)
 
@@ -131,12 +131,12 @@ def test_the_arrow_is_within_an_eighth_of_a_half_turn_of_any_heading(heading_rad
 
 def test_a_robot_that_says_the_same_again_adds_nothing_and_a_long_drive_is_bounded() -> None:
     arena = ArenaHistory()
-    for number in range(2 * MOST_POSES):
+    for number in range(2 * MAX_POSES):
         arena.add(OdometryFrame(number % 30000, 0, 0, 1, 1, 1 + number % 2))
         arena.add(OdometryFrame(number % 30000, 0, 0, 1, 1, 1 + number % 2))
-    assert len(arena._path) == MOST_POSES
-    assert len(arena._echoes) == MOST_ECHOES
-    assert arena._path[0][0] == MOST_POSES % 30000 / 1e3
+    assert len(arena._path) == MAX_POSES
+    assert len(arena._echoes) == MAX_ECHOES
+    assert arena._path[0][0] == MAX_POSES % 30000 / 1e3
     arena.clear()
     assert text(arena.draw(20, 3))[:2] == [" " * 20] * 2
 

@@ -12,7 +12,7 @@ import pytest
 from hil.client.decode import OdometryFrame
 from hil.client.orders import order, set_reference
 from hil.terminal import link as link_module
-from hil.terminal.link import MOST_EVENTS, MOST_ORDERS, Link
+from hil.terminal.link import MAX_EVENTS, MAX_ORDERS, Link
 from hil.terminal.tele import Arrow
 from tests.hil.terminal.desk import FarEnd
 from tests.hil.waiting import eventually
@@ -114,14 +114,14 @@ def test_frames_come_whole_however_they_were_cut(robot: FarEnd, link: Link) -> N
 
 
 def test_frames_that_nobody_takes_are_bounded_and_counted_and_the_newest_remain(robot: FarEnd, link: Link) -> None:
-    count = 3 * MOST_EVENTS
+    count = 3 * MAX_EVENTS
     for number in range(count):
         data = OdometryFrame(number, 0, 0, 1, 1, 1).encode()
         while data:
             data = data[robot.say(data) :]
     eventually(lambda: link.traffic.frames == count)
-    assert [frame.x_mm for frame in frames_of(link)] == list(range(count - MOST_EVENTS, count))
-    assert link.traffic.unseen == count - MOST_EVENTS
+    assert [frame.x_mm for frame in frames_of(link)] == list(range(count - MAX_EVENTS, count))
+    assert link.traffic.unseen == count - MAX_EVENTS
 
 
 def test_noise_costs_nothing_but_a_count(robot: FarEnd, link: Link) -> None:
@@ -147,7 +147,7 @@ def test_a_robot_that_reads_nothing_stops_no_screen_and_no_frame(
         eventually(lambda: not line._send(filler) or line.traffic.refused > 0)
         robot.say(OdometryFrame(1, 0, 0, 1, 1, 1).encode())
         eventually(lambda: line.traffic.frames == 1)
-        assert len(line._orders) <= MOST_ORDERS + 1
+        assert len(line._orders) <= MAX_ORDERS + 1
         eventually(lambda: line.traffic.refused > 0)
     finally:
         line.close()

@@ -17,7 +17,7 @@ from typing import Any, Final
 from tests.hil.unchanged.scenarios import Data
 
 #: Lines of one difference that are shown.
-MOST_LINES: Final = 60
+MAX_LINES: Final = 60
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -212,6 +212,6 @@ def _compared(before: Any, now: Any, key: str, new: frozenset[str]) -> Iterable[
 
 def _unified(key: str, was: list[str], now: list[str]) -> Iterable[str]:
     lines = list(difflib.unified_diff(was, now, f"{key}, recorded", f"{key}, now", n=0, lineterm=""))
-    yield from lines[:MOST_LINES]
-    if len(lines) > MOST_LINES:
-        yield f"... and {len(lines) - MOST_LINES} lines more"
+    yield from lines[:MAX_LINES]
+    if len(lines) > MAX_LINES:
+        yield f"... and {len(lines) - MAX_LINES} lines more"

@@ -408,10 +408,10 @@ def test_keys_are_listed_and_light_and_dark_can_be_read(page: Any, shot: Shot) -
 
 
 def test_one_page_too_many_is_told_so_and_asks_again(browser: Any, shot: Shot) -> None:
-    from hil.view.page_limit import MOST_PAGES
+    from hil.view.page_limit import MAX_PAGES
 
     view = View("--world", "room", "--no-open")
-    for _ in range(MOST_PAGES):  # pages that are asked for and may be loading still
+    for _ in range(MAX_PAGES):  # pages that are asked for and may be loading still
         urllib.request.urlopen(view.address).close()
     page = browser.new_page(viewport={"width": 390, "height": 844})
     answer = page.goto(view.address)
@@ -419,7 +419,7 @@ def test_one_page_too_many_is_told_so_and_asks_again(browser: Any, shot: Shot) -
     assert page.title() == "one page too many - c2000-hil"
     assert page.locator("html").get_attribute("lang") == "en"
     told = page.get_by_role("status")
-    assert told.inner_text().startswith(f"This view has {MOST_PAGES} pages open and no room for one more: close one")
+    assert told.inner_text().startswith(f"This view has {MAX_PAGES} pages open and no room for one more: close one")
     assert told.bounding_box()["width"] < 390
     shot(page, "too-many")
     with page.expect_request(view.address):

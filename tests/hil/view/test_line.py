@@ -10,7 +10,7 @@ import pytest
 from hil.client.decode import OdometryFrame
 from hil.recording.trajectory import parse_trajectory
 from hil.serial_url import PortError
-from hil.view.line import MOST_ENTRIES, LineLog, SerialPortLine
+from hil.view.line import MAX_ENTRIES, LineLog, SerialPortLine
 from tests.hil.waiting import eventually
 
 FRAME = OdometryFrame(1, -2, 3, 1922, 427, 650)
@@ -40,16 +40,16 @@ def test_frames_and_orders_are_numbered_in_order() -> None:
 
 def test_what_is_kept_is_bounded_and_the_newest() -> None:
     log = LineLog()
-    for number in range(MOST_ENTRIES + 10):
+    for number in range(MAX_ENTRIES + 10):
         log.received(OdometryFrame(number, 0, 0, 0, 0, 0).encode(), float(number))
     kept = log.entries_since(0)
-    assert len(kept) == MOST_ENTRIES
-    assert kept[-1].number == MOST_ENTRIES + 9
-    assert log.last_frame() == OdometryFrame(MOST_ENTRIES + 9, 0, 0, 0, 0, 0)
+    assert len(kept) == MAX_ENTRIES
+    assert kept[-1].number == MAX_ENTRIES + 9
+    assert log.last_frame() == OdometryFrame(MAX_ENTRIES + 9, 0, 0, 0, 0, 0)
 
 
 def test_frames_are_bounded_too_and_keep_their_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("hil.view.line.MOST_FRAMES", 5)
+    monkeypatch.setattr("hil.view.line.MAX_FRAMES", 5)
     log = LineLog()
     frames = [OdometryFrame(number, -number, 0, 32767, -32768, 1) for number in range(23)]
     for frame in frames:

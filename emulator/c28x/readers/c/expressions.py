@@ -86,7 +86,7 @@ FIXED_POINT: Final = {
 _IDLE_CYCLES: Final = _intrinsic("__idle_cycles", VOID, UINT)
 _MODES: Final = re.compile(r"(SETC|CLRC) ((?:INTM|DBGM)(?: ?, ?(?:INTM|DBGM))?)", re.IGNORECASE)
 _REPEATED: Final = re.compile(r"RPT #\(?(0x[0-9a-f]+|0|[1-9]\d*)\)? ?\|\| ?NOP", re.IGNORECASE)
-_MOST_REPEATED: Final = 255
+_MAX_REPEATED: Final = 255
 #: Save and restore of registers that C does not see, around a call of code that changes them.
 _KEPT: Final = re.compile(
     r"(PUSH|POP) (ACC|P|XT|DP|XAR[0-7]|AR[0-7](:AR[0-7])?|RPC|RB)"
@@ -449,7 +449,7 @@ class CExpressionReader:
         if modes is not None:
             for mode in modes[2].split(","):
                 self.core(headers.ASSEMBLER[f"{modes[1]} {mode.strip()}".upper()], where)
-        elif repeated is not None and int(repeated[1], 0) <= _MOST_REPEATED:
+        elif repeated is not None and int(repeated[1], 0) <= _MAX_REPEATED:
             times = Const(UINT, int(repeated[1], 0) + 1, where=where)
             build.evaluate(self.b, build.call(self.b, _IDLE_CYCLES, [times], where))
         elif _KEPT.fullmatch(text) is not None:
