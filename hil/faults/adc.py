@@ -22,7 +22,7 @@ _INPUT = FaultParameter("input", "", "ADC and channel, as A2", type=str)
 
 
 class _OfInput(Effect):
-    """A fault at one input."""
+    """A fault of one input."""
 
     def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
@@ -32,25 +32,25 @@ class _OfInput(Effect):
         self.adc, self.channel = found[1], int(found[2])
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self.on_end(self.board.adc[self.adc].inject_fault(self.faulty_code))
 
     @abstractmethod
     def faulty_code(self, soc: int, channel: int, code: int) -> int:
-        """What becomes of a code."""
+        """Return the code in place of `code`."""
 
     def reported(self, soc: int, before: int, after: int) -> int:
-        """A code, and what becomes of it."""
+        """Report that the fault fired if the code has changed, and return the new code."""
         if after != before:
             self.fired(self.board.blocks[f"Adc{self.adc.lower()}ResultRegs"].registers[f"ADCRESULT{soc}"])
         return after
 
 
 class BitStuck(_OfInput):
-    """One bit of the codes of an input."""
+    """One bit of the codes of an input is stuck."""
 
     def faulty_code(self, soc: int, channel: int, code: int) -> int:
-        """What becomes of a code."""
+        """Return the code in place of `code`."""
         if channel != self.channel:
             return code
         bit = 1 << self.whole("bit")
@@ -63,7 +63,7 @@ class ChannelOpen(_OfInput):
     _held = 0
 
     def faulty_code(self, soc: int, channel: int, code: int) -> int:
-        """What becomes of a code."""
+        """Return the code in place of `code`."""
         if channel != self.channel:
             self._held = code
             return code
@@ -71,12 +71,12 @@ class ChannelOpen(_OfInput):
 
 
 class InputHeld(_OfInput):
-    """An input keeps the voltage that it had."""
+    """An input keeps its last voltage."""
 
     _held: int | None = None
 
     def faulty_code(self, soc: int, channel: int, code: int) -> int:
-        """What becomes of a code."""
+        """Return the code in place of `code`."""
         if channel != self.channel:
             return code
         if self._held is None:
@@ -88,7 +88,7 @@ class InputShorted(_OfInput):
     """An input is shorted to one voltage."""
 
     def faulty_code(self, soc: int, channel: int, code: int) -> int:
-        """What becomes of a code."""
+        """Return the code in place of `code`."""
         if channel != self.channel:
             return code
         top = _full_scale(self.board, self.adc)
@@ -96,17 +96,17 @@ class InputShorted(_OfInput):
 
 
 def _full_scale(board: Board, adc: str) -> int:
-    """The largest code: of 12 or 16 bits, as ADCCTL2.RESOLUTION says."""
+    """The largest code, of 12 or 16 bits by ADCCTL2.RESOLUTION."""
     return 0xFFFF if board.blocks[f"Adc{adc.lower()}Regs"].registers["ADCCTL2"].value & 0x40 else 0xFFF
 
 
 class ReferenceDrift(Effect):
-    """The reference of an ADC goes away from its nominal voltage."""
+    """The reference of an ADC drifts from its nominal voltage."""
 
     _began = 0
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self._began = self.clock.now
         self.on_end(self.board.adc[self.text("adc")].inject_fault(self._drifted_code))
 
@@ -122,10 +122,10 @@ class ReferenceDrift(Effect):
 
 
 class ConverterDead(Effect):
-    """An ADC does not convert: what is started waits, and no interrupt flag is set."""
+    """An ADC does not convert: started SOCs stay pending, and no interrupt flag is set."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self.on_end(self.board.adc[self.text("adc")].stop_converting())
         self.fired(self.board.blocks[f"Adc{self.text('adc').lower()}Regs"].registers["ADCINTFLG"])
 

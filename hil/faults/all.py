@@ -17,7 +17,7 @@ FAULTS: Final[Mapping[str, FaultKind]] = MappingProxyType(
 
 
 def unsuitable(machine: FaultTarget) -> dict[str, str]:
-    """The kinds that a machine cannot have, and why."""
+    """The kinds of fault that a machine cannot have, each with the reason."""
     reasons = {}
     for name, kind in FAULTS.items():
         try:

@@ -15,7 +15,7 @@ _DRIVER: Final = "touch sensor"
 
 
 class _OfBumper(Effect):
-    """A fault of the contact: the sensor drives a wire that leads nowhere, the fault the pin."""
+    """A fault of the contact: the sensor drives a wire without a pin, and the fault drives the pin."""
 
     def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
@@ -33,7 +33,7 @@ class _OfBumper(Effect):
         _bumper(machine.board)
 
     def take(self) -> None:
-        """From now on the pin is the fault's."""
+        """Let the fault drive the pin from now on."""
         self.contact.drive(_DRIVER, 0 if self.pressed_pin else None)
         self.bumper.pin = self.contact
         self.on_end(self._back)
@@ -48,11 +48,11 @@ class _OfBumper(Effect):
         self.put(self.contact.level == 0)
 
     def put(self, closed: bool) -> None:
-        """The pin's level."""
+        """Set the level of the pin."""
         self.pin.drive(_DRIVER, 0 if closed else None)
 
     def compare(self, _level: int = 0) -> None:
-        """Whether the pin is other than the contact would have it."""
+        """Report that the fault fired if the pin has another level than the contact would give."""
         if self.contact.level != self.pin.level:
             self.fired(self.data)
 
@@ -62,10 +62,10 @@ def _bumper(board: Board) -> TouchSensor:
 
 
 class BumperStuck(_OfBumper):
-    """Pressed for good, or never."""
+    """The switch is always pressed, or never."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self.take()
         self.put(self.text("state") == "pressed")
         self.on_end(self.contact.changed.connect(self.compare))
@@ -73,10 +73,10 @@ class BumperStuck(_OfBumper):
 
 
 class Bouncing(_OfBumper):
-    """A loose contact."""
+    """The contact bounces by itself."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self.take()
         self.repeat(self.number("rate"), self._turn)
 

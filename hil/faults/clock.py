@@ -21,10 +21,10 @@ from hil.faults.serial import OfLine
 
 
 class OscillatorDrift(OfLine):
-    """The chip's clock is not what it should be."""
+    """The oscillator of the chip has a wrong frequency."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         super().begin()
         devices = [part.device for part in self.board.parts.values()]
         own_time = [each for each in (getattr(self.machine, "world", None), *devices) if hasattr(each, "set_second")]
@@ -38,7 +38,7 @@ class OscillatorDrift(OfLine):
         self.on_end(self.board.serial_pins[pc.tx_gpio].disturb(self._stretched_frames))
 
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
-        """From the PC: its bits are longer for a chip that runs faster."""
+        """Return a frame from the PC with longer bits, as a faster chip sees it."""
         self.hit()
         return (self._stretched(frame, 1.0 + self.number("percent") / 100.0),)
 
@@ -58,7 +58,7 @@ class TaskSlow(Effect):
     """Each activation of a task takes longer."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self._ready = self._due = False
         trace, clock = self.board.trace, self.clock
         self.on_end(trace.listen(self._scheduled, "ready", "switch", each_tick=False))

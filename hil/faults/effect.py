@@ -34,7 +34,7 @@ TIMES_KEPT: Final = 10
 
 
 class Phase(Enum):
-    """Where a fault is in its life."""
+    """The state of a fault."""
 
     WAITS = "waits"
     AT_WORK = "at work"
@@ -54,7 +54,7 @@ class FirstAccess:
 
 @dataclass(frozen=True, slots=True)
 class FaultOutcome:
-    """What came of a fault.  Times are seconds after start-up, as those of orders."""
+    """The outcome of a fault.  Times are seconds after start-up, as those of orders."""
 
     fault: Fault
     times_s: tuple[float, ...]
@@ -70,7 +70,10 @@ class FaultOutcome:
         return f"{self.fault}: fired {often}, first at {self.times_s[0]:.6f} s; {by}"
 
     def and_then(self, later: FaultOutcome) -> FaultOutcome:
-        """Of the same fault on two machines in turn: times, and who met it, are those of the first that has some."""
+        """Combine the outcomes of one fault on two machines, one after the other.
+
+        Times and first access are those of the first outcome that has them.
+        """
         return FaultOutcome(self.fault, self.times_s or later.times_s, self.count + later.count, self.met or later.met)
 
     def as_dict(self) -> dict[str, Any]:
@@ -84,7 +87,7 @@ class FaultOutcome:
 
 
 class FaultTarget(Protocol):
-    """What a fault needs of a machine: `hil.running.RunningBoard` is one."""
+    """A machine that can have faults, such as `hil.running.RunningBoard`."""
 
     board: Board
     clock: Clock
@@ -99,7 +102,10 @@ class FaultTarget(Protocol):
 
 
 class Effect(ABC):
-    """What a kind of fault does.  Made when it is mounted; raises ValueError for a board that has not what it needs."""
+    """The effect of a kind of fault, created when the fault is mounted.
+
+    Raises ValueError for a board without the parts that it needs.
+    """
 
     def __init__(self, mounted: MountedFault) -> None:
         self.check_machine(mounted.machine)
@@ -112,41 +118,42 @@ class Effect(ABC):
 
     @classmethod  # noqa: B027
     def check_machine(cls, machine: FaultTarget) -> None:
-        """Raises ValueError for a machine that has not what this kind needs, whatever the parameters."""
+        """Raise ValueError for a machine without the parts that this kind needs, whatever the parameters are."""
 
     @abstractmethod
     def begin(self) -> None:
-        """It begins now."""
+        """Begin the fault."""
 
     def end(self) -> None:
-        """It is over: everything as it was, as far as that can be."""
+        """End the fault: restore everything that can be restored."""
         while self._ends:
             self._ends.pop()()
 
     def on_end(self, mend: Callable[[], None]) -> None:
-        """What its end undoes, the last first."""
+        """Call `mend` when the fault ends; the last one is called first."""
         self._ends.append(mend)
 
     def fired(self, *cells: Cell) -> None:
-        """Something is other than it would have been; the first read of one of `cells` from now on meets it."""
+        """Report that something differs from a run without the fault.  The next read of one of `cells` is its first
+        access."""
         self.mounted.fired(cells)
 
     # Parameters
 
     def number(self, name: str) -> float:
-        """A parameter."""
+        """The value of a parameter."""
         return float(self.mounted.fault.values[name])
 
     def whole(self, name: str) -> int:
-        """A parameter that is a whole number."""
+        """The value of a parameter that is a whole number."""
         return int(self.mounted.fault.values[name])
 
     def text(self, name: str) -> str:
-        """A parameter that is a text."""
+        """The value of a parameter that is a text."""
         return str(self.mounted.fault.values[name])
 
     def chosen_by_rate(self) -> bool:
-        """Whether it is to happen this time, where `rate` is a probability."""
+        """Draw whether it happens this time; `rate` is the probability."""
         rate = self.number("rate")
         return rate >= 1.0 or self.rng.random() < rate
 
@@ -171,12 +178,12 @@ class Effect(ABC):
         return cells
 
     def module_at(self, gpio: int, signals: Sequence[str]) -> str | None:
-        """Which of `signals` a pin can carry."""
+        """The first of `signals` that a pin can carry."""
         return next((name for name in signals if gpio in PIN_FUNCTIONS.get(name, {})), None)
 
 
 class RandomTimes:
-    """Something that happens at random times, each `expovariate` after the one before."""
+    """Calls an action at random times; the intervals are drawn with `expovariate`."""
 
     def __init__(self, effect: Effect, rate_hz: float, action: Callable[[], None]) -> None:
         self._effect, self._rate_hz, self._action = effect, rate_hz, action
@@ -184,7 +191,7 @@ class RandomTimes:
         effect.on_end(self._stop)
 
     def plan(self) -> None:
-        """The next one."""
+        """Schedule the next call."""
         cycles = max(1, round(self._effect.rng.expovariate(self._rate_hz) * SYSCLK_HZ))
         self._event = self._effect.clock.after(cycles, self._fire)
 
@@ -197,7 +204,7 @@ class RandomTimes:
 
 
 class MountedFault:
-    """A fault on a board, until it is removed."""
+    """A fault that is mounted on a board, until it is removed."""
 
     def __init__(self, fault: Fault, machine: FaultTarget, start_cycles: int) -> None:
         self.fault = fault
@@ -216,11 +223,11 @@ class MountedFault:
         self._event: Event | None = machine.clock.schedule(max(at, machine.clock.now), self._due)
 
     def report(self) -> FaultOutcome:
-        """When it fired, how often, and who met it first."""
+        """When it fired, how often, and its first access."""
         return FaultOutcome(self.fault, tuple(self._times), self.count, self._first_access)
 
     def remove(self) -> None:
-        """End it, and hear of nothing more.  Its report stays."""
+        """End the fault and stop watching.  Its report stays."""
         if self.phase is Phase.REMOVED:
             return
         if self._watching is not None:
@@ -256,14 +263,14 @@ class MountedFault:
         return seconds(self.machine.clock.now - self._start)
 
     def fired(self, cells: Iterable[Cell]) -> None:
-        """It changed something; the first read of one of `cells` meets it."""
+        """Note that the fault has fired; the next read of one of `cells` is its first access."""
         self.count += 1
         if len(self._times) < TIMES_KEPT:
             self._times.append(self._since_start_s())
         self.watch(cells)
 
     def watch(self, cells: Iterable[Cell]) -> None:
-        """The first read of one of `cells` from now on meets it."""
+        """Note the next read of one of `cells` as the first access."""
         if self._first_access is None and self.phase is not Phase.REMOVED:
             for cell in cells:
                 if cell not in self._tapped:
@@ -275,7 +282,7 @@ class MountedFault:
             self.note_access()
 
     def note_access(self) -> None:
-        """The statement that executes now meets it."""
+        """Note the statement that executes now as the first access."""
         if self._first_access is None:
             places = self.machine.findings.here(1)
             place, function = "", ""
@@ -292,7 +299,7 @@ class MountedFault:
 
     @property
     def met(self) -> bool:
-        """Whether somebody met it."""
+        """Whether the firmware has accessed its effect."""
         return self._first_access is not None
 
 

@@ -49,7 +49,7 @@ class _OfEdges(_OfWheel):
     """A fault of the wire between shaft and pins."""
 
     def begin(self) -> None:
-        """It begins: the shaft's edges go through `edges`, until the end."""
+        """Begin the fault: the shaft's edges go through `edges` until its end."""
         pins = self.motor.encoder
         shaft = QuadratureWire(f"{pins.name} at the shaft")
         shaft.moved.connect(lambda edges, start, end: pins.move(self.edges(edges), start, end))
@@ -58,14 +58,14 @@ class _OfEdges(_OfWheel):
 
     @abstractmethod
     def edges(self, edges: int) -> int:
-        """What comes of a movement."""
+        """Return the edges in place of those of a movement."""
 
 
 class EdgeLost(_OfEdges):
-    """Edges do not come."""
+    """Some edges are lost."""
 
     def edges(self, edges: int) -> int:
-        """What comes of a movement."""
+        """Return the edges in place of those of a movement."""
         left = 0
         for _ in range(abs(edges)):
             if self.chosen_by_rate():
@@ -76,16 +76,16 @@ class EdgeLost(_OfEdges):
 
 
 class PhasesSwapped(_OfEdges):
-    """A is B and B is A."""
+    """The phases A and B are swapped."""
 
     def edges(self, edges: int) -> int:
-        """What comes of a movement."""
+        """Return the edges in place of those of a movement."""
         self.fired(*self.counts)
         return -edges
 
 
 class _WheelOnFloorFault(_OfWheel):
-    """A fault of a wheel on its floor."""
+    """A fault of a wheel that rolls on the floor of a world."""
 
     def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
@@ -93,13 +93,13 @@ class _WheelOnFloorFault(_OfWheel):
 
     @classmethod
     def check_machine(cls, machine: FaultTarget) -> None:
-        """Raises ValueError for wheels that roll nowhere."""
+        """Raise ValueError for a board that is in no world."""
         super().check_machine(machine)
         if getattr(machine, "world", None) is None:
             raise ValueError("this board is in no world")
 
     def hamper(self, **how: float) -> None:
-        """From now on; undone at the end."""
+        """Hamper the wheel from now on, until the end of the fault."""
         self.world.sync_now()
         self.world.robot.hamper(**how)
         self.on_end(self._free)
@@ -109,24 +109,24 @@ class _WheelOnFloorFault(_OfWheel):
         self.world.robot.hamper()
 
     def moved(self, _edges: int, _start: int, _end: int) -> None:
-        """The wheel has turned while it is hampered."""
+        """Report that the fault fired: the wheel has turned."""
         self.fired(*self.counts)
 
 
 class WheelSlips(_WheelOnFloorFault):
-    """It turns more than it rolls."""
+    """The wheel turns more than it rolls."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self.hamper(**{f"slip_{self.text('side')}": self.number("percent") / 100.0})
         self.on_end(self.motor.encoder.moved.connect(self.moved))
 
 
 class WheelBlocked(_WheelOnFloorFault):
-    """It cannot turn."""
+    """The wheel cannot turn."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self.hamper(**{f"hold_{self.text('side')}_nm": _HOLD_NM})
         bridge = self.motor.bridge
         for wire in (bridge.in1, bridge.in2):
@@ -134,7 +134,7 @@ class WheelBlocked(_WheelOnFloorFault):
         self._driven()
 
     def _driven(self) -> None:
-        """It is driven, or not: held it is in any case, which shows only while it is driven."""
+        """Report that the fault fired when the motor is driven: a blocked wheel shows only then."""
         if self.motor.bridge.in1.duty != self.motor.bridge.in2.duty:
             self.fired(*self.counts)
 

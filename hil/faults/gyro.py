@@ -43,9 +43,9 @@ class _OfGyro(Effect):
         _bus(machine.board, _gyro(machine.board))
 
     def tamper(self, with_answer: Answer, *, cut: bool = False) -> None:
-        """Have `with_answer(out_bits, length, answer)` change what it answers, until the end.
+        """Let `with_answer(out_bits, length, answer)` change the answers of the gyro, until the end of the fault.
 
-        `cut`: words do not come to it.
+        `cut`: the gyro gets no words.
         """
         slave = _on(self.bus, self.gyro)
         before = slave if isinstance(slave, TamperedSlave) else TamperedSlave(self.bus, self.gyro)
@@ -53,7 +53,7 @@ class _OfGyro(Effect):
         self.on_end(lambda: before.remove(with_answer))
 
     def turns(self, change: Callable[[tuple[float, float, float]], tuple[float, float, float]]) -> None:
-        """Have what turns it be changed, until the end."""
+        """Change the rate that the gyro measures, until the end of the fault."""
         source = self.gyro.rate_source
         self.gyro.set_rate_source(lambda cycles: change(source(cycles)))
         self.on_end(lambda: self.gyro.set_rate_source(source))
@@ -64,7 +64,7 @@ def _gyro(board: Board) -> L3G4200D:
 
 
 def _bus(board: Board, gyro: L3G4200D) -> tuple[str, SpiBus]:
-    """The bus that a gyro is on, with its letter.  Raises ValueError."""
+    """The SPI bus of a gyro, and its letter.  Raises ValueError if it is on none."""
     for letter, bus in board.spi_bus.items():
         if _on(bus, gyro) is not None:
             return letter, bus
@@ -72,12 +72,12 @@ def _bus(board: Board, gyro: L3G4200D) -> tuple[str, SpiBus]:
 
 
 def _on(bus: SpiBus, gyro: L3G4200D) -> SpiSlave | None:
-    """What gets the gyro's words on a bus: itself, or what was put before it."""
+    """The slave that gets the gyro's words on a bus: the gyro, or the one that was put before it."""
     return next((slave for slave in bus.slaves if getattr(slave, "slave", slave) is gyro), None)
 
 
 class TamperedSlave:
-    """A device whose answers are changed on their way; it stands before the device on the bus."""
+    """A slave in front of a device: it changes the answers of the device."""
 
     def __init__(self, bus: SpiBus, slave: SpiSlave) -> None:
         self.slave = slave
@@ -88,13 +88,13 @@ class TamperedSlave:
         bus.replace(slave, self)
 
     def add(self, change: Answer, *, cut: bool) -> None:
-        """One more change, after those that there are; `cut`: the device hears nothing."""
+        """Add a change after the present ones; `cut`: the device gets no words."""
         self._changes.append(change)
         if cut:
             self._cuts.append(change)
 
     def remove(self, change: Answer) -> None:
-        """One less; after the last the device stands on the bus by itself."""
+        """Remove a change.  After the last one, the device is on the bus itself again."""
         self._changes.remove(change)
         if change in self._cuts:
             self._cuts.remove(change)
@@ -102,10 +102,10 @@ class TamperedSlave:
             self._bus.replace(self, self.slave)
 
     def select(self, level: int) -> None:
-        """The device hears its chip select by itself."""
+        """Do nothing: the device follows its chip select itself."""
 
     def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int | None:
-        """A word."""
+        """Exchange a word."""
         answer = None if self._cuts else self.slave.exchange(out_bits, length, cpol, cpha)
         for change in self._changes:
             answer = change(out_bits, length, answer)
@@ -113,10 +113,10 @@ class TamperedSlave:
 
 
 class MisoStuck(_OfGyro):
-    """MISO stays at a level."""
+    """MISO is stuck at a level."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self.tamper(self._stuck)
 
     def _stuck(self, _out_bits: int, length: int, answer: int | None) -> int:
@@ -130,10 +130,10 @@ class MisoStuck(_OfGyro):
 
 
 class SelectLost(_OfGyro):
-    """Its chip select does not reach it."""
+    """The chip select does not reach the gyro."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self.gyro.select(1)
         self.tamper(self._nothing, cut=True)
 
@@ -143,10 +143,10 @@ class SelectLost(_OfGyro):
 
 
 class GyroReset(_OfGyro):
-    """It loses its supply for a moment."""
+    """The gyro loses its supply for a moment."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         rate_hz = self.number("rate")
         if rate_hz:
             self.repeat(rate_hz, self._reset)
@@ -158,10 +158,10 @@ class GyroReset(_OfGyro):
 
 
 class WhoAmI(_OfGyro):
-    """Another part, or none that is known, was fitted."""
+    """WHO_AM_I is that of another part, or of no known part."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self._address = self._bits = -1
         select = self.board.pins[int(self._part.pins["CS"].removeprefix("GPIO"))]
         self.on_end(select.changed.connect(self._selected))
@@ -186,10 +186,10 @@ class WhoAmI(_OfGyro):
 
 
 class BiasJump(_OfGyro):
-    """Its zero-rate level jumps."""
+    """The zero-rate level jumps."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self.turns(self._turned)
 
     def _turned(self, rates: tuple[float, float, float]) -> tuple[float, float, float]:
@@ -203,7 +203,7 @@ class GyroSaturation(_OfGyro):
     """An axis is at the end of its range."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self.turns(self._turned)
 
     def _turned(self, rates: tuple[float, float, float]) -> tuple[float, float, float]:

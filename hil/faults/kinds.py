@@ -1,4 +1,4 @@
-"""What a fault is, as text, as a table, and as data; nothing here knows a board."""
+"""The declaration of a fault, as text, as a table and as data.  Nothing here knows a board."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Value = float | int | str
 
 @dataclass(frozen=True, slots=True)
 class FaultParameter:
-    """One number or word of a fault.  Without a default it must be given."""
+    """A parameter of a fault: a number or a word.  Without a default it must be given."""
 
     name: str
     unit: str
@@ -30,7 +30,7 @@ class FaultParameter:
 
     @property
     def range(self) -> str:
-        """What it can be, in words."""
+        """The permitted values, in words."""
         if self.choices:
             return ", ".join(self.choices)
         if self.type is str:
@@ -40,7 +40,7 @@ class FaultParameter:
         return f"at least {self.low:g}" if self.high == inf else f"{self.low:g} to {self.high:g}"
 
     def read(self, value: Any) -> Value:
-        """A value of text or table.  Raises ValueError."""
+        """Convert a value of a text or a table.  Raises ValueError."""
         if self.type is str:
             if not isinstance(value, str):
                 raise ValueError(f"{self.name}: {value!r} must be a text")
@@ -68,9 +68,9 @@ class FaultParameter:
         return number
 
     def drawn(self, random: Random) -> Value:
-        """Something that it can be: one of its choices, or its default by some power of two.
+        """Draw a permitted value: one of the choices, or the default multiplied by a power of two.
 
-        Raises ValueError for one that has neither.
+        Raises ValueError for a parameter without choices and default.
         """
         if self.choices:
             return random.choice(self.choices)
@@ -105,7 +105,7 @@ COMMON: Final = (AT, WHEN, FOR, SEED)
 
 @dataclass(frozen=True, slots=True)
 class FaultKind:
-    """One kind of fault: its name, what it is, what it needs of the board, and its parameters."""
+    """A kind of fault: its name, its description, what it needs of the board, and its parameters."""
 
     name: str
     sentence: str
@@ -119,7 +119,7 @@ class FaultKind:
 
     @property
     def parameters(self) -> tuple[FaultParameter, ...]:
-        """Its own, the rate if it has one, and those that every fault has."""
+        """Its own parameters, the rate if it has one, and those of every fault."""
         return (*self.own, *(() if self.rate is None else (self.rate,)), *COMMON)
 
     def as_dict(self) -> dict[str, Any]:
@@ -132,14 +132,14 @@ class FaultKind:
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """A fault as it was declared: its kind, and every parameter by name."""
+    """A declared fault: its kind, and the value of each parameter by name."""
 
     kind: FaultKind
     values: Mapping[str, Value] = field(default_factory=dict)
 
     @classmethod
     def of(cls, kind: str, given: Mapping[str, Any]) -> Fault:
-        """A fault of a kind with some of its parameters.  Raises ValueError."""
+        """Create a fault of a kind with some of its parameters.  Raises ValueError."""
         from hil.faults.all import FAULTS
 
         known = FAULTS.get(kind)
@@ -167,7 +167,7 @@ class Fault:
 
     @classmethod
     def from_table(cls, table: Mapping[str, Any]) -> Fault:
-        """A fault of a TOML table: `kind`, the parameters, `for` as `for_s`.  Raises ValueError."""
+        """Create a fault from a TOML table: `kind`, the parameters, `for` as `for_s`.  Raises ValueError."""
         given = dict(table)
         kind = given.pop("kind", None)
         if not isinstance(kind, str):
@@ -180,11 +180,11 @@ class Fault:
 
     @property
     def lasts_s(self) -> float:
-        """How long it lasts, in seconds; inf: to the end."""
+        """The duration in seconds; inf: until the end of the run."""
         return float(self.values["for"])
 
     def __str__(self) -> str:
-        """As `parse` takes it, without what is by default."""
+        """The text that `parse` reads, without parameters that have their default."""
         defaults = {parameter.name: parameter.default for parameter in self.kind.parameters}
         said = [f"{name}={str(value).removesuffix('.0')}" for name, value in self.values.items()
                 if value != defaults[name]]  # fmt: skip
@@ -192,7 +192,7 @@ class Fault:
 
 
 def parse(text: str) -> Fault:
-    """A fault of the command line: `adc-bit-stuck:input=A5,bit=3,value=1,at=2,for=1`.  Raises ValueError."""
+    """Parse a fault of the command line: `adc-bit-stuck:input=A5,bit=3,value=1,at=2,for=1`.  Raises ValueError."""
     kind, _, rest = text.strip().partition(":")
     given: dict[str, str] = {}
     for part in filter(None, (part.strip() for part in rest.split(","))):

@@ -13,7 +13,7 @@ from hil.faults.kinds import FaultKind, FaultParameter
 
 
 class BitFlip(Effect):
-    """A bit of a word is the other one, once or now and then."""
+    """A bit of a word is inverted, once or at random times."""
 
     def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
@@ -40,7 +40,7 @@ class BitFlip(Effect):
         raise ValueError(f"word: {name!r} is neither an address nor a variable of the firmware (module.name)")
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         rate_hz = self.number("rate")
         if rate_hz:
             self.repeat(rate_hz, self._flip)

@@ -14,7 +14,7 @@ from hil.faults.kinds import FaultKind, FaultParameter
 
 
 class _OfRadio(Effect):
-    """A fault of the air."""
+    """A fault of the radio channel."""
 
     def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
@@ -27,7 +27,7 @@ class _OfRadio(Effect):
             raise ValueError("this board has no radio (--xbee)")
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         before = self.air.interference
 
         def both() -> tuple[bool, int]:
@@ -40,14 +40,14 @@ class _OfRadio(Effect):
 
     @abstractmethod
     def packet(self) -> tuple[bool, int]:
-        """Whether a packet is lost, and how much later it comes."""
+        """Return whether a packet is lost, and how much later it comes."""
 
 
 class PacketLoss(_OfRadio):
     """Packets are lost."""
 
     def packet(self) -> tuple[bool, int]:
-        """Whether a packet is lost, and how much later it comes."""
+        """Return whether a packet is lost, and how much later it comes."""
         lost = self.chosen_by_rate()
         if lost:
             self.fired()
@@ -58,7 +58,7 @@ class PacketLatency(_OfRadio):
     """Packets come late."""
 
     def packet(self) -> tuple[bool, int]:
-        """Whether a packet is lost, and how much later it comes."""
+        """Return whether a packet is lost, and how much later it comes."""
         if not self.chosen_by_rate():
             return False, 0
         self.fired()

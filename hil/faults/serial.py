@@ -45,27 +45,27 @@ class OfLine(Effect):
             raise ValueError(f"{type(machine.board).__name__} has no line to a PC")
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self.on_end(self.line.disturb(self.frames))
 
     @abstractmethod
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
-        """What becomes of a frame."""
+        """Return the frames in place of a frame."""
 
     def hit(self) -> None:
-        """A character is other than it was sent."""
+        """Report that a character differs from the one that was sent."""
         self.fired(*self.received)
 
     def later(self, frame: SerialFrame, start: int) -> SerialFrame:
-        """The same frame, begun at another time."""
+        """Return the same frame with another start time."""
         return replace(frame, start=start, end=start + frame.end - frame.start)
 
 
 class BitFlipped(OfLine):
-    """A data bit is the other one."""
+    """A data bit is inverted."""
 
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
-        """What becomes of a frame."""
+        """Return the frames in place of a frame."""
         if not self.chosen_by_rate():
             return (frame,)
         bit = self.whole("bit")
@@ -74,10 +74,10 @@ class BitFlipped(OfLine):
 
 
 class ByteLost(OfLine):
-    """A byte does not come."""
+    """A byte is lost."""
 
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
-        """What becomes of a frame."""
+        """Return the frames in place of a frame."""
         if not self.chosen_by_rate():
             return (frame,)
         self.hit()
@@ -85,12 +85,12 @@ class ByteLost(OfLine):
 
 
 class ByteDoubled(OfLine):
-    """A byte comes twice; what follows it waits."""
+    """A byte comes twice; the bytes after it wait."""
 
     _free_at = 0
 
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
-        """What becomes of a frame."""
+        """Return the frames in place of a frame."""
         self._put(frame, twice=False)
         if self.chosen_by_rate():
             self._put(frame, twice=True)
@@ -108,12 +108,12 @@ class ByteDoubled(OfLine):
 
 
 class NoiseBurst(OfLine):
-    """A run of bytes is noise."""
+    """Several bytes in a row are replaced by noise."""
 
     _left = 0
 
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
-        """What becomes of a frame."""
+        """Return the frames in place of a frame."""
         if not self._left and self.chosen_by_rate():
             self._left = self.whole("bytes")
         if not self._left:
@@ -127,10 +127,10 @@ class NoiseBurst(OfLine):
 
 
 class LineStall(OfLine):
-    """Nothing passes; what was held comes afterwards, in one go."""
+    """Nothing passes; the delayed bytes come afterwards, without pauses."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self._held: list[SerialFrame] = []
         super().begin()
         self.on_end(self._release)
@@ -138,7 +138,7 @@ class LineStall(OfLine):
         self._ends.reverse()
 
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
-        """What becomes of a frame."""
+        """Return the frames in place of a frame."""
         self._held.append(frame)
         self.hit()
         return ()
@@ -156,23 +156,23 @@ class HeldLow(OfLine):
     """The line is held low."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         super().begin()
         self.line.hold_low(True)
         self.on_end(lambda: self.line.hold_low(False))
         self.hit()
 
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
-        """What becomes of a frame."""
+        """Return the frames in place of a frame."""
         self.hit()
         return ()
 
 
 class WrongBaud(OfLine):
-    """The bits are of another length than was agreed.  As with a drift, the registers at both ends are not at fault."""
+    """The bits have a wrong length.  As with a drift, the registers at both ends are right."""
 
     def frames(self, frame: SerialFrame) -> Iterable[SerialFrame]:
-        """What becomes of a frame."""
+        """Return the frames in place of a frame."""
         bit = SYSCLK_HZ / self.number("baud")
         if bit == frame.bit_cycles:
             return (frame,)

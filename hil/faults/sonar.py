@@ -22,7 +22,7 @@ _SENSOR: Final = FaultParameter("sensor", "", "name in the ring: LEFT, FRONT, RI
 
 
 def sensors(board: Board) -> dict[str, tuple[LvMaxSonar, str, int]]:
-    """The sonars of a board by their names, each with ADC and channel of its AN."""
+    """The sonars of a board by name, each with the ADC and channel of its AN output."""
     found = {}
     for ring_name, ring in board.find(SonarRing).items():
         for name, sensor in ring.sensors.items():
@@ -50,13 +50,13 @@ class _OfSensor(Effect):
             raise ValueError("this board has no sonars")
 
     def hears(self, source: Callable[[str, int], Echo | None]) -> None:
-        """The sensor hears what `source` says, until the end; `asked` tells what it would."""
+        """Let `source` give the echo of the sensor, until the end of the fault; `asked` gives the true one."""
         self.asked = self.sensor.range_source
         self.sensor.set_range_source(source)
         self.on_end(lambda: self.sensor.set_range_source(self.asked))
 
     def pinged(self) -> None:
-        """The reading of this ping is another one than it would be."""
+        """Report that the reading of this ping differs from the true one."""
         self.fired()
         if self.mounted.count == 1:
             self.clock.after(SLEW_END_CYCLES, self._settled)
@@ -66,10 +66,10 @@ class _OfSensor(Effect):
 
 
 class SonarDeaf(_OfSensor):
-    """It hears nothing."""
+    """The sonar detects nothing."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self.hears(self._nothing)
 
     def _nothing(self, name: str, cycles: int) -> Echo | None:
@@ -79,10 +79,10 @@ class SonarDeaf(_OfSensor):
 
 
 class EchoStuck(_OfSensor):
-    """It hears the same echo whatever stands there."""
+    """The sonar always detects the same echo."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self.hears(self._same)
 
     def _same(self, name: str, cycles: int) -> Echo | None:
@@ -96,7 +96,7 @@ class CrossTalk(_OfSensor):
     """Another sonar pings nearby."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self.repeat(self.number("rate"), self._arrives)
 
     def _arrives(self) -> None:

@@ -27,7 +27,7 @@ _GONE_V: Final = 0.01
 
 
 def supplied(motor: NxtMotor, volts: float) -> Callable[[], None]:
-    """A motor gets so much from now on; what is returned gives it back what it had."""
+    """Set the supply of a motor; the returned function restores it."""
     before_v = motor.bridge.supply_v
 
     def put(volts: float) -> None:
@@ -40,7 +40,7 @@ def supplied(motor: NxtMotor, volts: float) -> Callable[[], None]:
 
 
 class SupplySag(Effect):
-    """The motors' supply falls."""
+    """The motors' supply sags."""
 
     def __init__(self, mounted: MountedFault) -> None:
         super().__init__(mounted)
@@ -53,11 +53,11 @@ class SupplySag(Effect):
             raise ValueError("this board has no motors")
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         self.supply(self.number("volts"))
 
     def supply(self, volts: float) -> None:
-        """All motors get so much, until the end."""
+        """Set the supply of all motors, until the end of the fault."""
         for motor in self.motors:
             self.on_end(supplied(motor, volts))
             for wire in (motor.bridge.in1, motor.bridge.in2):
@@ -70,10 +70,10 @@ class SupplySag(Effect):
 
 
 class BrownOut(SelectLost):
-    """The 3.3 V breaks in."""
+    """The 3.3 V supply is interrupted."""
 
     def begin(self) -> None:
-        """It begins."""
+        """Begin the fault."""
         if self.number("volts") < _GYRO_V:
             super().begin()
             self.on_end(self.gyro.reset)

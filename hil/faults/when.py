@@ -1,7 +1,7 @@
-"""What a fault may wait for: `frame 3`, `order MISN`, `finding RULE`, `pose x>500`.
+"""Triggers of faults: `frame 3`, `order MISN`, `finding RULE`, `pose x>500`.
 
-Frames and orders are counted on the robot's line, a pose is the true one in millimetres (and degrees), looked at every
-10 ms without moving the world.
+Frames and orders are counted on the robot's line.  A pose is the true one, in millimetres and degrees.  It is sampled
+every 10 ms, without moving the world.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _CARRIAGE_RETURN: Final = 0x0D
 
 
 def check(text: str) -> None:
-    """Raises ValueError for what is no trigger; nothing is none to wait for."""
+    """Raise ValueError for a text that is no trigger; an empty text is no wait."""
     what, _, rest = text.strip().partition(" ")
     rest = rest.strip()
     good = {
@@ -38,7 +38,10 @@ def check(text: str) -> None:
 
 
 def wait_for(text: str, machine: FaultTarget, then: Callable[[], None]) -> Callable[[], None]:
-    """Call `then` once, when it happens; what is returned ends the watch.  Raises ValueError without what it needs."""
+    """Call `then` once, when the trigger occurs; the returned function ends the watch.
+
+    Raises ValueError if the board lacks what the trigger needs.
+    """
     what, _, rest = text.strip().partition(" ")
     rest = rest.strip()
     if what == "frame":
@@ -51,7 +54,7 @@ def wait_for(text: str, machine: FaultTarget, then: Callable[[], None]) -> Calla
 
 
 class _OneShot:
-    """Something that is listened to until it happens."""
+    """A trigger that is watched until it occurs."""
 
     def __init__(self, then: Callable[[], None]) -> None:
         self._then = then

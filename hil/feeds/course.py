@@ -1,7 +1,7 @@
 """A value over virtual time: one number, points with hold or straight lines between them, a function, a generator.
 
-A `Course` is asked for any cycle, also for one that has passed, as sensors do that catch up.  Before its first point it
-has the first value, after its last point the last.  Nothing here knows a board.
+A `Course` gives its value at any cycle, also at one in the past, because sensors compute their samples late.  Before
+its first point it has the first value, after its last point the last.  Nothing here knows a board.
 """
 
 from __future__ import annotations
@@ -32,30 +32,30 @@ class Course(ABC):
 
     @abstractmethod
     def at(self, cycles: int) -> float:
-        """The value at a time."""
+        """The value at a cycle."""
 
     @abstractmethod
     def after(self, cycles: int) -> int:
-        """The first cycle after `cycles` at which it has to be looked at again; NEVER: it stays as it is."""
+        """The first cycle after `cycles` at which the value may have changed; NEVER: it stays constant."""
 
 
 class Constant(Course):
-    """One number."""
+    """A constant value."""
 
     def __init__(self, value: float) -> None:
         self._value = value
 
     def at(self, cycles: int) -> float:
-        """The value at a time."""
+        """The value at a cycle."""
         return self._value
 
     def after(self, cycles: int) -> int:
-        """It stays."""
+        """NEVER: the value is constant."""
         return NEVER
 
 
 class Points(Course):
-    """Values at times, which do not go back; of several at one time the last counts."""
+    """Values at times that do not decrease; of several values at one time the last counts."""
 
     def __init__(self, times: array[int], values: array[float], how: str, origin: int = 0) -> None:
         self._times, self._values = times, values
@@ -64,7 +64,7 @@ class Points(Course):
         self._origin = origin
 
     def at(self, cycles: int) -> float:
-        """The value at a time."""
+        """The value at a cycle."""
         times, values, time = self._times, self._values, cycles - self._origin
         index = bisect_right(times, time)
         if index == 0:
@@ -76,7 +76,7 @@ class Points(Course):
         return before + share * (values[index] - before)
 
     def after(self, cycles: int) -> int:
-        """The next point, or the next step on the way to it."""
+        """The next point, or the next step of the line to it."""
         times = self._times
         index = bisect_right(times, cycles - self._origin)
         if index == len(times):
@@ -86,7 +86,7 @@ class Points(Course):
 
 
 class Computed(Course):
-    """What a function says of a time in seconds."""
+    """The value of a function of the time in seconds."""
 
     smooth = True
 
@@ -94,21 +94,21 @@ class Computed(Course):
         self._function, self._check, self._origin = function, check, origin
 
     def at(self, cycles: int) -> float:
-        """The value at a time."""
+        """The value at a cycle."""
         time_s = (cycles - self._origin) / SYSCLK_HZ
         value = float(self._function(time_s))
         self._check(value, time_s)
         return value
 
     def after(self, cycles: int) -> int:
-        """The next step: nobody knows what a function does in between."""
+        """The next step: a function may change at any time."""
         return cycles + STEP_CYCLES
 
 
 class GeneratedCourse(Course):
-    """What a generator yields, `(time_s, value)` in the order of time, taken from it when it is needed.
+    """The points of a generator, `(time_s, value)` in the order of time.  They are taken from it when they are needed.
 
-    It may be endless.  Of the past it keeps the latest `REMEMBERED` points.
+    The generator may be endless.  The latest `REMEMBERED` points of the past are kept.
     """
 
     def __init__(
@@ -123,15 +123,15 @@ class GeneratedCourse(Course):
             raise ValueError("a generator that yields nothing: expected (time_s, value)")
 
     def at(self, cycles: int) -> float:
-        """The value at a time."""
+        """The value at a cycle."""
         return self._known(cycles).at(cycles)
 
     def after(self, cycles: int) -> int:
-        """The next point, or the next step on the way to it."""
+        """The next point, or the next step of the line to it."""
         return self._known(cycles).after(cycles)
 
     def _known(self, cycles: int) -> Points:
-        """The points around a time."""
+        """The points before and after a cycle."""
         self._draw(cycles - self._origin)
         points = self._points
         first = next((i for i in range(len(points) - 1, -1, -1) if points[i][0] <= cycles - self._origin), 0)
@@ -142,7 +142,7 @@ class GeneratedCourse(Course):
         )  # fmt: skip
 
     def _draw(self, time: int) -> None:
-        """Take points up to the first one after a time."""
+        """Take points from the generator, up to the first one after a cycle."""
         points = self._points
         while not self._ended and (not points or points[-1][0] <= time):
             pair = next(self._pairs, None)
@@ -158,7 +158,7 @@ class GeneratedCourse(Course):
 
 
 def cycles_of(time_s: float) -> int:
-    """A time in cycles.  Raises ValueError for one that is none, or beyond a year."""
+    """Convert a time to cycles.  Raises ValueError for a text that is no time, or one beyond a year."""
     if not (isfinite(time_s) and abs(time_s) < 3.2e7):
         raise ValueError(f"time {time_s:g} s: must be a number of seconds, less than a year")
     return round(time_s * SYSCLK_HZ)

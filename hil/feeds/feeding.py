@@ -39,7 +39,7 @@ _INPUT: Final = re.compile(r"\s*([^=/\\]*\.\w+|ADCIN\w*)\s*=(.*)", re.DOTALL)
 
 
 class FeedTarget(Protocol):
-    """What a feed needs of a machine: `hil.running.RunningBoard` is one."""
+    """A machine whose inputs can be fed, such as `hil.running.RunningBoard`."""
 
     board: Board
     clock: Clock
@@ -53,7 +53,7 @@ def feed(
     machine: FeedTarget, name: str, source: Source | Column, *, how: str = "hold", unit: str = "",
     from_now: bool = False,
 ) -> None:
-    """Have an input see a source instead of the physics, or of what it was fed with.
+    """Let an input see a source instead of the physics, or of its earlier feed.
 
     Times count from the end of start-up, or `from_now`; those of a trace file from power-up.  Raises ValueError.
     """
@@ -124,7 +124,7 @@ def _points(into: Input, column: Column, how: str, unit: str, origin: int) -> Po
 
 
 def column_of(columns: list[Column], name: str, file: str, *, named: bool = False) -> Column:
-    """The column of that name; unless it was `named`, the only one whatever it is called.  Raises ValueError."""
+    """The column of that name; if no column was `named`, the only column, whatever its name is.  Raises ValueError."""
     for column in columns:
         if column.name == name:
             return column
@@ -136,7 +136,7 @@ def column_of(columns: list[Column], name: str, file: str, *, named: bool = Fals
 
 @dataclass(frozen=True)
 class DeclaredFeed:
-    """A feed as a text says it, with what was read for it."""
+    """A feed that a text declares, with the content of its file."""
 
     text: str
     #: Input -> its source.
@@ -144,7 +144,7 @@ class DeclaredFeed:
     how: str = "hold"
 
     def feed(self, machine: FeedTarget) -> None:
-        """Feed a machine with it.  Raises ValueError."""
+        """Feed a machine.  Raises ValueError."""
         for name, source in self.sources.items():
             try:
                 feed(machine, name, source, how=self.how)

@@ -32,7 +32,7 @@ _EXPORTED: Final = ["time_s", "channel", "name", "value"]
 
 @dataclass
 class Column:
-    """What one input sees: times in cycles, values, and the line of each in the file."""
+    """The values that one input sees: times in cycles, values, and the line of each in the file."""
 
     file: str
     name: str
@@ -44,12 +44,12 @@ class Column:
     lines: array[int] = field(default_factory=lambda: array("q"))
 
     def where(self, index: int) -> str:
-        """Where a value stands."""
+        """File and line of a value."""
         line = f":{self.lines[index]}" if self.lines else ""
         return f"{self.file}{line}: column {self.name!r}"
 
     def add(self, time: int, value: float, line: int) -> None:
-        """One more value.  Raises ValueError if the time decreases."""
+        """Add a value.  Raises ValueError if the time decreases."""
         if self.times and time < self.times[-1]:
             raise ValueError(f"{self.file}:{line}: the time decreases; rows must be in order of time")
         self.times.append(time)
@@ -73,7 +73,7 @@ def _of_trace(path: str | Path) -> list[Column]:
 
 
 def _column(columns: dict[str, Column], path: str, channel: str, name: str) -> Column:
-    """The column of an event: conversions are called by their pin and what is soldered there."""
+    """The column of an event: a conversion has the name of its pin and of the part that is soldered there."""
     wanted = name.partition(" ")[0] if channel == "adc" else name
     return columns.setdefault(wanted, Column(path, wanted, from_power_up=True))
 

@@ -44,7 +44,7 @@ UNITS: Final = {
 
 @dataclass
 class Input(ABC):
-    """Something that sees one number."""
+    """An input that sees one number."""
 
     board: Board
     name: str
@@ -54,14 +54,15 @@ class Input(ABC):
 
     @abstractmethod
     def feed(self, course: Course) -> Undo:
-        """Have it see a course from now on; what is returned gives it back to the physics."""
+        """Let the input see a course from now on; the returned function gives it back to the physics."""
 
     def log(self, on_value: OnValue) -> Undo | None:
-        """Tell what it sees from now on, to the cycle; None: it cannot be told."""
+        """Call `on_value` for each value that it sees from now on, with the cycle; returns None if that is not
+        possible."""
         return None
 
     def scale(self, unit: str) -> tuple[float, float]:
-        """By what to multiply a number of a unit, and what to add.  Raises ValueError."""
+        """The factor and the offset that convert a number of a unit.  Raises ValueError."""
         if unit in ("", self.unit):
             return 1.0, 0.0
         base, factor, offset = UNITS.get(unit, ("", 1.0, 0.0))
@@ -71,7 +72,7 @@ class Input(ABC):
         return factor, offset
 
     def check(self, value: float) -> None:
-        """Raises ValueError for a value that it cannot have."""
+        """Raise ValueError for a value that the input cannot have."""
         if not self.low <= value <= self.high:
             raise ValueError(f"{value:g}: {self.name} must be {self.low:g} to {self.high:g} {self.unit}".rstrip())
 
@@ -85,22 +86,22 @@ class AdcInput(Input):
         return self.board.analog[self.name[5]][int(self.name[6:])]
 
     def feed(self, course: Course) -> Undo:
-        """The volts at the pin, whatever is soldered there; taken at each conversion."""
+        """Feed the volts at the pin, whatever is soldered there; they are read at each conversion."""
         return self._wire.replace("feed", course.at, steady=isinstance(course, Constant))
 
 
 @dataclass
 class YawRate(Input):
-    """What turns a gyro."""
+    """The yaw rate of a gyro."""
 
     gyro: L3G4200D | None = None
 
     def feed(self, course: Course) -> Undo:
-        """The rate, taken at each sample."""
+        """Feed the rate, which is read at each sample."""
         return self._turned_by(lambda _source: lambda cycles: (0.0, 0.0, course.at(cycles)))
 
     def log(self, on_value: OnValue) -> Undo:
-        """The rate of each sample."""
+        """Report the rate of each sample."""
 
         def of(source: Rates) -> Rates:
             def rates(cycles: int) -> tuple[float, float, float]:
@@ -130,7 +131,7 @@ class YawDigits(Input):
     gyro: L3G4200D | None = None
 
     def feed(self, course: Course) -> Undo:
-        """The digits of z, taken at each sample; x and y are 0."""
+        """Feed the digits of z, which are read at each sample; x and y are 0."""
         gyro = self.gyro
         assert gyro is not None
         gyro.force_samples(lambda cycles: (0, 0, round(course.at(cycles))))
@@ -139,12 +140,12 @@ class YawDigits(Input):
 
 @dataclass
 class Range(Input):
-    """What a sonar has before it."""
+    """The range of a sonar."""
 
     sensor: LvMaxSonar | None = None
 
     def feed(self, course: Course) -> Undo:
-        """The distance, taken at each ping."""
+        """Feed the distance, which is read at each ping."""
         sensor = self.sensor
         assert sensor is not None
         before = sensor.range_source
@@ -154,19 +155,19 @@ class Range(Input):
 
 @dataclass
 class Shaft(Input):
-    """What the encoder of a motor sees of its shaft: the motor turns as before, and its edges go nowhere."""
+    """The shaft angle that the encoder of a motor sees.  The motor turns as before, but its own edges are not used."""
 
     motor: NxtMotor | None = None
     #: Its encoder as the chip sees it, whatever stands between.
     pins: QuadratureWire | None = None
 
     def feed(self, course: Course) -> Undo:
-        """The angle, taken when somebody looks at the encoder, with every edge at its time."""
+        """Feed the angle, which is read when the encoder is read; every edge has its own time."""
         assert self.motor is not None
         return _FedShaft(self.board, self.motor, course).end
 
     def log(self, on_value: OnValue) -> Undo:
-        """Each edge, at its time."""
+        """Report each edge, at its time."""
         assert self.pins is not None
         edge = 0
         on_value(self.board.clock.now, 0.5 * _EDGE_RAD)
@@ -182,7 +183,7 @@ class Shaft(Input):
 
 
 class _FedShaft:
-    """A shaft that nothing turns but a course."""
+    """A shaft that only a course turns."""
 
     def __init__(self, board: Board, motor: NxtMotor, course: Course) -> None:
         self._clock = board.clock
@@ -201,7 +202,7 @@ class _FedShaft:
         self._event: Event | None = self._clock.after(_SAMPLE_CYCLES, self._sample)
 
     def end(self) -> None:
-        """The motor's shaft is seen again, from where the encoder stands."""
+        """Return to the motor's shaft, from the present count of the encoder."""
         self._advance()
         self._deaf()
         self._clock.cancel(self._event)
@@ -236,7 +237,8 @@ class TouchInput(Input):
     sensor: TouchSensor | None = None
 
     def feed(self, course: Course) -> Undo:
-        """Pressed from 0.5 on, at the time when the course says so; whoever presses it besides counts afterwards."""
+        """Feed the switch, which is pressed from 0.5 on, at the times of the course; another press takes effect
+        afterwards."""
         sensor = self.sensor
         assert sensor is not None
         player = _Player(self.board, course, lambda value: sensor.feed(value >= 0.5))
@@ -248,7 +250,7 @@ class TouchInput(Input):
         return undo
 
     def log(self, on_value: OnValue) -> Undo:
-        """Each press, and its end."""
+        """Report each press and each release."""
         sensor, clock = self.sensor, self.board.clock
         assert sensor is not None
         on_value(clock.now, float(sensor.pressed))
@@ -257,12 +259,12 @@ class TouchInput(Input):
 
 @dataclass
 class FaceInput(Input):
-    """A face of any part, which is set."""
+    """A face of any part that can be set."""
 
     part: Part | None = None
 
     def feed(self, course: Course) -> Undo:
-        """It is set when something changes; at the end it is what it was, if that is known."""
+        """Set the face when the course changes; at the end restore its earlier value, if that is known."""
         part, face = self.part, self.name.rpartition(".")[2]
         assert part is not None
         before = part.value(face)
@@ -277,7 +279,7 @@ class FaceInput(Input):
 
 
 class _Player:
-    """Sets something along a course: now, and whenever that says that it changes."""
+    """Sets a value along a course: now, and whenever the course changes."""
 
     def __init__(self, board: Board, course: Course, put: Callable[[float], None]) -> None:
         self._clock, self._course, self._put = board.clock, course, put
@@ -291,12 +293,12 @@ class _Player:
         self._event = None if after == NEVER else self._clock.schedule(after, self._play)
 
     def end(self) -> None:
-        """No more."""
+        """End the feed."""
         self._clock.cancel(self._event)
 
 
 def of_part(board: Board, part: Part) -> Iterator[Input]:
-    """What of a part can be fed."""
+    """The inputs of a part that can be fed."""
     name, device = part.name, part.device
     found: list[Input] = []
     if isinstance(device, L3G4200D):
@@ -320,13 +322,13 @@ def of_part(board: Board, part: Part) -> Iterator[Input]:
 
 
 def inputs(board: Board) -> Iterator[Input]:
-    """What of the parts of a board can be fed."""
+    """The inputs of all parts of a board that can be fed."""
     for part in board.parts.values():
         yield from of_part(board, part)
 
 
 def find(board: Board, name: str) -> Input:
-    """An input by its name, `PART.FACE` or `ADCINA3`.  Raises ValueError, which tells what there is."""
+    """An input by its name, `PART.FACE` or `ADCINA3`.  Raises ValueError with the known names."""
     pin = re.fullmatch(r"ADCIN([A-Z])(\d{1,2})", name)
     if pin is not None:
         wires = board.analog.get(pin[1], ())
