@@ -1,4 +1,4 @@
-"""What must come true: a `[[expect]]` table, and its verdict on a run."""
+"""Expectations: a `[[expect]]` table, and its verdict on a run."""
 
 from __future__ import annotations
 
@@ -42,13 +42,13 @@ class Check:
     seen: str
 
     def as_dict(self) -> dict[str, Any]:
-        """By name."""
+        """Plain data for JSON."""
         return {"name": self.name, "ok": self.ok, "seen": self.seen}
 
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """One of them; `kind` is quantity, finding, frame, state or deadline, `of` which one."""
+    """An expectation; `kind` is quantity, finding, frame, state or deadline, `of` the name of that."""
 
     name: str
     kind: str
@@ -63,7 +63,7 @@ class Expectation:
 
     @classmethod
     def of_kind(cls, kind: str, table: Mapping[str, Any]) -> Expectation:
-        """Of a table that was checked.  Raises ValueError for what contradicts itself."""
+        """Create it from a checked table.  Raises ValueError for a contradiction."""
         allowed = {
             "quantity": ("at", "during", "once", "least", "most"), "state": ("at", "during", "once"),
             "finding": ("absent", "place"), "frame": ("during", "least", "most"), "deadline": ("most",),
@@ -97,7 +97,7 @@ class Expectation:
 
     @classmethod
     def of_table(cls, table: Mapping[str, Any]) -> Expectation:
-        """Of a table with one of the kinds."""
+        """Create it from a table that has one of the kinds."""
         kind = next(kind for kind in ("quantity", "finding", "frame", "state", "deadline") if kind in table)
         try:
             return cls.of_kind(kind, table)
@@ -115,9 +115,9 @@ class Expectation:
 
 
 class ExpectationWatch:
-    """Looks at a bench while it runs, and says at the end what came true.  Make it when start-up is over.
+    """Watches a bench while it runs, and gives the verdicts at the end.  Create it when start-up is over.
 
-    It looks and moves nothing: a run is the same with it.
+    It only reads: a run is the same with it.
     """
 
     def __init__(self, bench: Bench, expectations: Sequence[Expectation]) -> None:
@@ -145,7 +145,7 @@ class ExpectationWatch:
                 bench.clock.schedule(self._start + round(each.during[0] * SYSCLK_HZ), _SampledCheck(self, index))
 
     def look(self, index: int) -> None:
-        """Look at an expectation now, and again if its time is not over."""
+        """Sample an expectation now, and again until its time is over."""
         each, clock = self._expectations[index], self._bench.clock
         now_s = (clock.now - self._start) / SYSCLK_HZ
         self._looks[index].append((now_s, self._value(each)))
@@ -165,11 +165,11 @@ class ExpectationWatch:
     # Verdicts
 
     def checks(self) -> list[Check]:
-        """What came true, in the order of the file."""
+        """The verdicts, in the order of the file."""
         return [self._check(index, each) for index, each in enumerate(self._expectations)]
 
     def decided(self, *, ended: bool = False) -> list[Check]:
-        """Those that nothing can change any more, each told once; `ended`: the run is over."""
+        """The new verdicts that nothing can change any more, each returned once; `ended`: the run is over."""
         found = []
         for index, each in enumerate(self._expectations):
             if index not in self._told and (ended or self._is_decided(index, each)):
@@ -227,7 +227,7 @@ class ExpectationWatch:
         return Check(each.name, each.least <= count <= each.most, f"{count} frames match; expected {each.bounds}")
 
     def _count(self, each: Expectation) -> int:
-        """Frames that match."""
+        """Count the frames that match."""
         first, last = each.during if each.during[0] < inf else (-inf, inf)
         return sum(bool(re.search(each.of, text)) for time_s, text in self._frames if first <= time_s <= last)
 
@@ -285,7 +285,7 @@ class ExpectationWatch:
 
 
 class _SampledCheck:
-    """An event that looks at one expectation."""
+    """An event that samples one expectation."""
 
     def __init__(self, watching: ExpectationWatch, index: int) -> None:
         self._watching = watching
@@ -296,7 +296,7 @@ class _SampledCheck:
 
 
 class _HitCounter:
-    """Counts what a mission drove forward into although the front sonar had it in time."""
+    """Counts the obstacles that a mission drove into, forward, although the front sonar had measured them in time."""
 
     def __init__(self, bench: Bench) -> None:
         self.count = 0
@@ -308,7 +308,7 @@ class _HitCounter:
         self()
 
     def __call__(self) -> None:
-        """Look, and again."""
+        """Sample, and schedule the next sample."""
         bench, robot, now = self._bench, self._bench.world.robot, self._bench.clock.now
         if self._front.last_reading_in > _HIT_IN:
             self._near_since = None
@@ -323,7 +323,7 @@ class _HitCounter:
 
 
 class _StallCounter:
-    """Measures how long a motor is driven, by more than friction needs, while its wheel stands."""
+    """Measures how long a motor is driven, by more than friction needs, while its wheel is at rest."""
 
     def __init__(self, bench: Bench) -> None:
         self.longest_s = 0.0
@@ -332,7 +332,7 @@ class _StallCounter:
         self()
 
     def __call__(self) -> None:
-        """Look, and again."""
+        """Sample, and schedule the next sample."""
         clock, _ = self._bench.clock, self._bench.world.pose  # the plant is moved up to now
         for motor, since in self._since.items():
             if _driven(motor) < _DRIVEN or abs(motor.omega_rad_s) > _STOPPED_RAD_S:

@@ -1,4 +1,4 @@
-"""What came of scenarios as JUnit XML: a suite a scenario, a case an expectation of each run."""
+"""The outcomes of scenarios as JUnit XML: each scenario is a suite, each expectation of each run a case."""
 
 from __future__ import annotations
 

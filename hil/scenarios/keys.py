@@ -1,7 +1,7 @@
-"""The keys of a scenario file: one table, from which files are read, the JSON schema is made, and the page.
+"""The keys of a scenario file: one table, from which files are read, and the JSON schema and the page are made.
 
-`KEYS` is the table.  `problem(table)` is where a file is wrong, `schema()` the same as JSON Schema: what one takes the
-other takes (`tests/hil/scenarios/test_keys.py`).  Whether a file or a correction exists is seen when it is loaded.
+`KEYS` is the table.  `check(table)` finds what is wrong in a file, `schema()` is the same as JSON Schema: both accept the
+same files (`tests/hil/scenarios/test_keys.py`).  Whether a file or a correction exists is checked when it is loaded.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ LIMIT: Final = 1e6
 
 
 def _any_case(word: str) -> str:
-    """A pattern of a word in small and capital letters, as JSON Schema knows patterns."""
+    """A pattern of JSON Schema for a word in small or capital letters."""
     return "".join(f"[{letter.upper()}{letter.lower()}]" for letter in word)
 
 
@@ -42,7 +42,7 @@ FILL: Final = rf"^(zero|ones|nan|stack|trap|random:[0-9]+){_END}"
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """One key.  `kind`: text, texts, whole, number, numbers (a pair), pairs, flag, table, tables, rules, faults."""
+    """A key.  `kind`: text, texts, whole, number, numbers (a pair), pairs, flag, table, tables, rules, faults."""
 
     name: str
     kind: str
@@ -173,7 +173,7 @@ _TYPES: Final = {
 
 
 def _fault_keys() -> dict[str, tuple[Key, ...]]:
-    """By kind of fault, the keys of its table."""
+    """Kind of fault -> the keys of its table."""
     kinds = {float: "number", int: "whole", str: "text"}
     return {
         kind.name: (
@@ -194,7 +194,7 @@ _FAULT_NEEDS: Final = {
 
 
 class Problem(ValueError):
-    """What is wrong in a file, and at which key."""
+    """An error in a file, and its key."""
 
     def __init__(self, path: Path, reason: str) -> None:
         super().__init__(reason)
@@ -206,7 +206,7 @@ class Problem(ValueError):
 
 
 def written(path: Path) -> str:
-    """A path as a person writes it: `expect[1].least`."""
+    """The path of a key as text: `expect[1].least`."""
     text = ""
     for part in path:
         text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
@@ -214,7 +214,7 @@ def written(path: Path) -> str:
 
 
 def check(table: Mapping[str, Any]) -> None:
-    """Raises Problem for the first key that is wrong."""
+    """Raise Problem for the first wrong key."""
     _table(table, KEYS, (), (), ())
 
 

@@ -1,6 +1,6 @@
-"""At which line of a TOML file a key stands.
+"""The line of a key in a TOML file.
 
-tomllib does not say.  But a key stands in the last line that names it before which the file does not have it yet.
+tomllib does not give it.  It is the last line that names the key, and before which the file does not have the key yet.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ _LONGEST = 200
 
 
 def line_of(content: str, path: Path) -> int:
-    """The line of the key at `path`, counted from 1; of a key that is not there, of the table that lacks it."""
+    """The line of the key at `path`, counted from 1; for a missing key, the line of the table that lacks it."""
     lines = content.splitlines(keepends=True)
     for length in range(len(path), 0, -1):
         found = _statement(lines, path[:length])
@@ -26,7 +26,7 @@ def line_of(content: str, path: Path) -> int:
 
 
 def _statement(lines: list[str], path: Path) -> int | None:
-    """The index of the line that begins what gives `path` its value; None where no line names it."""
+    """The index of the line in which the value of `path` begins; None if no line names it."""
     named = [part for part in path if isinstance(part, str)]
     key = rf"(?<![\w-]){re.escape(named[-1])}(?![\w-])"
     names_it = re.compile(rf"\s*(\[.*{key}.*\]|[\s\w.\"'-]*{key}[\s\w.\"'-]*=)")

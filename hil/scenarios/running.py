@@ -1,4 +1,4 @@
-"""A scenario run, and judged: with its corrections, and once more without those of the defects that it shows."""
+"""Runs and judges a scenario: with its corrections, and again without those of the defects that it shows."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SUFFIX: Final = ".scenario.toml"
 
 @dataclass(frozen=True, slots=True)
 class ScenarioRun:
-    """One run: which corrections, why it ended early if it did, what came true, and the digest of its line."""
+    """One run: its corrections, the reason of an early end, the verdicts, and the digest of its line."""
 
     fixes: tuple[str, ...]
     stopped: str
@@ -52,7 +52,7 @@ class ScenarioRun:
 
 @dataclass(frozen=True, slots=True)
 class ScenarioOutcome:
-    """What came of a scenario."""
+    """The outcome of a scenario."""
 
     name: str
     file: str
@@ -66,7 +66,7 @@ class ScenarioOutcome:
 
     @property
     def failures(self) -> list[str]:
-        """What is not as the file says, a sentence each."""
+        """The differences from the file, each as a sentence."""
         found = []
         corrected = self.legs[0]
         if corrected.stopped:
@@ -85,7 +85,7 @@ class ScenarioOutcome:
 
     @property
     def passed(self) -> bool:
-        """Whether all is as the file says."""
+        """Whether everything is as the file expects."""
         return not self.failures
 
     def as_dict(self) -> dict[str, Any]:
@@ -174,9 +174,9 @@ def run_files(
     paths: Sequence[Path], *, jobs: int = 1, on_file: Callable[[int], None] = lambda index: None,
     progress: Callable[[int, float], None] = lambda index, fraction: None,
 ) -> Iterator[ScenarioOutcome]:  # fmt: skip
-    """Run files, `jobs` at a time, each in a process of its own if several; outcomes come in the order of the files.
+    """Run files, `jobs` at a time, each in a process of its own if there are several; outcomes have the files' order.
 
-    `on_file` hears of each that has ended, in whatever order.  Raises ValueError, OSError as `run_file`.
+    `on_file` is called when a file has ended, in any order.  Raises ValueError, OSError as `run_file`.
     """
     if jobs <= 1 or len(paths) <= 1:
         for index, path in enumerate(paths):

@@ -1,4 +1,4 @@
-"""A scenario: a robot in a world, told what to do for some seconds, and what must come true (keys: `keys.py`)."""
+"""A scenario: a robot in a world, its orders for some seconds, and the expectations (keys: `keys.py`)."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ DEFAULT_SECONDS: Final = 10.0
 
 @dataclass(frozen=True, slots=True)
 class GroundOptions:
-    """What a scenario says of the world instead of its map: None is as the map says."""
+    """Properties of the world that a scenario sets in place of its map; None: as in the map."""
 
     start: tuple[float, float, float] | None = None
     grip: float | None = None
     slip: tuple[float, float] | None = None
 
     def of(self, world: WorldMap) -> WorldMap:
-        """A map with it."""
+        """A map with these properties."""
         if self.start is not None:
             room = world.room(self.start[0], self.start[1])
             if room < START_CLEARANCE_M:
@@ -61,7 +61,7 @@ class GroundOptions:
 
 @dataclass(frozen=True, slots=True)
 class OutputFiles:
-    """Files that a run leaves."""
+    """The files that a run writes."""
 
     plot: str = ""
     json: str = ""
@@ -70,7 +70,7 @@ class OutputFiles:
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """What a run is to be.  `orders` as `hil run --order` takes them, with times after start-up."""
+    """The declaration of a run.  `orders` have the form of `hil run --order`, with times after start-up."""
 
     setup: Setup = field(default_factory=lambda: Setup(watch=True, static=True))
     seconds: float = DEFAULT_SECONDS
@@ -100,11 +100,11 @@ class Scenario:
             parse_order(order)
 
     def with_fill(self, fill: str) -> Scenario:
-        """The same with another fill."""
+        """The same scenario with another fill."""
         return replace(self, setup=replace(self.setup, fill=fill))
 
     def uncorrected(self) -> Scenario:
-        """The same without the corrections of `defects`; without any if it names none."""
+        """The same scenario without the corrections of `defects`; without any if it names none."""
         left: frozenset[str] = frozenset()
         project = load(self.setup.board).project
         if self.defects and project is not None:
@@ -112,24 +112,25 @@ class Scenario:
         return replace(self, setup=replace(self.setup, fixes=tuple(sorted(left))))
 
     def world_map(self) -> WorldMap:
-        """The world's map, with what the scenario says of it."""
+        """The world's map, with the properties that the scenario sets."""
         return self.ground.of(load_map(self.setup.world))
 
     def bench(self, coverage: Coverage | None = None, *, traced: bool = False) -> Bench:
-        """The robot of this scenario, not booted yet; `coverage` takes up how often its statements are begun."""
+        """The robot of this scenario, not booted yet; `coverage` counts how often its statements begin."""
         from hil.bench import Bench
 
         return Bench(self.setup, traced=traced, coverage=coverage, **self.read())
 
     def read(self) -> dict[str, Any]:
-        """What makes its robot besides the setup: options of `Bench`."""
+        """The options of `Bench` for its robot, besides the setup."""
         return {
             "world_map": self.world_map(),
             "awaited": [(trigger, parse_order(order)) for trigger, order in self.when],
         }
 
     def run(self, bench: Bench, *, progress: Callable[[float], None] = lambda fraction: None) -> str:
-        """Boot `bench` and give it its orders for the scenario's time.  Returns why it ended early, or nothing."""
+        """Boot `bench` and give it its orders for the scenario's time.  Returns the reason of an early end, or an
+        empty text."""
         try:
             bench.boot()
             self.drive(bench, progress=progress)
@@ -138,7 +139,7 @@ class Scenario:
         return ""
 
     def watched(self, bench: Machine) -> ExpectationWatch:
-        """Begin to look at a bench that has booted: for who drives it himself."""
+        """Begin to watch a bench that has booted; the caller drives it."""
         from hil.bench import Bench
 
         assert isinstance(bench, Bench)
@@ -164,9 +165,9 @@ class Scenario:
 
 
 def load_scenario(path: Path, policy: Policy) -> tuple[Scenario, Policy]:
-    """A scenario of a TOML file, and `policy` with what the file says of severities, baseline and threshold.
+    """Load a scenario from a TOML file, and `policy` with the severities, baseline and threshold of the file.
 
-    Raises ValueError naming file, line and key for what it does not know; OSError if the file cannot be read.
+    Raises ValueError with file, line and key for an unknown key or value; OSError if the file cannot be read.
     """
     content = read_text(path, most=_MAX_BYTES)
     table = parse_toml(content, str(path))
@@ -182,7 +183,7 @@ def _policy(table: Mapping[str, Any], path: Path, policy: Policy) -> Policy:
 
 
 def _from_table(table: Mapping[str, Any], path: Path) -> Scenario:
-    """The scenario of a table that was checked.  Raises Problem for what only loading shows."""
+    """Create the scenario of a checked table.  Raises Problem for errors that only loading shows."""
     setup: dict[str, Any] = {"watch": True, "static": True}
     scenario: dict[str, Any] = {"name": path.name.removesuffix(".toml").removesuffix(".scenario")}
     for key, value in table.items():
@@ -231,7 +232,7 @@ def _from_table(table: Mapping[str, Any], path: Path) -> Scenario:
 
 
 def _faults(value: list[Any]) -> tuple[str, ...]:
-    """Texts as `hil run --fault` takes them, or tables."""
+    """Faults from texts as in `hil run --fault`, or from tables."""
     found = []
     for index, each in enumerate(value):
         try:
@@ -242,7 +243,7 @@ def _faults(value: list[Any]) -> tuple[str, ...]:
 
 
 def _feed(entry: Mapping[str, Any], folder: Path, index: int) -> str:
-    """A text as `hil run --feed` takes it."""
+    """A feed as a text of `hil run --feed`."""
     name, column = entry.get("input", ""), entry.get("column", "")
     what = next((key for key in ("value", "values", "column") if key in entry), None)
     if not name and what:
@@ -284,7 +285,7 @@ def _ground(table: Mapping[str, Any]) -> GroundOptions:
 
 
 def _check_setup(scenario: Scenario) -> None:
-    """Raises Problem for a world, start or correction that is none."""
+    """Raise Problem for an unknown world, start or correction."""
     for option in scenario.setup.options:
         if option not in OPTIONS:
             raise Problem(("options",), f"option {option!r}: must be {', '.join(OPTIONS)}")

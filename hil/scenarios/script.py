@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class ScriptFailed(Exception):
-    """What a script expected did not come true."""
+    """An expectation of a script failed."""
 
 
 def timeline(bench: Bench) -> Timeline:
@@ -62,7 +62,7 @@ def run(path: str, bench: Bench) -> None:
 
 
 class LiveScript:
-    """A script beside a session, which lets the time pass that the script waits for.  The session ends with it."""
+    """A script of a live session.  The session lets the time pass that the script waits for, and ends with it."""
 
     def __init__(self, path: str, seconds: float) -> None:
         """`seconds` of virtual time pass at least."""
@@ -70,7 +70,7 @@ class LiveScript:
         self._seconds = seconds
 
     def begin(self, session: Session) -> None:
-        """Call the script, up to where it lets time pass.  Raises what `run` raises."""
+        """Call the script, until it lets time pass.  Raises what `run` raises."""
         self._session = session
         self._greenlet = greenlet(self._run)
         self._greenlet.switch()
@@ -83,12 +83,12 @@ class LiveScript:
         self._session.stop()
 
     def tick(self) -> None:
-        """After each slice: the script goes on until it lets time pass again.  Raises what `run` raises."""
+        """Continue the script after a slice, until it lets time pass again.  Raises what `run` raises."""
         if self._greenlet:
             self._greenlet.switch()
 
     def wait(self, cycles: int) -> None:
-        """Called by the script: a slice passes, which ends at `cycles` at the latest."""
+        """Let a slice pass for the script, which ends at `cycles` at the latest."""
         self._session.wanted_cycles = cycles
         caller = self._greenlet.parent
         assert caller is not None
@@ -96,7 +96,7 @@ class LiveScript:
 
 
 class LiveBench:
-    """What a live script has as `bench`: the robot, whose time passes in the session, at its pace."""
+    """The `bench` of a live script: the robot, whose time passes in the session, at its pace."""
 
     def __init__(self, script: LiveScript, session: Session) -> None:
         self._script = script

@@ -1,9 +1,9 @@
-"""A soak: hours of virtual time with faults and orders at random, one fault after the other.
+"""A soak: hours of virtual time with random faults and orders, one fault after the other.
 
-What is looked for is what a short run does not show: an error of this tool, memory that grows, a second run that is not
-the same, a robot that does not come back when a fault is over.  Each round is a quiet drive, a fault of a random kind
-with random parameters and orders meanwhile, its end, and what somebody in the lab would do then: stop, drive on; switch
-it off and on if it does not, if the fault leaves something behind, or if the firmware has ended.
+It finds what a short run does not show: an error of this tool, memory that grows, a second run that differs, a robot
+that does not recover when a fault is over.  Each round is a quiet drive, a fault of a random kind with random
+parameters and orders meanwhile, its end, and the reaction of a person in the lab: stop, and drive on.  The robot is
+switched off and on if it does not drive, if the fault has a lasting effect, or if the firmware has ended.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ _FRAME_BEGINS: Final = ord("#")
 
 @dataclass
 class SoakResult:
-    """What came of it.  Times are virtual seconds."""
+    """The result of a soak.  Times are virtual seconds."""
 
     seed: int
     corrections: tuple[str, ...]
@@ -87,19 +87,19 @@ def soak(
     most_s: float, *, seed: int = 1, fixes: tuple[str, ...] = ("all",), world: str = WORLD, xbee: bool = True,
     on_progress: Callable[[SoakResult], object] = lambda soaked: None,
 ) -> SoakResult:  # fmt: skip
-    """Let a robot drive for so much virtual time, or until Ctrl-C.  `on_progress` hears after each round how it stands.
+    """Let a robot drive for a virtual time, or until Ctrl-C.  `on_progress` gets the present result after each round.
 
-    The same arguments give the same result, to the byte.  Raises ValueError for a setup that there is not; what this
-    tool does wrong comes through.
+    The same arguments give the same result, to the byte.  Raises ValueError for an unknown setup; errors of this tool
+    are raised, too.
     """
     return _Soak(Setup(world=world, seed=seed, fixes=fixes, xbee=xbee), most_s, on_progress).run()
 
 
 class _Soak:
-    def __init__(self, setup: Setup, most_s: float, tell: Callable[[SoakResult], object]) -> None:
+    def __init__(self, setup: Setup, most_s: float, on_progress: Callable[[SoakResult], object]) -> None:
         self._setup = setup
         self._most_s = most_s
-        self._on_progress = tell
+        self._on_progress = on_progress
         self._over = False
         self._next_count_s = EVERY_S
         self._rng = Random(f"{setup.seed}:soak")
@@ -107,7 +107,7 @@ class _Soak:
         self._uart, self._trace = hashlib.sha256(), hashlib.sha256()
 
     def run(self) -> SoakResult:
-        """Until the time is over."""
+        """Run until the time is over."""
         result, setup = self._result, self._setup
         try:
             while not self._over:
@@ -163,7 +163,7 @@ class _Soak:
         bench.feed(data)
 
     def _round(self, bench: Bench) -> bool:
-        """A drive, a fault, and whether the robot comes back."""
+        """Drive, mount a fault, and check whether the robot recovers."""
         rng, result = self._rng, self._result
         bench.run_for(rng.uniform(*QUIET_S))
         fault = self._fault(bench)
@@ -194,7 +194,7 @@ class _Soak:
         return Fault.of(kind.name, {**values, "for": rng.uniform(*FAULT_S), "seed": rng.randrange(1000)})
 
     def _anything(self) -> bytes:
-        """An order, right or not."""
+        """A random order, well-formed or not."""
         rng = self._rng
         match rng.randrange(3):
             case 0:
@@ -204,7 +204,7 @@ class _Soak:
         return bytes(rng.choices(_CHARACTERS, k=rng.randrange(1, LONGEST_ORDER)))
 
     def _comes_back(self, bench: Bench, fault: Fault) -> bool:
-        """Whether it drives on."""
+        """Whether the robot drives again."""
         begin_m = bench.world.travelled_m
         for keyword in ("stop", "mission"):
             bench.run_for(0.5)
@@ -218,7 +218,7 @@ class _Soak:
 
 
 def _value(parameter: FaultParameter, bench: Bench, rng: Random) -> Value:
-    """Something for a parameter: what there is on this board, or what it can be at all."""
+    """A random value of a parameter: one that this board has, or any permitted one."""
     match parameter.name:
         case "input":
             pins = [pin for part in bench.board.parts.values() for pin in part.pins.values()]
