@@ -1,7 +1,7 @@
 """The keys of a scenario file: one table, from which files are read, and the JSON schema and the page are made.
 
-`KEYS` is the table.  `check(table)` finds what is wrong in a file, `schema()` is the same as JSON Schema: both accept the
-same files (`tests/hil/scenarios/test_keys.py`).  Whether a file or a correction exists is checked when it is loaded.
+`KEYS` is the table.  `check(table)` finds errors in a file, `schema()` is the same as JSON Schema: both accept the same
+files (`tests/hil/scenarios/test_keys.py`).  Whether a file or a correction exists is checked when it is loaded.
 """
 
 from __future__ import annotations

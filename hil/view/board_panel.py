@@ -1,7 +1,7 @@
-"""The board: its parts with their pins, and their faces to be set, by a slider where a face has a range.
+"""The board: its parts with their pins, and controls for their faces; a face with a range has a slider.
 
-What is set stays until it is set again, also against a world; it is an input of the run like any other, so it is done
-again when the run is executed again.
+A value stays until it is set again, even if a world would change it.  It is an input of the run, so it is repeated
+when the run is executed again.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class BoardPanel:
                     self._faces[part.name, face.name] = FaceRow(part, face, self._put)
 
     def update(self, now: Snapshot) -> None:
-        """20 times a second, while it is in sight."""
+        """Update the panel, 20 times a second, while it is visible."""
         for part, face, value in now.faces:
             row = self._faces.get((part, face))
             if row is not None:
@@ -96,7 +96,7 @@ class FaceRow:
                 )  # fmt: skip
 
     def show(self, value: float | None) -> None:
-        """What it is now; None: the part does not tell."""
+        """Show the present value; None: the part does not give it."""
         text = "" if value is None else value_text(value, self._face.unit)
         if self._now.text != text:
             self._now.text = text
@@ -130,7 +130,7 @@ class FaceRow:
 
 
 def value_text(value: float, unit: str) -> str:
-    """A value with its unit; of a face that is yes or no (`1 = pressed`) which of them."""
+    """A value with its unit; for a face that is yes or no (`1 = pressed`), the word."""
     yes = unit.removeprefix("1 = ")
     if yes != unit and value in (0.0, 1.0):
         return yes if value else f"not {yes}"

@@ -36,9 +36,9 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True, slots=True)
 class RecordedInput:
-    """Something done from outside at `cycles`: `do` is a name of `hands`, `values` its arguments.
+    """An input from outside at `cycles`: `do` is a name of `hands`, `values` its arguments.
 
-    `scripted` ones were planned before the run and stay when another input is given.
+    `scripted` inputs were planned before the run, and stay when another input is given.
     """
 
     cycles: int
@@ -48,7 +48,7 @@ class RecordedInput:
 
     @property
     def text(self) -> str:
-        """For a reader."""
+        """The input as text for a user."""
         shown = (v.decode("latin-1").strip() if isinstance(v, bytes) else f"{v:.3g}" if isinstance(v, float) else v
                  for v in self.values)  # fmt: skip
         return f"{self.do} {', '.join(shown)}"
@@ -56,7 +56,7 @@ class RecordedInput:
 
 @dataclass(frozen=True, slots=True, order=True)
 class Checkpoint:
-    """A time worth going back to."""
+    """A time to which the user can go back."""
 
     cycles: int
     label: str
@@ -108,7 +108,7 @@ class RewindableRun:
     # What is done
 
     def act(self, do: str, *values: bytes | str | float) -> None:
-        """Do something now and log it.  Raises ValueError, logging nothing, for what cannot be done."""
+        """Apply an input now and log it.  Raises ValueError, and logs nothing, if it is not possible."""
         self.hands[do](*values)
         now = RecordedInput(self.clock.now, do, values)
         self.done.append(now)
@@ -119,7 +119,7 @@ class RewindableRun:
         self.acted.emit(now)
 
     def feed(self, data: bytes) -> None:
-        """Bytes on the line."""
+        """Give bytes to the line."""
         self.act("order", data)
 
     def plan(self, orders: Iterable[TimedOrder]) -> None:
@@ -136,7 +136,7 @@ class RewindableRun:
         self.reach(self.bench.start_up_cycles, progress or (lambda _share: None))
 
     def run_until(self, cycles: int) -> None:
-        """Run to `cycles`, doing on the way what lies ahead (at `cycles` itself: when it goes on).
+        """Run to `cycles`, with the inputs that are ahead (one at `cycles` itself comes with the next run).
 
         A pause of the kernel ends it earlier.
         """
@@ -153,13 +153,13 @@ class RewindableRun:
         self.bench.run_until(cycles)
 
     def reach(self, cycles: int, progress: Progress) -> None:
-        """Run at full speed; the progress is told as a share of the way from power-up."""
+        """Run at full speed; `progress` gets the fraction of the time from power-up."""
         while self.clock.now < cycles:
             self.run_until(min(cycles, self.clock.now + STRIDE_CYCLES))
             progress(min(1.0, self.clock.now / max(1, cycles)))
 
     def again(self) -> RewindableRun:
-        """A new run, not powered up, with this one's past and planned inputs ahead of it."""
+        """A new run, not powered up, with the past and planned inputs of this one ahead."""
         return RewindableRun(self.setup, [*self.done, *self.ahead], read=self.bench.read)
 
     def close(self) -> None:
@@ -175,17 +175,17 @@ class RewindableRun:
 
     @property
     def pending_to_robot(self) -> int:
-        """How many bytes were fed and are not on the wire yet."""
+        """The number of bytes that were fed and are not on the wire yet."""
         return self.bench.pending_to_robot
 
     @property
     def uart_sha256(self) -> str:
-        """Digest of what was sent."""
+        """The digest of the sent bytes."""
         return self.bench.uart_sha256
 
     @property
     def trace_sha256(self) -> str:
-        """Digest of the trace."""
+        """The digest of the trace."""
         return self.bench.trace_sha256
 
     def measure_tasks(self) -> object:
@@ -225,5 +225,5 @@ class CheckpointList:
             self.note(each.cycles, each.values[0].decode("ascii").strip())
 
     def forget_after(self, cycles: int) -> None:
-        """A new future begins at `cycles`."""
+        """Drop the moments after `cycles`: a new future begins there."""
         self.all = [moment for moment in self.all if moment.cycles <= max(cycles, self._ready_cycles)]

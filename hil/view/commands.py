@@ -1,4 +1,4 @@
-"""Commands of other threads for the machine's thread: one queue, some of it held back until the machine is at rest."""
+"""Commands from other threads to the machine's thread: one queue, in which some wait until the machine is at rest."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ class Commands:
         return done
 
     def serve(self, *, at_rest: bool, wait: bool = False) -> int:
-        """Run the queued commands; with `wait`, wait a while for the first.  Returns how many ran.
+        """Run the queued commands; with `wait`, wait a while for the first.  Returns the number of commands that ran.
 
-        Not `at_rest`, what changes the run is kept until it is.
+        Without `at_rest`, commands that change the run stay queued.
         """
         count = 0
         if at_rest:

@@ -1,9 +1,9 @@
-"""The emulated board, or robot, as the page has it: what may be called from any thread.
+"""The emulated board, or robot, for the page.  All methods may be called from any thread.
 
     Page -> `submit(work)`, `act`, `resume`, `pause`, `step`, `go_to`   commands for the machine's thread
     Page <- `snapshot`, `trails`, `findings`, `line.log`                made there, never changed afterwards
 
-A command's future ends when it was done.
+The future of a command ends when the command was executed.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ T = TypeVar("T")
 
 
 class Engine:
-    """One board in a thread of its own."""
+    """A board that runs in a thread of its own."""
 
     def __init__(
         self,
@@ -65,7 +65,7 @@ class Engine:
         self.ready = machine.ready
 
     def start(self) -> None:
-        """Begin."""
+        """Start the thread."""
         self._machine.start()
 
     def close(self) -> None:
@@ -81,15 +81,16 @@ class Engine:
     # Commands
 
     def submit(self, work: Callable[[RewindableRun], T], *, changes: bool = False) -> Future[T]:
-        """Have `work(run)` done in the machine's thread.  `changes`: it changes the run, so only at rest."""
+        """Execute `work(run)` in the machine's thread.  `changes`: it changes the run, so it waits until the machine
+        is at rest."""
         return self._commands.put(lambda: work(self._machine.run), changes=changes)
 
     def act(self, do: str, *values: bytes | str | float) -> Future[None]:
-        """Do something from outside, by its name among `checkpoints.hands`."""
+        """Apply an input by its name in `checkpoints.hands`."""
         return self._commands.put(lambda: self._machine.act(do, *values), changes=True)
 
     def resume(self) -> Future[None]:
-        """Run on."""
+        """Continue the run."""
         return self._commands.put(self._machine.resume)
 
     def pause(self) -> Future[None]:
@@ -97,13 +98,13 @@ class Engine:
         return self._commands.put(self._machine.pause)
 
     def step(self, kind: Step) -> Future[None]:
-        """Go on to the next `kind` and stop there."""
+        """Run to the next `kind` and stop there."""
         return self._commands.put(lambda: self._machine.step(kind))
 
     def go_to(self, cycles: int) -> Future[None]:
-        """Go to another time and pause there: to an earlier one from power-up on, to a later one at full speed.
+        """Go to another time and pause there.  An earlier time is reached from power-up, a later one at full speed.
 
-        Done when it is there, or was given up.
+        The future ends on arrival, or if the command was given up.
         """
         arrived: Future[None] = Future()
         asked = self._commands.put(lambda: self._machine.travel_to(cycles, arrived))
@@ -111,9 +112,9 @@ class Engine:
         return arrived
 
     def go_to_finding(self, finding: Finding) -> Future[None]:
-        """Go to where a finding was found first, and hold the firmware in its statement, with its locals.
+        """Go to the first occurrence of a finding, and stop the firmware in its statement, with its locals.
 
-        Done when it is on the last stretch to it, or was given up.
+        The future ends shortly before that statement, or if the command was given up.
         """
         arrived: Future[None] = Future()
         asked = self._commands.put(lambda: self._machine.travel_to_finding(finding, arrived))
@@ -121,23 +122,23 @@ class Engine:
         return arrived
 
     def set_pace(self, pace: float | None) -> Future[None]:
-        """Virtual per real time; None: as fast as possible."""
+        """Virtual time per real time; None: as fast as possible."""
         Pacer(pace)  # a wrong pace is refused here and now
         return self._commands.put(lambda: self._machine.set_pace(pace))
 
     def record(self, on: bool) -> Future[None]:
-        """Whether it is remembered who writes registers, from now on and when executed again."""
+        """Set whether the writers of registers are recorded, from now on and when the run is executed again."""
         return self._commands.put(lambda: self._machine.record(on))
 
     def note(self, label: str) -> Future[None]:
-        """Remember this moment."""
+        """Note this moment as a checkpoint."""
         return self._commands.put(lambda: self.moments.note(self._machine.run.clock.now, label))
 
     # What is seen
 
     @property
     def snapshot(self) -> Snapshot:
-        """The last moment that was looked at, some 20 a second."""
+        """The latest snapshot; there are about 20 a second."""
         return self._machine.showing.snapshot
 
     @property
@@ -147,27 +148,27 @@ class Engine:
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """What came of each fault, a sentence each."""
+        """The outcome of each fault, as a sentence."""
         return tuple(str(fired) for fired, _ in self.snapshot.faults)
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What was found so far."""
+        """The findings so far."""
         return self._machine.showing.findings
 
     @property
     def known_findings(self) -> tuple[Finding, ...]:
-        """The findings, with those of the earlier run that lie ahead."""
+        """The findings, with those of the earlier run that are ahead."""
         return self._machine.showing.known_findings
 
     @property
     def marks(self) -> tuple[Mark, ...]:
-        """What was done and what happened, with what lies ahead; references of driving by hand left out."""
+        """The marks of inputs and events, with those that are ahead; without references of driving by hand."""
         return self._machine.showing.marks
 
     @property
     def known_cycles(self) -> int:
-        """The latest time that the run has reached, or will by what lies ahead."""
+        """The latest time that the run has reached, or reaches with the inputs that are ahead."""
         return self._machine.showing.known_cycles
 
     @property
@@ -177,22 +178,22 @@ class Engine:
 
     @property
     def unsuitable(self) -> dict[str, str]:
-        """The kinds of faults that this board cannot have, and why."""
+        """The kinds of faults that this board cannot have, each with the reason."""
         return self._machine.showing.unsuitable
 
     @property
     def pace(self) -> float | None:
-        """Virtual per real time; None: as fast as possible."""
+        """Virtual time per real time; None: as fast as possible."""
         return self._machine.pace
 
     @property
     def record_writers(self) -> bool:
-        """Whether it is remembered who writes registers."""
+        """Whether the writers of registers are recorded."""
         return self._machine.record_writers
 
     @property
     def stopped(self) -> str:
-        """Why the firmware, or the port, does not go on; empty while it does."""
+        """The reason why the firmware or the port has stopped; empty while it runs."""
         return self._machine.stopped
 
     @property

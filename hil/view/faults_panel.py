@@ -1,6 +1,6 @@
-"""Faults: what can break on this board, with its parameters; what was broken, how often it fired, and who met it.
+"""Faults: the kinds of this board, with their parameters; the mounted ones, with their count and first access.
 
-A fault that is mounted or removed here is an input of the run like any other: it is done again when the run is executed
+A fault that is mounted or removed here is an input of the run like any other: it is repeated when the run is executed
 again.
 """
 
@@ -71,7 +71,7 @@ class FaultsPanel:
             ui.notify(str(error), type="warning")
 
     def update(self, now: Snapshot) -> None:
-        """While the panel is in sight."""
+        """Update the panel while it is visible."""
         if [row.fault for row in self._rows] != [str(fired.fault) for fired, _ in now.faults]:
             self._mounted.clear()
             with self._mounted:
@@ -98,7 +98,7 @@ class FaultRow:
             )  # fmt: skip
 
     def show(self, fired: FaultOutcome, phase: Phase) -> None:
-        """Show how often it fired, and what it met, so far."""
+        """Show how often it has fired, and its first access."""
         text = f"{phase.value}; {str(fired).removeprefix(f'{self.fault}: ')}"
         if text != self._text:
             self._text = self._told.text = text
@@ -107,7 +107,7 @@ class FaultRow:
 
 
 def _field(parameter: FaultParameter) -> Any:
-    """A parameter: its field with unit and default, and what it is."""
+    """A parameter: its field with unit and default, and its description."""
     label = f"{parameter.name}, {parameter.unit}" if parameter.unit else parameter.name
     default = parameter.default
     with ui.row().classes("items-center gap-3 w-full no-wrap"):

@@ -1,4 +1,5 @@
-"""Findings as they come: where, when, how often; the statement, the way to it, what the rule means, and back to it."""
+"""Findings as they come: place, time, count; the statement, its call path, the meaning of the rule, and a way back to
+it."""
 
 from __future__ import annotations
 
@@ -24,7 +25,7 @@ COLUMNS: Final = ("severity", "finding", "where", "first")
 
 
 def by_severity(rated: Iterable[tuple[Finding, Severity]]) -> dict[str, int]:
-    """How many there are of each severity, the worst first."""
+    """The number of findings of each severity, the worst first."""
     counts = {severity.value: 0 for severity in WORST_FIRST}
     for _, severity in rated:
         counts[severity.value] += 1
@@ -47,7 +48,7 @@ def key_of(finding: Finding) -> str:
 
 
 def row_of(finding: Finding, severity: Severity) -> TableRow:
-    """A line of the table."""
+    """A row of the table."""
     place = finding.place
     line = "" if place is None else location(place).rpartition("/")[2]
     return TableRow(
@@ -66,12 +67,12 @@ def row_of(finding: Finding, severity: Severity) -> TableRow:
 
 
 def worst_first(rated: Iterable[tuple[Finding, Severity]]) -> list[tuple[Finding, Severity]]:
-    """By severity; those of one severity as they came."""
+    """Sort by severity; findings of one severity keep their order."""
     return sorted(rated, key=lambda each: -each[1].rank)
 
 
 def has_words(row: TableRow, words: str) -> bool:
-    """Whether a row has each of some words, in whatever column and case."""
+    """Whether a row contains each of some words, in any column and case."""
     text = " ".join(f"{cell.text} {cell.more} {cell.title}" for cell in row.cells).lower()
     return all(word in text for word in words.lower().split())
 
@@ -103,7 +104,7 @@ class FindingsPanel:
         self._detail = ui.column().classes("detail w-full gap-1").mark("finding")
 
     def update(self, now: Snapshot) -> None:
-        """While the panel is in sight."""
+        """Update the panel while it is visible."""
         self._where.update(now)
         self._turn = (self._turn + 1) % EVERY
         if self._turn == 1 or len(self._shown) != len(self._engine.findings):

@@ -35,7 +35,7 @@ def is_loopback(host: str) -> bool:
 
 
 class RequestGuard:
-    """Lets requests through to `app` that may pass.  `token` empty: none is needed."""
+    """Passes permitted requests on to `app`.  `token` empty: none is needed."""
 
     def __init__(self, app: App, host: str, port: int, token: str = "") -> None:
         self._app = app
@@ -63,7 +63,7 @@ class RequestGuard:
         await self._app(scope, receive, self._with_cookie(send) if self._token_given(scope) else send)
 
     def _refusal(self, scope: Scope, headers: dict[str, str]) -> str:
-        """Why a request is refused; empty if it may pass."""
+        """The reason why a request is refused; empty if it is permitted."""
         host = headers.get("host", "")
         if not self._is_ours(host):
             return f"this is not {host or 'a host without a name'}"

@@ -35,7 +35,7 @@ _UNITS: Final = {"duty ": "duty", "edges ": "ticks", "ADCIN": "V"}
 
 
 def kind_of(run: RewindableRun, name: str) -> SignalKind:
-    """What a signal is, by its name and by what the board and its world say of it."""
+    """The kind of a signal, from its name, the board and its world."""
     board = run.bench.board
     part = soldered(board).get(name, "")
     if is_words(name):

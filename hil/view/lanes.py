@@ -1,4 +1,4 @@
-"""Lanes below the chart of the scope, as SVG: levels as a logic analyser draws them, words of buses, tasks."""
+"""Lanes below the chart of the scope, as SVG: levels as in a logic analyser, words of buses, tasks."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ Place = Callable[[int], float]
 
 
 def place(begin: int, end: int) -> Place:
-    """The x coordinate of a time within the span in sight."""
+    """The x coordinate of a time within the visible span."""
     width = max(1, end - begin)
     return lambda cycles: LEFT + (WIDTH - LEFT) * (min(max(cycles, begin), end) - begin) / width
 
 
 def picture(lanes: Sequence[tuple[str, str]], places: Iterable[float]) -> tuple[str, int]:
-    """Lanes with their names, one below the other, and cursors at `places`; and its height."""
+    """The picture of lanes with their names, one below the other, and cursors at `places`; and its height."""
     height = LANE * len(lanes) + 8
     parts = []
     for row, (title, drawn) in enumerate(lanes):
@@ -61,7 +61,8 @@ def signal_lanes(
 
 
 def task_lanes(owners: Iterable[str], every: list[Span], begin: int, end: int) -> list[tuple[str, str]]:
-    """Tasks, Swis and Hwis likewise.  What cannot be told apart is as high as its share of the time."""
+    """Name and drawing of each task, Swi and Hwi.  Spans too short to be separated are as high as their share of the
+    time."""
     x = place(begin, end)
     names = list(dict.fromkeys(owners))
     drawn: dict[str, dict[str, list[str]]] = {name: {} for name in names}
@@ -79,7 +80,7 @@ def task_lanes(owners: Iterable[str], every: list[Span], begin: int, end: int) -
 
 
 def _title(name: str, kind: SignalKind) -> str:
-    """What is soldered there, and the name beside it, as far as there is room."""
+    """The part that is soldered there, and the name beside it, as far as there is room."""
     if not kind.part:
         return escape(name)
     pin = name.removeprefix("byte ")
@@ -93,7 +94,7 @@ def _box(a: float, b: float, y: float, high: float) -> str:
 
 
 def _square(samples: list[Sample], x: Place, end: int) -> str:
-    """A level; where edges are too near to be told apart, a block."""
+    """A level; a block where edges are too close together."""
     line: list[str] = []
     blocks: list[tuple[float, float]] = []
     ends = [cycles for cycles, _ in samples[1:]] + [end]
@@ -123,7 +124,7 @@ def _square(samples: list[Sample], x: Place, end: int) -> str:
 
 
 def _words(words: list[DecodedWord], x: Place, *, as_text: bool) -> str:
-    """Words as boxes with what they say, as far as there is room; bytes that crowd as the text of their line."""
+    """Words as boxes with their meanings, as far as there is room; bytes close together as the text of their line."""
     said: list[tuple[float, float, tuple[str, ...]]]
     if as_text and words and x(words[0].end) - x(words[0].begin) < 2 * CHARACTER:
         said = [(x(line.begin), x(line.end), (line.meaning,)) for line in text_lines(words)]

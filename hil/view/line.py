@@ -1,7 +1,7 @@
-"""The serial line as a console sees it: bytes out, bytes in, and what they came to.
+"""The serial line as a console sees it: bytes out, bytes in, and the frames that they form.
 
-`RobotLine` is all that the console panel knows of a robot.  `EngineLine` is the emulated robot's, `SerialPortLine` a
-port of this computer: a USB adapter with the real robot, or any pyserial URL.
+`RobotLine` is all that the console panel knows of a robot.  `EngineLine` is that of the emulated robot,
+`SerialPortLine` a port of this computer: a USB adapter with the real robot, or any pyserial URL.
 """
 
 from __future__ import annotations
@@ -42,7 +42,8 @@ class LogEntry:
 
 
 class LineLog:
-    """What passed, for readers in other threads.  Numbers only grow; `epoch` changes when all is cleared."""
+    """The frames and bytes that passed, for readers in other threads.  Numbers only grow; `epoch` changes at `clear`.
+    """
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -61,7 +62,7 @@ class LineLog:
         self.malformed = 0
 
     def received(self, data: bytes, time_s: float) -> None:
-        """Bytes of the robot, whose last one ended at `time_s`."""
+        """Note bytes from the robot, the last of which ended at `time_s`."""
         with self._lock:
             self.bytes_from_robot += len(data)
             for byte in data:
@@ -77,14 +78,14 @@ class LineLog:
             self.malformed = self._decoder.malformed
 
     def sent(self, data: bytes, time_s: float) -> None:
-        """Bytes to the robot."""
+        """Note bytes to the robot."""
         with self._lock:
             self.bytes_to_robot += len(data)
             self._add(data, time_s, True)
 
     @property
     def counts(self) -> str:
-        """Frames and bytes that passed, in words."""
+        """The numbers of frames and bytes, in words."""
         damaged = f" and {self.malformed} damaged" if self.malformed else ""
         return (
             f"{self._decoder.frames} frames{damaged}, {self.bytes_from_robot} bytes from the robot, "
@@ -93,11 +94,11 @@ class LineLog:
 
     @property
     def byte_counts(self) -> str:
-        """The same of a line that has no frames."""
+        """The numbers of bytes, for a line without frames."""
         return f"{self.bytes_from_robot} bytes from the board, {self.bytes_to_robot} bytes to it"
 
     def clear(self) -> None:
-        """A new run: forget everything."""
+        """Clear the log for a new run."""
         with self._lock:
             self._entries.clear()
             self._frames = array("h")
@@ -116,7 +117,7 @@ class LineLog:
         return self.frames_from(number)[0]
 
     def frames_from(self, number: int) -> tuple[list[OdometryFrame], int]:
-        """The same, and the number of the next one to come."""
+        """The frames from `number` on, and the number of the next one."""
         with self._lock:
             following = self.frame_count
             oldest = following - len(self._frames) // 6
@@ -179,17 +180,17 @@ class EngineLine:
         self._send(data)
 
     def to_robot(self, data: bytes, time_ns: int) -> None:
-        """Somebody's bytes were given to the line."""
+        """Note bytes that were given to the line."""
         self.log.sent(data, self._now_s())
 
     def from_robot(self, data: bytes, time_ns: int) -> None:
-        """The robot sent bytes."""
+        """Note bytes that the robot sent."""
         self.log.received(data, self._now_s())
         if data[-1:] and data[-1] in self.log.ends:
             self._frame_ended()
 
     def byte(self, byte: int, _end_cycles: int) -> None:
-        """The same without a session: while a run is executed again."""
+        """Note a byte of the robot without a session, while a run is executed again."""
         self.log.received(bytes((byte,)), self._now_s())
 
 
@@ -205,7 +206,7 @@ class SerialPortLine:
 
     @property
     def flowing(self) -> bool:
-        """As long as the port is there."""
+        """True as long as the port exists."""
         return not self.failure
 
     def write(self, data: bytes) -> None:
@@ -223,7 +224,7 @@ class SerialPortLine:
         self.log.sent(data, time.monotonic() - self._began_s)
 
     def turn(self) -> None:
-        """Take in what has come; called regularly, whether or not somebody looks."""
+        """Read the received bytes; this is called regularly, whether or not a page is open."""
         if self.failure:
             return
         try:

@@ -1,4 +1,4 @@
-"""The serial line of any board: what came, line by line, and a field for what goes to it."""
+"""The serial line of any board: the received lines, and a field for text to send."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class LinePanel:
         self._log = ui.log(max_lines=MAX_LINES).classes("w-full mono").style("height:260px").mark("log")
 
     def update(self, _now: object = None) -> None:
-        """20 times a second."""
+        """Update the panel, 20 times a second."""
         log = self._line.log
         counts = f"{log.bytes_from_robot} B in, {log.bytes_to_robot} B out"
         if self._counts.text != counts:

@@ -1,10 +1,10 @@
-"""The machine's own thread: runs it at its pace, steps it, goes back, and does between slices what others ask.
+"""The machine's own thread: it runs the machine at its pace, steps it, goes back, and executes commands between slices.
 
-Nobody else touches the machine.  What others want is a command in one queue, done when the machine is at rest: after a
-slice, or while it is paused.  While a step holds the firmware between two statements, looks are answered; what would
-change the run waits for the end of the slice.
+No other thread touches the machine.  Other threads put commands into one queue, and they are executed when the machine
+is at rest: after a slice, or while it is paused.  While a step holds the firmware between two statements, commands that
+only read are executed; commands that change the run wait for the end of the slice.
 
-Everything here runs in that thread; what other threads call is `engine.Engine`.
+Everything here runs in that thread; other threads call `engine.Engine`.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ BEFORE_CYCLES: Final = SYSCLK_HZ // 100
 
 
 class _GivenUp(Exception):
-    """Executing again was given up."""
+    """The repeated execution was given up."""
 
 
 class MachineThread:
@@ -100,7 +100,7 @@ class MachineThread:
         self._thread = threading.Thread(target=self._main, name="machine", daemon=True)
 
     def start(self) -> None:
-        """Begin."""
+        """Start the thread."""
         self._thread.start()
 
     def join(self) -> None:
@@ -201,7 +201,7 @@ class MachineThread:
         return self._session
 
     def _tick(self, session: Session) -> None:
-        """After each slice, the machine at rest."""
+        """Called after each slice, with the machine at rest."""
         now = self.run.clock.now
         if self._way is not None:
             begin, end = self._way
@@ -321,13 +321,13 @@ class MachineThread:
             self._publish_when_due()
 
     def act(self, do: str, *values: bytes | str | float) -> None:
-        """Do something from outside, by its name among `checkpoints.hands`."""
+        """Apply an input by its name in `checkpoints.hands`."""
         self.run.act(do, *values)
         if do != "order":
             self.showing.changes += 1
 
     def send(self, data: bytes) -> None:
-        """Bytes on the line."""
+        """Give bytes to the line."""
         session = self._session
         if session is not None:
             session.feed(data)
@@ -339,7 +339,7 @@ class MachineThread:
         self._commands.put(lambda: self.send(data), changes=True)
 
     def resume(self) -> None:
-        """Run on."""
+        """Continue the run."""
         self._running = True
         self._wanted = None
         self._stepper.disarm()
@@ -356,7 +356,7 @@ class MachineThread:
         self._release = True
 
     def step(self, kind: Step) -> None:
-        """Go on to the next `kind` and stop there."""
+        """Run to the next `kind` and stop there."""
         self._running = False
         self._wanted = kind
         self._stepper.sought = None
@@ -368,7 +368,7 @@ class MachineThread:
             self._release = True
 
     def travel_to(self, cycles: int, arrived: Future[None]) -> None:
-        """Go to another time; `arrived` is called when it is there, or has given up."""
+        """Go to another time; `arrived` is called on arrival, or if it was given up."""
         self._arrivals.append(arrived)
         self._running = False
         self._wanted = None
@@ -378,17 +378,17 @@ class MachineThread:
         self._sought = None
 
     def travel_to_finding(self, finding: Finding, arrived: Future[None]) -> None:
-        """Go to where something was found; `arrived` is called when the last stretch to it begins."""
+        """Go to the place of a finding; `arrived` is called shortly before it."""
         self.travel_to(finding.time_cycles - BEFORE_CYCLES, arrived)
         self._sought = finding
 
     def set_pace(self, pace: float | None) -> None:
-        """Virtual per real time."""
+        """Set the virtual time per real time."""
         self.pace = pace
         self._release = self._release or self._running
 
     def record(self, on: bool) -> None:
-        """Whether it is remembered who writes registers."""
+        """Set whether the writers of registers are recorded."""
         self.record_writers = on
         self.taps.set(recording=on)
 
@@ -401,7 +401,7 @@ class MachineThread:
     # Steps
 
     def _hold(self, where: StepEnd) -> None:
-        """The firmware stands between two statements, on its own stack, until somebody goes on."""
+        """Hold the firmware between two statements, on its own stack, until a command continues it."""
         showing = self.showing
         showing.where = where
         self._holding, self._release = True, False

@@ -41,9 +41,9 @@ _REPEATED: Final = "nrkf"
 
 
 class Page:
-    """What every page has: keys and their list, light and dark.  `actions` says what a key does.
+    """The common parts of every page: keys and their list, light and dark.  `actions` maps keys to functions.
 
-    `take_first(key, down)` sees each key first, and says whether it took it.
+    `take_first(key, down)` gets each key first, and returns whether it has handled it.
     """
 
     def __init__(
@@ -107,7 +107,8 @@ async def machine_page(engine: Engine) -> None:
 
 
 class BoardPage:
-    """What stands on the page of an emulated board: of a robot its stage, of any other its parts; and the tabs."""
+    """The content of the page of an emulated board: the stage of a robot, or the parts of another board; and the
+    tabs."""
 
     def __init__(self, page: Page, engine: Engine, stage: PanelsProtocol | None) -> None:
         self._engine, self._stage = engine, stage
@@ -183,7 +184,7 @@ class BoardPage:
                 self._second = Tabs(self._twice, "more panels", chosen="Findings").classed("second")
 
     def update(self) -> None:
-        """20 times a second."""
+        """Update the panel, 20 times a second."""
         now = self._engine.snapshot
         for update in self._always:
             update(now)
@@ -193,7 +194,7 @@ class BoardPage:
 
 
 class Tabs:
-    """Panels behind tabs; only the one in sight is updated.  `panels` are those that have something to update."""
+    """Panels behind tabs; only the visible one is updated.  `panels` are those that have something to update."""
 
     def __init__(self, build: dict[str, Callable[[], Any]], name: str, *, chosen: str | None = None) -> None:
         self.panels: dict[str, Any] = {}
@@ -220,22 +221,22 @@ class Tabs:
 
     @property
     def chosen(self) -> str:
-        """The panel in sight."""
+        """The visible panel."""
         return str(self._tabs.value)
 
     def show(self, title: str) -> None:
-        """Have a panel in sight."""
+        """Show a panel."""
         self._tabs.set_value(title)
 
     def update(self, now: Snapshot) -> None:
-        """20 times a second."""
+        """Update the panel, 20 times a second."""
         panel = self.panels.get(self.chosen)
         if panel is not None:
             panel.update(now)
 
 
 def heard(text: str, level: int = 2) -> None:
-    """A heading for those who hear the page: where others see a tab, a picture, a title of the window."""
+    """A heading for screen readers, where others see a tab, a picture or a window title."""
     ui.html(escape(text), sanitize=False, tag=f"h{level}").classes("heard")
 
 
@@ -277,7 +278,7 @@ class _Head:
         return box
 
     def update(self, now: Snapshot) -> None:
-        """20 times a second."""
+        """Update the panel, 20 times a second."""
         self._set_tile("time", f"{now.time_s:.3f} s")
         for title, value in self._status(now):
             self._set_tile(title, value)

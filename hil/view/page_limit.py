@@ -1,6 +1,6 @@
-"""How many pages one view has: one page more is told so, in a sentence, and costs nothing.
+"""The limit of pages of one view: a page beyond it shows a sentence, and costs nothing.
 
-Each page is drawn anew 20 times a second by one process, and is 7 MB of it: of twenty, none would keep up.
+One process draws each page 20 times a second, and needs 7 MB for it.  With twenty pages, none would keep up.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ _TOO_MANY: Final = f"""<!doctype html>
 
 
 class PageLimit:
-    """Builds a page by `build` where there is room for it.  Made in the process that serves.
+    """Builds a page by `build` while the limit allows it.  It is created in the process that serves.
 
-    A page counts while a browser is connected to it, or may still be loading it.  A browser that left may come back for
-    a while: with such pages there are twice as many at most.
+    A page counts while a browser is connected to it, or may still be loading it.  A browser that left may return for a
+    while; together with such pages, there are at most twice as many.
     """
 
     def __init__(self, build: Callable[[], Any], loading_s: float) -> None:
@@ -46,7 +46,7 @@ class PageLimit:
         nicegui_app.on_delete(self._gone)
 
     def __call__(self) -> Any:
-        """What NiceGUI calls for a page: builds it, or answers that there is no room."""
+        """Called by NiceGUI for a page: build it, or answer that there is no room."""
         new = ui.context.client
         if self._has_room_for(new):
             return self._build()
@@ -60,7 +60,7 @@ class PageLimit:
         return len(others) - len(left) < MAX_PAGES and len(others) < 2 * MAX_PAGES
 
     def _gone(self, client: Client) -> None:
-        """Free the memory of a page that has gone: it is a cycle, and `hil.collector` makes Python collect rarely."""
+        """Free the memory of a closed page: it is a cycle, and `hil.collector` makes Python collect rarely."""
         if client in self._came and not self._collecting:
             self._collecting = True  # once for all that go together
             asyncio.get_running_loop().call_later(1, self._collect)

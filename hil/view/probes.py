@@ -48,7 +48,7 @@ Sample = tuple[int, float]
 
 
 class Probes:
-    """The signals that are recorded, on whatever run is the present one.  Only for the machine's thread."""
+    """The recorded signals of the present run.  Only for the machine's thread."""
 
     def __init__(self) -> None:
         self.period_cycles = PERIOD_CYCLES
@@ -64,7 +64,7 @@ class Probes:
         self._gates: dict[str, str] = {}
 
     def attach(self, run: RewindableRun) -> None:
-        """Another machine: the same signals, recorded from its beginning."""
+        """Record the same signals of another machine, from its beginning."""
         self._run = run
         self._looks.clear()
         for stop in self._stops.values():
@@ -82,11 +82,11 @@ class Probes:
 
     @property
     def names(self) -> list[str]:
-        """What is recorded."""
+        """The recorded signals."""
         return list(self._values)
 
     def add(self, name: str) -> None:
-        """Record a signal from now on.  Raises ValueError for a name there is none of."""
+        """Record a signal from now on.  Raises ValueError for an unknown name."""
         if name not in self._values:
             self._values[name] = deque(maxlen=MAX_VALUES)
             if is_words(name):
@@ -99,7 +99,7 @@ class Probes:
                 raise
 
     def remove(self, name: str) -> None:
-        """Record it no more."""
+        """Stop recording a signal."""
         self._values.pop(name, None)
         self._words.pop(name, None)
         self._looks.pop(name, None)
@@ -108,7 +108,7 @@ class Probes:
             stop()
 
     def set_period(self, cycles: int) -> None:
-        """Sample this often from the next sample on.  Raises ValueError for less than a cycle."""
+        """Set the sampling period from the next sample on.  Raises ValueError for less than a cycle."""
         if cycles < 1:
             raise ValueError(f"a period of {cycles} cycles: must be 1 or more")
         self.period_cycles = cycles
@@ -123,7 +123,7 @@ class Probes:
         return found[::-1]
 
     def words(self, name: str, begin: int, end: int) -> list[DecodedWord]:
-        """Words of a line that are in sight between two times."""
+        """The words of a line that are visible between two times."""
         found: list[DecodedWord] = []
         for word in reversed(self._words.get(name, ())):
             if word.end < begin:
@@ -278,7 +278,8 @@ def pin_number(name: str) -> int:
 
 
 def look_at(run: RewindableRun, name: str) -> VariableReader:
-    """How to look at a variable, register, field, face of a part or quantity of the world.  Raises ValueError."""
+    """A function that reads a variable, register, field, face of a part or quantity of the world.  Raises ValueError.
+    """
     bench = run.bench
     world = {} if run.stage is None else run.stage.signals
     if name in world:

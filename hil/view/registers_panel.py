@@ -1,7 +1,7 @@
-"""Registers: blocks, registers, fields, with value, meaning and who wrote last; searched in all of them.
+"""Registers: blocks, registers, fields, with value, meaning and last writer; with a search in all of them.
 
-Stored words are shown; nothing is read as the CPU reads, because that may clear flags or move counters.  A register
-whose word is made when it is read (counters, FIFOs) says so.
+Stored words are shown, and nothing is read as the CPU reads, because that may clear flags or move counters.  A register
+whose word is computed when it is read (counters, FIFOs) says so.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class ShownField:
 
 @dataclass(frozen=True, slots=True)
 class RegistersSnapshot:
-    """Some registers at one moment; what is chosen among them."""
+    """Some registers at one moment, and the chosen one."""
 
     cycles: int
     registers: list[ShownRegister]
@@ -109,7 +109,7 @@ def look(
 
 
 def row_of(register: ShownRegister, *, moved: bool, in_full: bool) -> TableRow:
-    """A line of the table; with its block `in_full`."""
+    """A row of the table; with its block `in_full`."""
     value, reset = (f"0x{word:0{register.bits // 4}X}" for word in (register.word, register.reset))
     writer = register.writer
     return TableRow(
@@ -129,18 +129,18 @@ def _value(value: str, reset: str, more: str = "", *, moved: bool) -> TableCell:
 
 
 def writer_of(writer: LastWriter) -> str:
-    """Who wrote: a function."""
+    """The function that wrote last."""
     return "start-up or kernel" if writer.place is None else function_of(writer.place)
 
 
 def writer_at(writer: LastWriter) -> str:
-    """Where, in which task and when."""
+    """The place, task and time of the last write."""
     where = "" if writer.place is None else f"{location(writer.place).rpartition('/')[2]}, {writer.task}, "
     return f"{where}{seconds(writer.cycles):.6f} s"
 
 
 def fields_of(register: Cell) -> list[ShownField]:
-    """Its fields, the highest bits first."""
+    """The fields of a register, the highest bits first."""
     return [
         ShownField(name, field, *((word & field.mask) >> field.lo for word in (register.value, register.reset_value)))
         for name, field in sorted(register.fields.items(), key=lambda item: -item[1].lo)
@@ -148,7 +148,7 @@ def fields_of(register: Cell) -> list[ShownField]:
 
 
 def field_row(shown: ShownField, *, moved: bool) -> TableRow:
-    """A line of the table of fields."""
+    """A row of the table of fields."""
     field = shown.field
     value, reset = (f"{each} (0x{each:X})" if each > 9 else str(each) for each in (shown.value, shown.reset))
     text = field.text + ("" if field.modelled else "  (not modelled: no effect here)")
@@ -201,7 +201,7 @@ class RegistersPanel:
         self._code = ui.column().classes("w-full gap-1")
 
     def update(self, _now: Snapshot) -> None:
-        """While the panel is in sight."""
+        """Update the panel while it is visible."""
         if self._waiting is not None and self._waiting.done():
             answer, self._waiting = self._waiting, None
             if not answer.cancelled() and answer.exception() is None:
@@ -215,7 +215,7 @@ class RegistersPanel:
             self._waiting = engine.submit(lambda run: look(run, engine.taps, paths, chosen, only_set=only_set))
 
     def _known_paths(self) -> list[str] | None:
-        """What is to be looked at; None while it is being found."""
+        """The paths to be shown; None while they are being searched."""
         if self._paths is None and self._finding is None:
             block, words = str(self._block.value), str(self._search.value or "")
             self._finding = self._engine.submit(lambda run: paths_of(run, block, words))
@@ -260,6 +260,6 @@ class RegistersPanel:
 
 
 def _text(label: ui.label, text: str) -> None:
-    """Send a text only if it is another."""
+    """Send a text only if it has changed."""
     if label.text != text:
         label.text = text

@@ -16,7 +16,7 @@ from nicegui.element import Element
 
 @dataclass(frozen=True, slots=True)
 class TableCell:
-    """What stands in a cell: a text, `more` below it, a title for the mouse, a class, and what it is sorted by."""
+    """The content of a cell: a text, `more` below it, a title for the mouse, a class, and the sort key."""
 
     text: str
     more: str = ""
@@ -28,7 +28,7 @@ class TableCell:
 
 @dataclass(frozen=True, slots=True)
 class TableRow:
-    """A row: `key` tells it from all others."""
+    """A row; `key` identifies it."""
 
     key: str
     cells: tuple[TableCell, ...]
@@ -52,14 +52,14 @@ class Rows(Element, component="rows.js"):
             self.on("choose", lambda e: self._choose(e, on_chosen))
 
     def show(self, rows: Sequence[TableRow]) -> None:
-        """What stands in it now."""
+        """Show these rows."""
         if self._rows != list(rows):
             self._rows = list(rows)
             self._props["rows"] = [{"key": row.key, "cells": [_plain(cell) for cell in row.cells]} for row in rows]
             self.update()
 
     def choose(self, key: str) -> None:
-        """Which row is marked; "": none."""
+        """Mark a row; "": none."""
         if self._props["chosen"] != key:
             self._props["chosen"] = key
             self.update()
@@ -72,6 +72,6 @@ class Rows(Element, component="rows.js"):
 
 
 def _plain(cell: TableCell) -> dict[str, Any]:
-    """A cell as the browser has it: what is empty is left out."""
+    """A cell for the browser, without empty values."""
     said = {"text": cell.text, "more": cell.more, "css": cell.css, "title": cell.title, "order": cell.order}
     return {name: value for name, value in said.items() if value not in ("", None) or name == "text"}

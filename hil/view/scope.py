@@ -54,7 +54,7 @@ PERIODS_MS: Final = {0.1: "0.1 ms", 1.0: "1 ms", 5.0: "5 ms", 20.0: "20 ms"}
 
 @dataclass(frozen=True, slots=True)
 class ScopeSpan:
-    """What is in sight at one moment, in cycles."""
+    """The content of the visible span, in cycles."""
 
     begin: int
     end: int
@@ -85,7 +85,7 @@ def look(
 
 
 def _base_priorities(run: RewindableRun) -> dict[str, int]:
-    """Each task's own priority: what it has while it holds no gate, or had before it inherited another."""
+    """The own priority of each task: the one that it has without a gate, or had before it inherited another."""
     base = {task.name: task.priority for task in run.bench.board.kernel.tasks.all}
     for obj in run.bench.firmware.linked.objects.values():
         gate = obj.data[0] if len(obj.data) == 1 else None
@@ -95,7 +95,7 @@ def _base_priorities(run: RewindableRun) -> dict[str, int]:
 
 
 def _thinned(samples: list[Sample]) -> list[Sample]:
-    """At most two values a column: its lowest and its highest, in order of time."""
+    """At most two values for each column: its lowest and its highest, in order of time."""
     step = -(-len(samples) // COLUMNS)
     if step <= 2:
         return samples
@@ -108,7 +108,7 @@ def _thinned(samples: list[Sample]) -> list[Sample]:
 
 
 def shown_at(now: ScopeSpan, name: str, cycles: int) -> str:
-    """What a signal was at a time, with its unit."""
+    """The value of a signal at a time, with its unit."""
     kind = now.kinds.get(name, SignalKind(Draw.LINE))
     if kind.draw in (Draw.BYTES, Draw.WORDS):
         word = next((word for word in now.words[name] if word.begin <= cycles <= word.end), None)
@@ -120,7 +120,7 @@ def shown_at(now: ScopeSpan, name: str, cycles: int) -> str:
 
 
 def reading(now: ScopeSpan, times: Mapping[str, int]) -> str:
-    """A table: what each signal was at some times, which have names; HTML."""
+    """An HTML table of the values of each signal at some named times."""
     head = "".join(f"<th>{name}<div>{seconds(cycles):.6f} s</div></th>" for name, cycles in times.items())
     rows = [
         f"<tr><th>{escape(name)}</th>"
@@ -133,7 +133,7 @@ def reading(now: ScopeSpan, times: Mapping[str, int]) -> str:
 
 
 def value_at(samples: list[Sample], cycles: int) -> float | None:
-    """What a signal was at a time: the last value before it."""
+    """The value of a signal at a time: the last value before it."""
     index = bisect_right(samples, (cycles, float("inf")))
     return samples[index - 1][1] if index else None
 
@@ -199,7 +199,7 @@ class ScopePanel:
         self._show_names(engine.probes.names)
 
     def update(self, _now: Snapshot) -> None:
-        """While the panel is in sight."""
+        """Update the panel while it is visible."""
         if self._labels is None:
             self._labels = self._engine.submit(labels)
         elif not self._offered and self._labels.done() and not self._labels.cancelled():
@@ -321,25 +321,25 @@ class ScopePanel:
         self._pointer = self._grip = None
 
     def _show(self, end: int) -> None:
-        """Hold the picture that ends at a time, and draw it at once."""
+        """Freeze the picture at a span that ends at a time, and draw it at once."""
         self._still.value = True
         self._end = min(max(0, end), self._engine.snapshot.cycles)
         self._turn = EVERY - 1
 
 
 def _share(of_the_width: float) -> float:
-    """Where the pointer is between the left and the right end of the lanes, 0..1."""
+    """The position of the pointer between the left and the right end of the lanes, 0..1."""
     return min(max((of_the_width * WIDTH - LEFT) / (WIDTH - LEFT), 0.0), 1.0)
 
 
 def _in_words(span_s: float) -> str:
-    """A span as the list says it."""
+    """A span as the list shows it."""
     unit, per_s = ("s", 1.0) if span_s >= 1 else ("ms", 1e3) if span_s >= 1e-3 else ("us", 1e6)
     return f"{span_s * per_s:.3g} {unit}"
 
 
 def probes_period(engine: Engine) -> float:
-    """The present period in ms, as the list offers it."""
+    """The present period in ms, as the list shows it."""
     period = engine.probes.period_cycles / CYCLES_PER_MS
     return min(PERIODS_MS, key=lambda each: abs(each - period))
 
@@ -353,7 +353,8 @@ def _options(
     units: dict[str, str], values: dict[str, list[Sample]], begin_s: float, end_s: float,
     cursors_s: tuple[float, float] | None = None,
 ) -> dict[str, Any]:  # fmt: skip
-    """What ECharts draws: an axis for each unit, one below the other; `units` are those of the signals to be drawn."""
+    """The options of ECharts: an axis for each unit, one below the other; `units` are those of the signals to be
+    drawn."""
     grey = "var(--soft)"
     text = {"color": grey}
     axes = list(dict.fromkeys(units.values())) or [""]

@@ -24,7 +24,7 @@ EVERY: Final = 10
 
 
 def end_s(known_s: float) -> int:
-    """Where a bar ends that has all that is known on it, and some room."""
+    """The end of a bar that shows all that is known, with some room."""
     return next((end for end in ENDS_S if known_s <= end), 3600 * (1 + int(known_s // 3600)))
 
 
@@ -36,7 +36,7 @@ CLICKED: Final = """(e) => { const box = e.currentTarget.getBoundingClientRect()
 
 
 def ticks(rated: Iterable[tuple[Finding, Severity]], marks: Iterable[Mark], end: float, known_cycles: int = 0) -> str:
-    """Findings above, what was done and what happened below, what each tick is; and how far the run is known."""
+    """The ticks: findings above, inputs and events below, each with its text; and how far the run is known."""
 
     def x(cycles: int) -> float:
         return round(STEPS * min(1.0, seconds(cycles) / end), 1)
@@ -55,7 +55,7 @@ def ticks(rated: Iterable[tuple[Finding, Severity]], marks: Iterable[Mark], end:
 
 
 def nearest(findings: Iterable[Finding], marks: Iterable[Mark], at_s: float, reach_s: float) -> Finding | Mark | None:
-    """The tick that a click is on."""
+    """The tick under a click."""
     every = [(abs(seconds(cycles) - at_s), n, each) for n, (cycles, each) in enumerate(_timed(findings, marks))]
     far, _, found = min(every, default=(reach_s + 1.0, 0, None), key=lambda each: each[:2])
     return found if far <= reach_s else None
@@ -75,7 +75,7 @@ def neighbour(findings: Iterable[Finding], now_cycles: int, direction: int) -> F
 
 
 class ScrubBar:
-    """`on_finding(finding)` is told which one the run goes to."""
+    """The bar; `on_finding(finding)` is called with the finding to which the run goes."""
 
     def __init__(self, engine: Engine, on_finding: Callable[[Finding], None]) -> None:
         self._engine = engine
@@ -114,7 +114,7 @@ class ScrubBar:
         return [finding for finding, _ in engine.policy.with_severities(engine.known_findings)]
 
     def jump(self, direction: int) -> None:
-        """To the next finding, or the one before, at its statement."""
+        """Go to the statement of the next finding, or of the one before."""
         at = self._at.time_cycles if self._at is not None else self._engine.snapshot.cycles
         found = neighbour(self._findings, at, direction)
         if found is None:
@@ -123,14 +123,14 @@ class ScrubBar:
         self.go_to(found)
 
     def go_to(self, finding: Finding) -> None:
-        """Stand at the statement of a finding."""
+        """Go to the statement of a finding."""
         self._at = finding
         self._goal = finding.time_cycles
         self._engine.go_to_finding(finding)
         self._on_finding(finding)
 
     def update(self, now: Snapshot) -> None:
-        """20 times a second."""
+        """Update the panel, 20 times a second."""
         if now.mode is not Mode.REPLAYING:
             self._goal = None
         if now.mode is Mode.RUNNING:

@@ -136,7 +136,7 @@ def _serve(
     build: Callable[[], Any], door: socket.socket, host: str, print_line: PrintLine, on_stop: OnStop | None,
     begin: Callable[[], None] = _nothing,
 ) -> None:  # fmt: skip
-    """Until the server is told to stop; `begin` is called once it has started."""
+    """Serve until the server is told to stop; `begin` is called when it has started."""
     import uvicorn
     from fastapi import FastAPI
     from nicegui import app as nicegui_app

@@ -21,7 +21,7 @@ TRAILS_S: Final = 0.25
 
 
 class MarkKind(Enum):
-    """What a mark on the scrub bar is."""
+    """The kind of a mark on the scrub bar."""
 
     ORDER = "order"
     HAND = "hand"
@@ -30,7 +30,7 @@ class MarkKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """Something that was done, or that happened in the world, at `cycles`."""
+    """An input, or an event of the world, at `cycles`."""
 
     cycles: int
     kind: MarkKind
@@ -66,7 +66,7 @@ class PublishedState:
         self._snapshot_due = self._trails_due = 0.0
 
     def take(self, run: RewindableRun) -> None:
-        """Another machine is shown from now on."""
+        """Show another machine from now on."""
         self.blocks = list(run.bench.board.blocks)
         self.unsuitable = unsuitable(run.bench)
         self.changes += 1
@@ -83,7 +83,7 @@ class PublishedState:
     def publish(
         self, run: RewindableRun, mode: Mode, pace: float | None, stopped: str, session: Session | None
     ) -> None:
-        """A new snapshot; `session` is what runs it at its pace, if one does."""
+        """Publish a new snapshot; `session` is the one that runs the machine at its pace, if there is one."""
         self._snapshot_due = time.monotonic() + SNAPSHOT_S
         self.known_cycles = max(self.known_cycles, run.clock.now)
         pacer = session.pacer if session is not None and mode is Mode.RUNNING else None
@@ -98,7 +98,7 @@ class PublishedState:
             self.look_at_paths(run)
 
     def look_at_paths(self, run: RewindableRun) -> None:
-        """The whole paths and findings anew."""
+        """Publish the whole paths and findings again."""
         self._trails_due = time.monotonic() + TRAILS_S
         self.trails = None if run.stage is None else run.stage.trails()
         self.findings = tuple(run.findings)

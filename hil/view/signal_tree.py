@@ -1,4 +1,4 @@
-"""Every signal that the scope can record, in a tree that can be searched; what is ticked is recorded."""
+"""All signals that the scope can record, in a tree with a search; ticked signals are recorded."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _GROUPS: Final = {
 
 
 def path_to(name: str, label: str, blocks: Iterable[str]) -> tuple[str, ...]:
-    """The groups in which a signal stands, from the outermost on, and what it is called there."""
+    """The groups of a signal, from the outermost on, and its name there."""
     for begin, group in _GROUPS.items():
         if name.startswith(begin):
             return (group, label if begin == "ADCIN" else label.removeprefix(begin))
@@ -45,7 +45,7 @@ class Branch:
         self.branches: dict[str, Branch] = {}
 
     def node(self, opened: Callable[[str], bool]) -> dict[str, Any]:
-        """What Quasar draws: of a group that nobody has opened only that there is something in it."""
+        """The node for Quasar; a group that was never opened has only a placeholder in it."""
         made: dict[str, Any] = {"id": self.key, "label": self.title}
         if not self.signal:
             made |= {"noTick": True, "selectable": False}
@@ -79,7 +79,7 @@ def found(labels: Mapping[str, str], words: str) -> dict[str, str]:
 
 
 class SignalTree:
-    """`on_ticked(name, on)`: a signal is to be recorded, or no longer."""
+    """The tree; `on_ticked(name, on)` is called when a signal is ticked or unticked."""
 
     def __init__(self, on_ticked: Callable[[str, bool], None]) -> None:
         self._on_ticked = on_ticked
@@ -102,13 +102,13 @@ class SignalTree:
         self._box.visible = False
 
     def offer(self, labels: Mapping[str, str], blocks: Sequence[str]) -> None:
-        """What there is."""
+        """Offer these signals."""
         self._labels, self._blocks = labels, blocks
         self._root = tree_of(labels, blocks)
         self._draw()
 
     def show(self, names: Sequence[str]) -> None:
-        """What is recorded."""
+        """Show which signals are recorded."""
         if list(names) != self._ticked:
             self._ticked = list(names)
             self._tree.props["ticked"] = list(names)

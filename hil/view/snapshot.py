@@ -1,7 +1,7 @@
 """The machine at one moment, for the page: made in the machine's thread, immutable afterwards.
 
-Making one must not change the run: stored words and objects are taken, no register is read, the world is not
-integrated.
+A snapshot must not change the run: it uses stored words and objects, reads no register, and does not integrate the
+world.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Mode(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """One moment."""
+    """The state of the machine at one moment."""
 
     mode: Mode
     cycles: int
@@ -57,7 +57,7 @@ class Snapshot:
 
     @property
     def takes_orders(self) -> bool:
-        """Whether orders sent now are received soon.  At a slow pace the line is slower than a hand."""
+        """Whether orders sent now are received soon.  At a slow pace the line is slower than a user."""
         return self.mode is Mode.RUNNING and self.pending_to_robot < HOLD_BACK_BYTES
 
     @property

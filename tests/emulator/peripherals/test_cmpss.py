@@ -139,7 +139,7 @@ def test_hysteresis_is_twelve_codes_a_step_below_the_threshold(chip: Chip, steps
     assert levels == [1, 1, 0, 0, 1]
 
 
-@pytest.mark.parametrize("look_cycles", [COMPARE_CYCLES, 7])
+@pytest.mark.parametrize("compare_cycles", [COMPARE_CYCLES, 7])
 def test_a_voltage_that_moves_is_looked_at_while_the_comparators_are_on(chip: Chip, compare_cycles: int) -> None:
     chip.cmpss[1].compare_cycles = compare_cycles
     seen: list[tuple[int, int]] = []
