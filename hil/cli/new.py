@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from importlib.util import find_spec
 from pathlib import Path
 from shlex import quote
 from typing import Annotated, Final
@@ -13,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from hil.cli import show
+from hil.extras import has
 
 #: What a file of a project is for, by the end of its path.
 _WHAT: Final = {
@@ -66,10 +66,11 @@ def new(
     for path in made:
         table.add_row(Text(path.as_posix()), _what(path.as_posix(), driver))
     show.console().print(table)
-    missing = language is Language.C and find_spec("pycparser") is None
+    wanted = ("pycparser", "pytest") if language is Language.C else ("pytest",)
+    missing = [package for package in wanted if not has(package)]
     for line in (
         "", "Next:",
-        *(["  pip install pycparser          C files want it"] if missing else []),
+        *([f"  {'pip install ' + ' '.join(missing):30} what it needs and this environment lacks"] if missing else []),
         f"  cd {quote(str(folder))}",
         "  pytest                         passes; what the emulator finds would fail the test that met it",
         "  hil check . --board board.py   the same without a test",

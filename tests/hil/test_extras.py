@@ -39,9 +39,10 @@ def test_each_package_stands_in_its_extra_and_not_in_the_core() -> None:
 
 
 def test_who_takes_all_lacks_nothing_for_users() -> None:
-    (everything,) = DECLARED["optional-dependencies"]["all"]
+    everything, pytest_of_hil_new = DECLARED["optional-dependencies"]["all"]
     taken = set(re.findall(r"[\w-]+", everything.partition("[")[2]))
     assert taken == {extra for _, extra in EXTRAS.values()} - {"speed", "docs"} | {"c"}
+    assert pytest_of_hil_new.startswith("pytest>=")
 
 
 @pytest.mark.parametrize(

@@ -124,3 +124,15 @@ def test_it_says_what_to_do_next(tmp_path: Path, capsys: pytest.CaptureFixture[s
     said = capsys.readouterr().out
     for word in ("sonar.c", "test_sonar.py", "pytest", "hil check"):
         assert word in said
+
+
+@pytest.mark.parametrize(("language", "wanted"), [("c", "pycparser pytest"), ("python", "pytest")])
+def test_it_says_what_the_environment_lacks(
+    language: str, wanted: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:  # fmt: skip
+    for lacking in (True, False):
+        monkeypatch.setattr("hil.cli.new.has", lambda _package, lacking=lacking: not lacking)
+        assert invoke(["new", str(tmp_path / f"sonar{lacking:d}"), "--language", language]) == 0
+        said = capsys.readouterr().out
+        assert (re.search(rf"^  pip install {wanted} ", said, re.MULTILINE) is not None) is lacking
+        assert ("pip install" in said) is lacking
