@@ -92,12 +92,13 @@ class FaceRow:
                         on_change=lambda e: self._slid(e.value),
                     )
                     .props(f'aria-label="{part.name} {face.name}"').style("flex:3 1 8em;width:auto")
-                    .classes("pr-3").mark(f"slide-{part.name}-{face.name}")
+                    .classes("pr-3 unset").mark(f"slide-{part.name}-{face.name}")
                 )  # fmt: skip
 
     def show(self, value: float | None) -> None:
         """Show the present value; None: the part does not give it."""
-        text = "" if value is None else value_text(value, self._face.unit)
+        unset = "" if self._field is None else "not set"
+        text = unset if value is None else value_text(value, self._face.unit)
         if self._now.text != text:
             self._now.text = text
         if value is not None and value != self._shown and time.monotonic() >= self._held_until_s:
@@ -108,6 +109,7 @@ class FaceRow:
         self._shown = value
         if self._slider is not None:
             self._slider.value = value
+            self._slider.classes(remove="unset")
         if self._field is not None:
             self._field.value = value
 

@@ -6,15 +6,17 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
 from typing import Final
 
+from emulator.clock import seconds
 from hil.instruments.timeline import Span, TaskState
 from hil.view.kinds import Draw, SignalKind
 from hil.view.probes import Sample
 from hil.view.words import DecodedWord, text_lines
 
-#: Width of the picture; where its lanes begin; height of one.
+#: In pixels: the picture's width until the browser tells its own; where lanes begin; height of a lane, of the times.
 WIDTH: Final = 720
 LEFT: Final = 144
 LANE: Final = 24
+TIMES: Final = 18
 #: What is nearer than this in the picture cannot be told apart, and is drawn as one, paler.
 MERGE: Final = 2.0
 #: A character of the words.
@@ -25,21 +27,27 @@ _CSS: Final = {TaskState.RUNNING: "running", TaskState.READY: "ready", TaskState
 Place = Callable[[int], float]
 
 
-def place(begin: int, end: int) -> Place:
-    """The x coordinate of a time within the visible span."""
-    width = max(1, end - begin)
-    return lambda cycles: LEFT + (WIDTH - LEFT) * (min(max(cycles, begin), end) - begin) / width
+def place(begin: int, end: int, width: int = WIDTH) -> Place:
+    """The x coordinate of a time within the visible span, in a picture of `width` pixels."""
+    span = max(1, end - begin)
+    return lambda cycles: LEFT + (width - LEFT) * (min(max(cycles, begin), end) - begin) / span
 
 
-def picture(lanes: Sequence[tuple[str, str]], places: Iterable[float]) -> tuple[str, int]:
-    """The picture of lanes with their names, one below the other, and cursors at `places`; and its height."""
+def picture(
+    lanes: Sequence[tuple[str, str]], places: Iterable[float], begin: int, end: int, width: int = WIDTH
+) -> tuple[str, int]:  # fmt: skip
+    """The picture of lanes with their names, one below the other, cursors at `places`, the times of both ends; and its
+    height."""
     height = LANE * len(lanes) + 8
     parts = []
     for row, (title, drawn) in enumerate(lanes):
-        axis = f'<path class="axis" d="M{LEFT} 20H{WIDTH}"/>'
+        axis = f'<path class="axis" d="M{LEFT} 20H{width}"/>'
         parts.append(f'<g transform="translate(0 {row * LANE + 4})"><text x="2" y="15">{title}</text>{axis}{drawn}</g>')
     parts += [f'<path class="cursor" d="M{x:.1f} 0V{height}"/>' for x in places]
-    return "".join(parts), height
+    for x, anchor, cycles in ((LEFT, "start", begin), (width, "end", end)):
+        time = f"{seconds(cycles):.6f}".rstrip("0").rstrip(".")
+        parts.append(f'<text class="time" x="{x}" y="{height + 12}" text-anchor="{anchor}">{time} s</text>')
+    return "".join(parts), height + TIMES
 
 
 def signal_lanes(
@@ -48,9 +56,10 @@ def signal_lanes(
     words: Mapping[str, list[DecodedWord]],
     begin: int,
     end: int,
+    width: int = WIDTH,
 ) -> list[tuple[str, str]]:
     """Name and drawing of each signal that is a level or words."""
-    x = place(begin, end)
+    x = place(begin, end, width)
     found = []
     for name, kind in kinds.items():
         if kind.draw is Draw.SQUARE:
@@ -60,10 +69,12 @@ def signal_lanes(
     return found
 
 
-def task_lanes(owners: Iterable[str], every: list[Span], begin: int, end: int) -> list[tuple[str, str]]:
+def task_lanes(
+    owners: Iterable[str], every: list[Span], begin: int, end: int, width: int = WIDTH
+) -> list[tuple[str, str]]:  # fmt: skip
     """Name and drawing of each task, Swi and Hwi.  Spans too short to be separated are as high as their share of the
     time."""
-    x = place(begin, end)
+    x = place(begin, end, width)
     names = list(dict.fromkeys(owners))
     drawn: dict[str, dict[str, list[str]]] = {name: {} for name in names}
     drawn |= {name: {} for name in sorted({each.lane for each in every} - drawn.keys())}

@@ -155,6 +155,8 @@ class ScopePanel:
         #: Where the pointer is in the picture, 0..1; where it took hold, and the end of the picture then.
         self._pointer: float | None = None
         self._grip: tuple[float, int] | None = None
+        #: Of the lanes, in pixels.
+        self._width = WIDTH
         self._tree = SignalTree(self._tick)
         self._labels: Future[dict[str, str]] | None = None
         self._offered = False
@@ -174,7 +176,7 @@ class ScopePanel:
         self._chart = ui.echart(_options({}, {}, 0.0, 1.0), renderer="svg").classes("w-full").mark("chart")
         self._chart.visible = False
         with ui.row().classes("items-center gap-0 w-full no-wrap"):
-            ui.label("cursors A, B").classes("soft").style(f"flex:0 0 {100 * LEFT / WIDTH:g}%")
+            ui.label("cursors A, B").classes("soft").style(f"flex:0 0 {LEFT}px")
             self._cursors = (
                 ui.range(min=0, max=1000, step=1, value={"min": 250, "max": 750})
                 .props('dense aria-label="cursors A and B"')
@@ -184,6 +186,7 @@ class ScopePanel:
             "Levels, words, tasks, Swis, Hwis (of these the events of some 14 s are kept).  Wheel: zoom, drag: shift"
         ).classes("soft")
         with ui.element("div").classes("lanes w-full") as lanes:
+            ui.element("q-resize-observer").on("resize", self._resized, args=["width"])
             self._lanes = ui.html(tag="svg", sanitize=False).mark("lanes").props("aria-hidden=true")
         for shown in (self._chart, lanes):
             for kind in ("wheel", "pointerdown", "pointermove", "pointerleave"):
@@ -259,12 +262,12 @@ class ScopePanel:
 
     def _draw_lanes(self, now: ScopeSpan, every: list[Span], cursors: tuple[int, int]) -> None:
         rows = [
-            *signal_lanes(now.kinds, now.values, now.words, now.begin, now.end),
-            *task_lanes(now.owners, every, now.begin, now.end),
+            *signal_lanes(now.kinds, now.values, now.words, now.begin, now.end, self._width),
+            *task_lanes(now.owners, every, now.begin, now.end, self._width),
         ]
-        at = place(now.begin, now.end)
-        drawn, height = picture(rows, [at(cycles) for cycles in cursors])
-        box = f"0 0 {WIDTH} {height}"
+        at = place(now.begin, now.end, self._width)
+        drawn, height = picture(rows, [at(cycles) for cycles in cursors], now.begin, now.end, self._width)
+        box = f"0 0 {self._width} {height}"
         if self._lanes.props.get("viewBox") != box:
             self._lanes.props["viewBox"] = box
         self._lanes.content = drawn
@@ -298,7 +301,7 @@ class ScopePanel:
     # Mouse or finger, on chart and lanes
 
     def _wheel(self, e: events.GenericEventArguments) -> None:
-        now, share = self._look, _share(e.args[0])
+        now, share = self._look, self._share(e.args[0])
         if now is None:
             return
         before_s, end = float(self._span.value), now.end if self._end is None else self._end
@@ -309,10 +312,10 @@ class ScopePanel:
 
     def _pointerdown(self, e: events.GenericEventArguments) -> None:
         if self._look is not None:
-            self._grip = _share(e.args[0]), self._look.end
+            self._grip = self._share(e.args[0]), self._look.end
 
     def _pointermove(self, e: events.GenericEventArguments) -> None:
-        self._pointer = _share(e.args[0])
+        self._pointer = self._share(e.args[0])
         if e.args[1] & 1 and self._grip is not None:
             share, end = self._grip
             self._show(round(end - (self._pointer - share) * float(self._span.value) * SYSCLK_HZ))
@@ -320,16 +323,20 @@ class ScopePanel:
     def _pointerleave(self, _e: events.GenericEventArguments) -> None:
         self._pointer = self._grip = None
 
+    def _resized(self, e: events.GenericEventArguments) -> None:
+        # Drawn in its own pixels, its names can be read at any width.
+        self._width = max(LEFT + 1, round(float(e.args["width"])))
+        self._laned = None
+
+    def _share(self, of_the_width: float) -> float:
+        """The position of the pointer between the left and the right end of the lanes, 0..1."""
+        return min(max((of_the_width * self._width - LEFT) / (self._width - LEFT), 0.0), 1.0)
+
     def _show(self, end: int) -> None:
         """Freeze the picture at a span that ends at a time, and draw it at once."""
         self._still.value = True
         self._end = min(max(0, end), self._engine.snapshot.cycles)
         self._turn = EVERY - 1
-
-
-def _share(of_the_width: float) -> float:
-    """The position of the pointer between the left and the right end of the lanes, 0..1."""
-    return min(max((of_the_width * WIDTH - LEFT) / (WIDTH - LEFT), 0.0), 1.0)
 
 
 def _in_words(span_s: float) -> str:
@@ -382,11 +389,10 @@ def _options(
         } for n in range(len(axes))]  # fmt: skip
     each = (_height(len(axes)) - ABOVE - BELOW) // len(axes)
     last = len(axes) - 1
-    left = f"{100 * LEFT / WIDTH:g}%"
     return {
         "animation": False, "color": COLOURS,
         "grid": [
-            {"left": left, "right": 0, "top": ABOVE + n * each, "height": each - (16 if last else 0),
+            {"left": LEFT, "right": 0, "top": ABOVE + n * each, "height": each - (16 if last else 0),
              "outerBoundsMode": "none"}
             for n in range(len(axes))
         ],

@@ -127,6 +127,8 @@ CSS: Final = (
     + ARENA
     + """
 html { background:var(--paper); }
+/* Until the scripts are there. */
+body:not(:has(.nicegui-content))::before { content:"c2000-hil: the page is loaded ..."; display:block; padding:12px; }
 body { background:var(--paper); color:var(--ink); font-size:13px; }
 .nicegui-content { padding:8px 12px; gap:8px; height:max(100vh, 600px); height:max(100dvh, 600px); width:100%;
   flex-wrap:nowrap; }
@@ -175,6 +177,8 @@ button.tile { cursor:pointer; }
   .left { flex-basis:40%; } .side, .beside { flex-basis:30%; } .beside:has(.side) { display:flex; flex:1 1 30%;
   min-width:0; }
 }
+.q-btn--dense:not(.big) { padding:4px 8px; }
+.unset .q-slider__thumb, .unset .q-slider__selection { opacity:.3; }
 .big { font-size:17px; font-weight:700; min-width:150px; min-height:46px; }
 .signals { max-height:260px; overflow:auto; border:1px solid var(--line); border-radius:4px; padding:4px;
   background:var(--paper); }
@@ -183,7 +187,7 @@ button.tile { cursor:pointer; }
 .reading th, .reading td { padding:1px 12px 1px 0; text-align:left; font-size:12px; white-space:nowrap; }
 .reading th div { font-weight:400; color:var(--soft); }
 .nicegui-echart, .lanes { touch-action:pan-y; }
-.lanes svg { display:block; width:100%; overflow:visible; }
+.lanes { position:relative; } .lanes svg { display:block; width:100%; overflow:visible; }
 .arena .tools { position:absolute; right:6px; top:6px; z-index:2; } .arena .hands { right:auto; left:6px; }
 .arena .tools .q-btn, .arena .hands .q-field { background:var(--paper); min-width:28px; }
 .arena .tools .q-btn { padding:2px 6px; min-height:28px; }
@@ -200,7 +204,7 @@ button.tile { cursor:pointer; }
 .lanes .bus { stroke:var(--true); stroke-width:1.3; fill:var(--paper); }
 .lanes .busy { fill:var(--true); fill-opacity:.4; }
 .lanes .word { font-family:ui-monospace,"DejaVu Sans Mono",Menlo,Consolas,monospace; font-size:11px; }
-.lanes .small { fill:var(--soft); font-size:10px; }
+.lanes .small { fill:var(--soft); font-size:10px; } .lanes .time { fill:var(--soft); font-size:11px; }
 .lanes .cursor { stroke:var(--ink); stroke-width:1.5; stroke-dasharray:4 3; }
 .body--dark .q-btn--outline.text-primary, .body--dark .q-btn--flat.text-primary { --q-primary:#8ab8ff; }
 .q-tab { min-height:34px; padding:0 10px; }

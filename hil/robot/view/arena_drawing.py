@@ -19,6 +19,9 @@ HEIGHT: Final = 640
 MARGIN: Final = 34
 #: Between two lines of the grid.
 STEPS_M: Final = (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100)
+#: Buttons on the picture take so much of its upper edge; the grid's numbers so much of the left and the lower one.
+TOOLS_PX: Final = 40
+NUMBERS_PX: Final = (38, 18)
 #: An obstacle is taken within this of its edge; a robot that is drawn small within so many pixels.
 GRIP_M: Final = 0.05
 GRIP_PX: Final = 16
@@ -112,12 +115,13 @@ def grid(view: Viewport, seen: VisibleArea) -> str:
     for index in range(int(x0 // step), int(x1 // step) + 2):
         x, _ = view.to_picture(index * step, 0)
         lines.append(f"M{x:.1f} {seen.y:.1f}v{seen.height:.1f}")
-        if x >= seen.x:
+        if seen.x <= x <= seen.x + seen.width - NUMBERS_PX[0] * seen.unit:  # or it is cut
             texts.append((x + 3 * seen.unit, seen.y + seen.height - 5 * seen.unit, index * step))
     for index in range(int(y0 // step), int(y1 // step) + 2):
         _, y = view.to_picture(0, index * step)
         lines.append(f"M{seen.x:.1f} {y:.1f}h{seen.width:.1f}")
-        if y < seen.y + seen.height - 20 * seen.unit:  # or it stands on those along the lower edge
+        # Or it stands on those along the lower edge, or below the buttons.
+        if seen.y + (TOOLS_PX + 12) * seen.unit < y < seen.y + seen.height - 20 * seen.unit:
             texts.append((seen.x + 4 * seen.unit, y - 3 * seen.unit, index * step))
     numbers = "".join(f'<text x="{x:.1f}" y="{y:.1f}">{value:g} m</text>' for x, y, value in texts)
     return f'<g class="grid"><path d="{"".join(lines)}"/>{numbers}</g>'

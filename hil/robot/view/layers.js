@@ -6,8 +6,8 @@ const TELL_MS = 100;
 
 export default {
   template: `<div><slot></slot></div>`,
-  // `above`: so many pixels at the upper edge are taken by buttons; what fits stays below them.
-  props: { extent: Array, above: Number },
+  // So many pixels at the edges are taken by buttons and numbers; what fits stays clear of them.
+  props: { extent: Array, above: Number, below: Number, left: Number },
   mounted() {
     this.fitted = true;
     this.scale = 1;
@@ -42,11 +42,12 @@ export default {
       const [x, y, width, height] = this.extent;
       const element = this.$el;
       this.fitted = true;
-      this.x = x + width / 2;
-      const above = this.above || 0;
-      const room = Math.max(1, element.clientHeight - above);
-      this.scale = Math.min(element.clientWidth / width, room / height) || 1;
-      this.y = y + height / 2 - above / 2 / this.scale;
+      const [above, below, left] = [this.above || 0, this.below || 0, this.left || 0];
+      const wide = Math.max(1, element.clientWidth - left);
+      const high = Math.max(1, element.clientHeight - above - below);
+      this.scale = Math.min(wide / width, high / height) || 1;
+      this.x = x + width / 2 - left / 2 / this.scale;
+      this.y = y + height / 2 + (below - above) / 2 / this.scale;
       this.apply();
     },
     // Zoom about a place of the screen; without one, about the middle.

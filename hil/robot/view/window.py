@@ -5,15 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import isfinite
-from typing import Final
 
 from nicegui import events, ui
 from nicegui.element import Element
 
-from hil.robot.view.arena_drawing import HEIGHT, WIDTH, Point, VisibleArea
-
-#: Buttons on the picture take so much of its upper edge.
-TOOLS_PX: Final = 40
+from hil.robot.view.arena_drawing import HEIGHT, NUMBERS_PX, TOOLS_PX, WIDTH, Point, VisibleArea
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +39,7 @@ class Window(Element, component="layers.js"):
         self.seen = VisibleArea(*extent)
         self._props["extent"] = extent
         self._props["above"] = TOOLS_PX
+        self._props["left"], self._props["below"] = NUMBERS_PX
         self._on_hand = on_hand
         self._on_seen = on_seen
         self.classes("window")

@@ -255,7 +255,8 @@ def test_nothing_is_cut_and_axe_is_content(page: Any, shot: Shot) -> None:
         (Path(folder) / "accessibility.txt").write_text("\n".join(said) + "\n", encoding="utf-8")
 
 
-#: What can be seen and reaches over the right edge of the window or of a panel that does not scroll sideways.
+#: What can be seen and reaches over the right edge of the window or of a panel that does not scroll sideways; words in
+#: pictures that are cut, hidden or too small.
 CUT: Final = """() => { const cut = [], wide = document.documentElement.clientWidth;
   if (document.documentElement.scrollWidth > wide) cut.push("the page scrolls sideways");
   for (const one of document.querySelectorAll(".tile, .q-btn, .q-field, .q-tab, td, th, .value, .head, .chip, h3")) {
@@ -263,6 +264,14 @@ CUT: Final = """() => { const cut = [], wide = document.documentElement.clientWi
     const box = one.getBoundingClientRect(), frame = one.closest(".side")?.getBoundingClientRect();
     if (!box.width) continue;
     if (box.left < -1 || box.right > (frame ? frame.right : wide) + 1) cut.push(one.className + ": " + one.innerText);
+  }
+  const tools = [...document.querySelectorAll(".arena .tools")].map((each) => each.getBoundingClientRect());
+  for (const one of document.querySelectorAll(".arena .grid text, .lanes text")) {
+    if (!one.checkVisibility()) continue;
+    const box = one.getBoundingClientRect(), frame = one.closest(".arena, .lanes").getBoundingClientRect();
+    const hidden = tools.some((each) => box.left < each.right && box.right > each.left && box.top < each.bottom);
+    const whole = box.left >= frame.left - 1 && box.right <= frame.right + 1;
+    if (hidden || !whole || box.height < 10) cut.push(`number or name in a picture: ${one.textContent}`);
   }
   return cut.slice(0, 5); }"""
 

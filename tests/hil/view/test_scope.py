@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,7 +11,7 @@ import pytest
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
 from hil.instruments.timeline import Span, TaskState
 from hil.view.kinds import Draw, SignalKind
-from hil.view.lanes import LEFT, WIDTH, picture, signal_lanes
+from hil.view.lanes import LEFT, TIMES, WIDTH, picture, signal_lanes
 from hil.view.probes import Sample
 from hil.view.words import DecodedWord
 from tests.hil.view.conftest import needs_view
@@ -23,6 +24,7 @@ def panel() -> Any:
     from hil.view.scope import ScopePanel
 
     panel: Any = object.__new__(ScopePanel)
+    panel._width = WIDTH
     panel._cursors = SimpleNamespace(value={"min": 250, "max": 750})
     panel._chart = SimpleNamespace(
         options={}, update=lambda: None, style=lambda _: None, set_visibility=lambda _: None
@@ -111,11 +113,19 @@ def test_bytes_are_characters_or_their_line() -> None:
 def test_lanes_have_their_names_and_the_cursors() -> None:
     kinds = {"GPIO61": SignalKind(Draw.SQUARE, part="gyro <CS>"), "V": SignalKind(Draw.LINE, "m/s")}
     lanes = signal_lanes(kinds, {}, {}, 0, CYCLES_PER_MS)
-    svg, height = picture(lanes, [200.0, 300.0])
+    svg, height = picture(lanes, [200.0, 300.0], 0, CYCLES_PER_MS)
     assert len(lanes) == 1
     assert "gyro &lt;CS&gt;" in svg
     assert svg.count('class="cursor"') == 2
-    assert f"M200.0 0V{height}" in svg
+    assert f"M200.0 0V{height - TIMES}" in svg
+    assert re.findall(r">(\S+ s)</text>", svg) == ["0 s", "0.001 s"]
+
+
+def test_a_narrow_picture_has_the_same_lanes_in_its_own_pixels() -> None:
+    kinds, values = {"s": SignalKind(Draw.SQUARE)}, {"s": [(0, 0.0), (500, 1.0)]}
+    ((_, narrow),) = signal_lanes(kinds, values, {}, 0, 1000, 344)
+    middle = LEFT + (344 - LEFT) / 2
+    assert f"M{LEFT:.1f} 17H{middle:.1f}V4H344.0" in narrow
 
 
 @pytest.mark.parametrize(("turned", "span_s"), [(-100, 2 / 3), (100, 1.5)])
