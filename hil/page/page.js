@@ -269,6 +269,8 @@
     Object.assign(frame, {
       $el: $("window"),
       extent: extent.map((each) => each * PX_PER_M),
+      above: 44, // its buttons
+      below: 30, // its measure
       $emit: (what, value) => (what === "seen" ? looked(value) : what === "shifted" ? follow(false) : undefined),
     });
     for (const name of ["wheel", "down", "move", "up", "cancel"]) frame[name] = frame[name].bind(frame);

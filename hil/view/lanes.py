@@ -45,8 +45,8 @@ def picture(
         parts.append(f'<g transform="translate(0 {row * LANE + 4})"><text x="2" y="15">{title}</text>{axis}{drawn}</g>')
     parts += [f'<path class="cursor" d="M{x:.1f} 0V{height}"/>' for x in places]
     for x, anchor, cycles in ((LEFT, "start", begin), (width, "end", end)):
-        time = f"{seconds(cycles):.6f}".rstrip("0").rstrip(".")
-        parts.append(f'<text class="time" x="{x}" y="{height + 12}" text-anchor="{anchor}">{time} s</text>')
+        time = f"{seconds(cycles):.{3 if seconds(end - begin) >= 0.1 else 6}f} s"
+        parts.append(f'<text class="time" x="{x}" y="{height + 12}" text-anchor="{anchor}">{time}</text>')
     return "".join(parts), height + TIMES
 
 

@@ -118,7 +118,7 @@ def test_lanes_have_their_names_and_the_cursors() -> None:
     assert "gyro &lt;CS&gt;" in svg
     assert svg.count('class="cursor"') == 2
     assert f"M200.0 0V{height - TIMES}" in svg
-    assert re.findall(r">(\S+ s)</text>", svg) == ["0 s", "0.001 s"]
+    assert re.findall(r">(\S+ s)</text>", svg) == ["0.000000 s", "0.001000 s"]
 
 
 def test_a_narrow_picture_has_the_same_lanes_in_its_own_pixels() -> None:
