@@ -147,8 +147,15 @@ class RunningBoard:
             self.board.kernel.run_until(cycles)
 
     def run_for(self, duration_s: float) -> None:
-        """Run for a stretch of virtual time.  Raises ValueError for none, and before it was powered up."""
-        if not 0.0 <= duration_s < inf:
+        """Run for a stretch of virtual time.
+
+        Raises TypeError for what is no number, ValueError for no stretch, and before it was powered up.
+        """
+        try:
+            possible = 0.0 <= duration_s < inf
+        except TypeError:
+            raise TypeError(f"run_for({duration_s!r}): expected seconds, as in run_for(10.0)") from None
+        if not possible:
             raise ValueError(f"run_for({duration_s!r}): expected seconds, 0 or more")
         if not self._booted:
             raise ValueError("the board is not powered up: call boot() first")

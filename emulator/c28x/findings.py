@@ -45,7 +45,7 @@ class Finding:
         return us(self.time_cycles)
 
     def __repr__(self) -> str:
-        where = f" at {self.place}" if self.place else ""
+        where = f" at {_briefly(self.place)}" if self.place else ""
         seen = "in the source" if self.how == "static" else f"{self.task}, {self.time_us / 1e3:.3f} ms, x{self.count}"
         return f"<{self.rule}: {self.object}{where}; {seen}>"
 

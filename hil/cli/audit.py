@@ -18,6 +18,7 @@ from rich.table import Table
 from emulator.rules import RULES
 from hil.cli import own_c, show
 from hil.ending import EXIT_INTERRUPTED
+from hil.reports.excerpt import shown
 
 if TYPE_CHECKING:
     from hil.audit.evidence import Evidence
@@ -238,10 +239,10 @@ def _page(outcome: DemonstrationOutcome) -> Panel:
     ):  # fmt: skip
         if evidence is not None:
             rows.append((name, f"{'seen' if evidence.seen else 'not seen'} ({evidence.by.value}): {evidence.line}"))
-            rows += [
-                ("", f"{finding.place}, task {finding.task}, {finding.time_us / 1e3:.3f} ms, {finding.count} times")
-                for finding in evidence.findings[:5]
-            ]
+            for finding in evidence.findings[:5]:
+                where = shown(finding.place) if finding.place else finding.object
+                when = f"{finding.time_us / 1e3:.3f} ms, {finding.count} times"
+                rows.append(("", f"{where}, task {finding.task}, {when}"))
     if outcome.error:
         rows.append(("error", outcome.error))
     for name, text in rows:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any, Final
 
-from typer.core import TyperCommand, TyperOption
+from typer.core import TyperArgument, TyperCommand, TyperOption
 
 #: A command with more options than this has them in groups.
 MAX_UNGROUPED: Final = 8
+#: Two spaces, behind an empty tag: where all lines below the heading are indented alike, typer takes spaces away.
+INDENT: Final = "[bold][/bold]  "
 #: The groups in their order, and the parameters of all commands that belong to each.
 GROUPS: Final = {
     "Robot and world": (
@@ -45,6 +48,16 @@ class Command(TyperCommand):
         self._grouped = len(options) > MAX_UNGROUPED
         self.help = with_lists(self.help or "")
 
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
+        """What stands behind the command's name in its usage: optional arguments in brackets, `...` for several."""
+        pieces = [self.options_metavar or ""]
+        for each in self.params:
+            if isinstance(each, TyperArgument):
+                name = re.sub(r"[][]|\.\.\.", "", each.metavar or str(each.name).upper())
+                several = f"{name}..." if each.nargs == -1 else name
+                pieces.append(several if each.required else f"[{several}]")
+        return pieces
+
     def get_help_option(self, ctx: Any) -> Any:
         """`--help`, the last one."""
         option = super().get_help_option(ctx)
@@ -60,7 +73,7 @@ def with_lists(text: str) -> str:
         lines = [line for line in paragraph.splitlines() if line.strip()]
         if lines and lines[0].lstrip().startswith("[bold]"):
             # "\b": older versions of typer join the lines of a paragraph that does not begin with it.
-            told.append("\n".join((f"\b{lines[0].strip()}", *(f"  {line.strip()}" for line in lines[1:]))))
+            told.append("\n".join((f"\b{lines[0].strip()}", *(f"{INDENT}{line.strip()}" for line in lines[1:]))))
         elif lines:
             told.append(" ".join(line.strip() for line in lines))
     return "\n\n".join(told)

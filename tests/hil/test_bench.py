@@ -71,6 +71,11 @@ def test_a_time_that_cannot_be_is_told_at_the_call(driven: Bench, duration_s: fl
         driven.run_for(duration_s)
 
 
+def test_a_time_that_is_no_number_is_told_at_the_call(driven: Bench) -> None:
+    with pytest.raises(TypeError, match="expected seconds"):
+        driven.run_for("3")  # type: ignore[arg-type]
+
+
 def test_a_bench_that_is_off_says_so() -> None:
     with pytest.raises(ValueError, match=r"call boot\(\) first"):
         Bench("box").run_for(1.0)
@@ -89,6 +94,7 @@ def test_findings_have_an_index_and_a_line(driven: Bench) -> None:
         assert finding.rule in line
         assert finding.object in line
         assert finding.place is None or str(finding.place.line) in line
+        assert "/" not in line.partition(" at ")[2].partition(";")[0], "the file without its folders"
     assert repr(driven.findings).startswith(f"<{len(driven.findings)} findings")
     assert "MISSION" in repr(driven)
 

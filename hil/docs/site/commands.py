@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 from hil.cli.commands import COMMANDS
+from hil.cli.help import INDENT
 
 _BOLD: Final = re.compile(r"\[bold\](.*?)\[/bold\]")
 _STATUS: Final = re.compile(r"(\d+)  +(.*)")
@@ -53,7 +54,7 @@ def _first(text: str) -> str:
 def _prose(text: str) -> str:
     """Help as Markdown: examples are a block, exit statuses a list, what is bold is."""
     shown: list[str] = []
-    for line in text.replace("\b", "").strip().splitlines():
+    for line in text.replace("\b", "").replace(INDENT, "  ").strip().splitlines():
         bare = line.strip()
         if bare.startswith("hil "):
             while shown and not shown[-1]:

@@ -41,13 +41,32 @@ def test_a_name_belongs_to_one_group_and_some_command_has_it() -> None:
 
 
 def test_examples_and_exit_status_stand_below_each_other_each_on_its_line(helped: str) -> None:
-    lines = [line.strip() for line in helped.splitlines()]
+    written = helped.splitlines()
+    lines = [line.strip() for line in written]
     assert not re.search(r"Examples +hil |Exit status +\d", helped)
     for heading in {"Examples", "Exit status"} & set(lines):
         listed = lines[lines.index(heading) + 1 :]
         listed = listed[: listed.index("")]
         assert listed
+        begin = lines.index(heading) + 1
+        # A column of typer's own, and two more.
+        assert all(line.startswith("   ") for line in written[begin : begin + len(listed)])
         assert all(re.match(r"hil |\d+ ", line) for line in listed), listed
+
+
+@pytest.mark.parametrize(
+    ("name", "usage"),
+    [
+        ("drive", "hil drive [OPTIONS] PORT ORDER..."), ("check", "hil check [OPTIONS] [SCENARIO.toml | FILE...]"),
+        ("rta", "hil rta [OPTIONS] [SHEET]"), ("compare", "hil compare [OPTIONS] LOG LOG"),
+        ("audit", "hil audit [OPTIONS] [ID...]"), ("new", "hil new [OPTIONS] NAME"),
+    ],
+)  # fmt: skip
+def test_the_usage_is_written_as_manual_pages_write_it(
+    name: str, usage: str, capsys: pytest.CaptureFixture[str]
+) -> None:  # fmt: skip
+    assert invoke([name, "--help"]) == 0
+    assert f" Usage: {usage} " in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("name", ["run", "check", "tasks", "diff"])
@@ -62,4 +81,5 @@ def test_the_spellings_of_orders_are_listed(
 
 def test_prose_is_joined_and_lists_are_kept() -> None:
     text = "What it\n  does.\n\n\n\n[bold]Examples[/bold]\n    hil x\n    hil y\n"
-    assert with_lists(text) == "What it does.\n\n\b[bold]Examples[/bold]\n  hil x\n  hil y"
+    indent = "[bold][/bold]  "
+    assert with_lists(text) == f"What it does.\n\n\b[bold]Examples[/bold]\n{indent}hil x\n{indent}hil y"
