@@ -259,7 +259,7 @@ class _Head:
             self._tile("time")
             for title in self._titles(engine.snapshot):
                 self._tile(title)
-            with ui.element("button").classes("tile found").on("click", on_findings).mark("counts"):
+            with ui.element("button").classes("tile").on("click", on_findings).mark("counts"):
                 ui.label("findings").classes("title")
                 self._found = ui.html("none", sanitize=False).classes("value")
             self._pace = self._tile("pace").classes("pace")

@@ -105,7 +105,7 @@ class ScrubBar:
 
     def _jump_button(self, icon: str, direction: int, meaning: str) -> None:
         button = ui.button(icon=icon, on_click=lambda: self.jump(direction))
-        with button.props(f'no-caps dense outline aria-label="{meaning}"').classes("jump"):
+        with button.props(f'no-caps dense outline aria-label="{meaning}"'):
             ui.tooltip(meaning)
 
     @property

@@ -9,14 +9,16 @@ from __future__ import annotations
 from typing import Final
 
 UTILITIES: Final = """
-.w-full { width:100%; } .bg-transparent { background:transparent; } .p-1 { padding:4px; }
+.w-full { width:100%; } .pr-3 { padding-right:12px; } .whitespace-pre-line { white-space:pre-line; }
+.bg-transparent { background:transparent; } .p-1 { padding:4px; }
 .items-center { align-items:center; } .items-start { align-items:flex-start; } .items-end { align-items:flex-end; }
+.items-baseline { align-items:baseline; }
 .no-wrap { flex-wrap:nowrap; } .gap-0 { gap:0; }
 .gap-1 { gap:4px; } .gap-2 { gap:8px; } .gap-3 { gap:12px; } .gap-4 { gap:16px; }
 .gap-x-2 { column-gap:8px; } .gap-x-3 { column-gap:12px; }
 .gap-x-4 { column-gap:16px; } .gap-x-6 { column-gap:24px; } .gap-y-0 { row-gap:0; } .gap-y-1 { row-gap:4px; }
 .w-20 { width:80px; } .w-24 { width:96px; } .w-28 { width:112px; } .w-32 { width:128px; } .w-36 { width:144px; }
-.w-40 { width:160px; } .w-44 { width:176px; } .w-52 { width:208px; } .w-64 { width:256px; }
+.w-40 { width:160px; } .w-44 { width:176px; } .w-52 { width:208px; } .w-56 { width:224px; } .w-64 { width:256px; }
 """
 
 #: The light that was chosen, or the system's, before anything is painted; and the key of STOP, which is also the key

@@ -99,7 +99,7 @@ class TimePanel:
         self._where = WherePanel(NOWHERE)
         ui.label("Moments").classes("head")
         with ui.element("div").classes("scrolled w-full"):
-            self._moments = Rows(("time", "before, or its name"), self._go_to).classes("moments").mark("moments")
+            self._moments = Rows(("time", "before, or its name"), self._go_to).mark("moments")
 
     def _go(self) -> None:
         self._engine.go_to(round(float(self._to.value or 0.0) * SYSCLK_HZ))

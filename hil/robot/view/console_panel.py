@@ -50,7 +50,7 @@ class ConsolePanel:
         self._epoch = line.log.epoch
         self._next = 0
         self._driven = False
-        with ui.row().classes("gap-4 items-center no-wrap w-full driving"):
+        with ui.row().classes("gap-4 items-center no-wrap w-full"):
             self._stick = ui.joystick(
                 color="#2a6bd1", size=120, mode="static", position={"left": "50%", "top": "50%"},
                 on_move=lambda e: self.tele.stick(e.x, e.y), on_end=lambda _: self.tele.rest(),
