@@ -198,7 +198,7 @@ class Runtime:
         #: The types of functions; (function, number of the call) -> what a call through a pointer runs.
         self.signatures: dict[Any, FunctionType] = {}
         self.called_as: dict[tuple[Any, int], Any] = {}
-        self._register_at, self._in_vain, self._driven = register_at, blames_unmodelled, driven
+        self._register_at, self._blames_unmodelled, self._driven = register_at, blames_unmodelled, driven
         #: Checks of library functions that read or write through a pointer.
         self.readers: dict[Any, RuntimeSite] = {}
         #: The users of null pointers so far, their call paths, and the findings about them.
@@ -1077,7 +1077,7 @@ class Runtime:
         """A poll has no more events, or lasts too long: raise, or report it and return the next time limit."""
         site = self.sites[number]
         clock = self.clock
-        if self._in_vain(site.name):
+        if self._blames_unmodelled(site.name):
             return clock.now + self.poll_limit
         if clock.now <= until:
             message = f"{site.name} is polled, but no event is left that could change it: the loop never ends"

@@ -431,7 +431,7 @@ class Dma:
         findings.cause = channel.cause
         try:
             why = self._unreachable(address)
-            if channel.checks.beyond(side, address):
+            if channel.checks.check_object(side, address):
                 if why:
                     return 0
             elif why:

@@ -107,7 +107,7 @@ class TransferChecks:
             object=f"{self._path}.{name}", cause=self._causes.get(name),
         )  # fmt: skip
 
-    def beyond(self, side: str, address: int) -> bool:
+    def check_object(self, side: str, address: int) -> bool:
         """Whether an access has left the object in which its transfer began.  Then report it."""
         region = self._regions.get(side)
         if region is None or region.holds(address):
@@ -131,9 +131,7 @@ class TransferChecks:
         if region is None or region.base != base or findings.places[findings.position.innermost()].kind == POLL:
             return
         does = f"writes {region.name}, which the transfer reads" if write else f"reads {region.name}, which it writes"
-        findings.report(
-            "dma-race", f"{self._path} is still moving words, and the program {does}", object=region.name
-        )
+        findings.report("dma-race", f"{self._path} is still moving words, and the program {does}", object=region.name)
 
     def _signed(self, name: str) -> int:
         word = self._registers[name].value

@@ -149,13 +149,13 @@ class Reach:
             pointers = routine.uses_pointers and self.registers_pointed_at
             if routine.moves or pointers or register.block in routine.written | self._read_with_effect(routine):
                 return True
-        return self.executing(register.block)
+        return self.event_may_change(register.block)
 
     def _read_with_effect(self, routine: _Routine) -> set[str]:
         """The blocks of the registers that the routine reads with a side effect."""
         return {b for b, name in routine.read if not self._board.register(b, name).looked_at}
 
-    def executing(self, block: str) -> bool:
+    def event_may_change(self, block: str) -> bool:
         """Whether an event is scheduled that may change a register of a block."""
         if self._dma_listens():
             return True
@@ -191,7 +191,7 @@ class Reach:
             if getattr(function, "__module__", "") != "hil.testing.guard":
                 yield function
 
-    def foreign(self) -> bool:
+    def has_foreign_event(self) -> bool:
         """Whether an event is scheduled that does not belong to the chip; it may do anything."""
         return any(not str(getattr(c, "__module__", "")).startswith("emulator.") for c in self.waiting())
 

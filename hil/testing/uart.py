@@ -44,7 +44,7 @@ class Uart:
         else:
             pacer = LinePacer(board.clock, board.serial_pins[rx_gpio], baud)
             self._feed, self._pending = pacer.send, lambda: pacer.pending
-        board.serial_pins[tx_gpio].sent.connect(self._hear)
+        board.serial_pins[tx_gpio].sent.connect(self._on_frame)
 
     def send(self, data: bytes, *, gap_s: float = 0.0) -> None:
         """Put bytes on the line: back to back, or with `gap_s` seconds of silence after each."""
@@ -74,7 +74,7 @@ class Uart:
         """Take `count` unread bytes as read."""
         self._read += count
 
-    def _hear(self, frame: SerialFrame) -> None:
+    def _on_frame(self, frame: SerialFrame) -> None:
         byte, stop = received(frame, self._bit_cycles)
         if not stop:
             self.framing_errors += 1

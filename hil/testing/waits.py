@@ -104,7 +104,7 @@ class PollingLoop:
     @property
     def hopeless(self) -> bool:
         """Whether nothing can end the loop any more."""
-        if not self._exits or self._unclear or self._reach.foreign():
+        if not self._exits or self._unclear or self._reach.has_foreign_event():
             return False
         routines = self._reach.routines(self.running)
         if routines is None:
@@ -120,8 +120,8 @@ class PollingLoop:
         """What could have ended it, a sentence each."""
         registers = {register_text(part): part for part in self._exits if isinstance(part, RegisterRef)}
         for text, register in registers.items():
-            executing = self._reach.executing(register.block)
-            quiet = "" if executing else ", and nothing is under way on the chip that could change it"
+            event_may_change = self._reach.event_may_change(register.block)
+            quiet = "" if event_may_change else ", and nothing is under way on the chip that could change it"
             yield f"it waits for {text}, which is {self._value(register)}{quiet}"
         for variable in dict.fromkeys(part for part in self._exits if isinstance(part, Variable)):
             yield from self._about(variable)

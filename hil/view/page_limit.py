@@ -43,7 +43,7 @@ class PageLimit:
         self._came: WeakSet[Client] = WeakSet()
         self._collecting = False
         nicegui_app.on_connect(self._came.add)
-        nicegui_app.on_delete(self._gone)
+        nicegui_app.on_delete(self._on_disconnect)
 
     def __call__(self) -> Any:
         """Called by NiceGUI for a page: build it, or answer that there is no room."""
@@ -59,7 +59,7 @@ class PageLimit:
         left = [client for client in others if client in self._came and not client.has_socket_connection]
         return len(others) - len(left) < MAX_PAGES and len(others) < 2 * MAX_PAGES
 
-    def _gone(self, client: Client) -> None:
+    def _on_disconnect(self, client: Client) -> None:
         """Free the memory of a closed page: it is a cycle, and `hil.collector` makes Python collect rarely."""
         if client in self._came and not self._collecting:
             self._collecting = True  # once for all that go together

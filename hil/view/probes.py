@@ -171,7 +171,7 @@ class Probes:
                 )
             )
         elif name in (lines := _spi_lines(board)):
-            self._stops[name] = self._hear_spi(name, board, *lines[name])
+            self._stops[name] = self._on_spi_word(name, board, *lines[name])
         elif name.startswith("edges "):
             pairs = {wire.name: wire for wire in board.encoder_pins.values()}
             pair = pairs.get(name.removeprefix("edges "))
@@ -204,7 +204,7 @@ class Probes:
             words.append(word)
             self._put(name, float(word.value))
 
-    def _hear_spi(self, name: str, board: Board, letter: str, line_index: int) -> Callable[[], None]:
+    def _on_spi_word(self, name: str, board: Board, letter: str, line_index: int) -> Callable[[], None]:
         bus, spi = board.spi_bus[letter], board.spi[letter]
         devices = {pin: part.device for part in board.parts.values() if (pin := part.pins.get("CS"))}
         transfer = SpiTransfer(
@@ -278,8 +278,7 @@ def pin_number(name: str) -> int:
 
 
 def look_at(run: RewindableRun, name: str) -> VariableReader:
-    """A function that reads a variable, register, field, face of a part or quantity of the world.  Raises ValueError.
-    """
+    """A function that reads a variable, register, field, face of a part or quantity of the world.  Raises ValueError."""
     bench = run.bench
     world = {} if run.stage is None else run.stage.signals
     if name in world:

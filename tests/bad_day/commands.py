@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 from hil.cli import invoke
 from hil.cli.commands import COMMANDS
 from tests.bad_day.figure import Outcome, forked, short
-from tests.hil.waiting import PATIENCE_S
+from tests.hil.waiting import TIMEOUT_S
 
 #: More memory than this, beyond what the tests themselves have, is a file without an end that somebody reads.
 MAX_BYTES = 300 << 20
@@ -132,7 +132,7 @@ def case(seed: int) -> str:
     lay_out()
     given = chosen(seed)
     long = given.command in LONG or "--scenario" in given.given
-    outcome = forked(lambda: invoke(list(given.arguments)), LONG_S if long else PATIENCE_S)
+    outcome = forked(lambda: invoke(list(given.arguments)), LONG_S if long else TIMEOUT_S)
     found = wrong(outcome, long=long)
     return f"{short(given.arguments)}: {', '.join(found)}: {outcome.error[-300:]}" if found else ""
 

@@ -20,7 +20,7 @@ import hil.recording.plot
 import hil.reports.html
 import hil.rta.picture
 import hil.scenarios.running  # noqa: F401
-from tests.hil.waiting import PATIENCE_S
+from tests.hil.waiting import TIMEOUT_S
 
 REPOSITORY = Path(__file__).parents[2]
 
@@ -48,7 +48,7 @@ class Outcome(NamedTuple):
     cpu_s: float
 
 
-def forked(command: Callable[[], int], patience_s: float = PATIENCE_S) -> Outcome:
+def forked(command: Callable[[], int], timeout_s: float = TIMEOUT_S) -> Outcome:
     """Run something in a child that has no input and a limited time; its output is lost."""
     before = int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
     # A pipe: files of the child may be limited.
@@ -63,7 +63,7 @@ def forked(command: Callable[[], int], patience_s: float = PATIENCE_S) -> Outcom
             os.close(write)
             sys.stdout, sys.stderr = os.fdopen(1, "w"), os.fdopen(2, "w")
             signal.signal(signal.SIGALRM, signal.SIG_DFL)
-            signal.setitimer(signal.ITIMER_REAL, patience_s)
+            signal.setitimer(signal.ITIMER_REAL, timeout_s)
             status = command()
             sys.stdout.flush()
             sys.stderr.flush()

@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 from tests.bad_day.figure import REPOSITORY, short
-from tests.hil.waiting import PATIENCE_S
+from tests.hil.waiting import TIMEOUT_S
 
 #: `main` in the place of the robot's, which never gives the CPU away.
 NEVER = "#include \"F28x_Project.h\"\nvolatile int Flag = 0;\nvoid main(void) { while (Flag == 0) ; }\n"
@@ -80,7 +80,7 @@ def case(seed: int) -> str:
         begun_s = _cpu_s(process.pid)
         os.kill(process.pid, number)  # Popen would reap one that has ended, and `wait4` asks what it has used
         signal.signal(signal.SIGALRM, lambda *_: process.kill())
-        signal.setitimer(signal.ITIMER_REAL, PATIENCE_S)
+        signal.setitimer(signal.ITIMER_REAL, TIMEOUT_S)
         _, waited, used = os.wait4(process.pid, 0)
         signal.setitimer(signal.ITIMER_REAL, 0)
         process.returncode = status = os.waitstatus_to_exitcode(waited)

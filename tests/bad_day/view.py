@@ -17,7 +17,7 @@ from urllib.request import urlopen
 
 from tests.bad_day.figure import REPOSITORY
 from tests.hil.view.conftest import View
-from tests.hil.waiting import PATIENCE_S
+from tests.hil.waiting import TIMEOUT_S
 
 CALLERS = 20
 #: So often twenty pages come and go; in the cases of every run once.
@@ -146,7 +146,7 @@ class _Visit:
         self.status, self.said = 0, ""
         self._updates = 0
         self._known = asyncio.Event()
-        self._client = socketio.AsyncClient(reconnection=False, request_timeout=PATIENCE_S)
+        self._client = socketio.AsyncClient(reconnection=False, request_timeout=TIMEOUT_S)
         self._client.on("update", self._updated)
         self._client.on("run_javascript", self._asked)
 
@@ -159,7 +159,7 @@ class _Visit:
             query = f"client_id={found[1]}&next_message_id=0&implicit_handshake=true&tab_id={id(self)}&document_id=1"
             await self._client.connect(
                 f"{self._address}?{query}", socketio_path="/_nicegui_ws/socket.io", transports=["websocket"],
-                wait_timeout=PATIENCE_S,
+                wait_timeout=TIMEOUT_S,
             )  # fmt: skip
         return self
 
@@ -169,7 +169,7 @@ class _Visit:
         A page that is asked to be loaded anew is, as by a browser: a slow computer has given it up before it came.
         """
         with contextlib.suppress(TimeoutError):
-            async with asyncio.timeout(PATIENCE_S):
+            async with asyncio.timeout(TIMEOUT_S):
                 await self._known.wait()
                 while self._updates < 3 and self.status == 200:
                     await self.end()

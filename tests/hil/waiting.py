@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 #: A test that waits longer has failed; nothing is asserted about times below it.
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 #: Between two looks.  What is waited for sends no event to a test.
 SAMPLE_S = 0.02
 
@@ -21,7 +21,7 @@ def rest() -> None:
 
 def eventually(look: Callable[[], T], turn: Callable[[], object] = rest, *, what: str = "") -> T:
     """Take turns until there is something to see, and return it."""
-    limit = time.monotonic() + PATIENCE_S
+    limit = time.monotonic() + TIMEOUT_S
     while not (seen := look()):
         assert time.monotonic() < limit, f"it did not happen: {what}"
         turn()

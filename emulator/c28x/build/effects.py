@@ -48,7 +48,7 @@ def operands(b: Builder, *builds: Callable[[], Operand]) -> list[Operand]:
     effects: list[list[Stmt]] = []
     changeable = _Changeable()
     for build in builds:
-        before, value = b.apart(build)
+        before, value = b.collect_effects(build)
         if before:
             for i in changeable.by(before):
                 values[i] = unchanged(b, values[i], before)

@@ -142,7 +142,7 @@ def logic(b: Builder, op: str, builds: Sequence[Callable[[], Expr]], where: Wher
     """`and` / `or`.  An operand with effects is evaluated in a branch of its own."""
     values: list[Expr] = []
     for i, build in enumerate(builds):
-        effects, value = b.apart(build)
+        effects, value = b.collect_effects(build)
         condition(value)
         if effects and i:
             return _logic_in_steps(b, op, values, (effects, value), builds[i + 1 :], where)
@@ -162,7 +162,7 @@ def _logic_in_steps(
     effects, value = last
     so_far = Logic(INT, op, values, where=where) if len(values) > 1 else Not(INT, Not(INT, values[0]), where=where)
     place = b.temporary(so_far, where)
-    with b.aside() as branch:
+    with b.collect() as branch:
         b.out.extend(effects)
         others = logic(b, op, [lambda: value, *rest], where) if rest else Not(INT, Not(INT, value), where=where)
         b.emit(Assign(where, place, others))
@@ -176,14 +176,14 @@ def conditional(
 ) -> Expr:  # fmt: skip
     """`test ? then : otherwise`: one of the two is evaluated, with its effects."""
     condition(test)
-    first, a = b.apart(then)
-    second, c = b.apart(otherwise)
+    first, a = b.collect_effects(then)
+    second, c = b.collect_effects(otherwise)
     a, c = single(a), single(c)
     ctype = _common(b, a, c, where)
     a, c = convert(b, a, ctype), convert(b, c, ctype)
     if ctype == VOID:
         for effects, value in ((first, a), (second, c)):
-            with b.aside() as branch:
+            with b.collect() as branch:
                 evaluate(b, value)
             effects.extend(branch)
         b.emit(If(where, test, first, second))

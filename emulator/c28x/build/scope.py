@@ -165,7 +165,7 @@ class Builder:
         self.out.append(statement)
 
     @contextmanager
-    def aside(self) -> Iterator[list[Stmt]]:
+    def collect(self) -> Iterator[list[Stmt]]:
         """Collect statements apart from `out`: those of a branch, or the effects of an operand."""
         outer, self.out = self.out, []
         try:
@@ -173,9 +173,9 @@ class Builder:
         finally:
             self.out = outer
 
-    def apart(self, build: Callable[[], T]) -> tuple[list[Stmt], T]:
+    def collect_effects(self, build: Callable[[], T]) -> tuple[list[Stmt], T]:
         """The effects of `build`, collected apart, and the value that it returns."""
-        with self.aside() as effects:
+        with self.collect() as effects:
             value = build()
         return effects, value
 
@@ -197,7 +197,7 @@ class Builder:
         self.declared = set()
         self.depth += 1
         self.loops += loop
-        with self.aside() as statements:
+        with self.collect() as statements:
             yield statements
         self.depth -= 1
         self.loops -= loop

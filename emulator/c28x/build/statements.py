@@ -137,12 +137,12 @@ def chain(b: Builder, links: Sequence[IfBranch], otherwise: Callable[[], None] |
     parts: list[tuple[Where, list[Stmt], Expr, list[Stmt]]] = []
     for i, link in enumerate(links):
         b.chained = outer + (i if nested else 2)
-        effects, value = b.apart(link.test)
+        effects, value = b.collect_effects(link.test)
         condition(value)
-        with b.aside() as then:
+        with b.collect() as then:
             link.then()
         parts.append((link.where, effects, value, then))
-    with b.aside() as rest:
+    with b.collect() as rest:
         if otherwise is not None:
             otherwise()
     b.chained, b.loops = outer, loops
@@ -176,9 +176,9 @@ def loop(
     b: Builder, test: Callable[[], Expr] | None, body: Callable[[], None], step: Callable[[], None] | None, where: Where
 ) -> None:
     """`while`, or a general `for`: `test` (None: no end), `body` as a block, then `step`, after `continue` too."""
-    effects, value = b.apart(test) if test is not None else ([], Const(INT, 1, where=where))
+    effects, value = b.collect_effects(test) if test is not None else ([], Const(INT, 1, where=where))
     condition(value)
-    with b.aside() as steps:
+    with b.collect() as steps:
         if step is not None:
             step()
     with b.block(where, loop=True) as inner:
@@ -203,7 +203,7 @@ def do_while(b: Builder, body: Callable[[], None], test: Callable[[], Expr], whe
     """`do`: the test comes after the body, and after `continue`."""
     with b.block(where, loop=True) as inner:
         body()
-    effects, value = b.apart(test)
+    effects, value = b.collect_effects(test)
     condition(value)
     if not effects:
         b.emit(While(where, value, inner, first=False))

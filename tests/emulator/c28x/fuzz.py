@@ -358,9 +358,9 @@ def failures(seeds: range, language: str) -> Iterator[tuple[int, Failure]]:
             yield seed, failure
 
 
-def smallest(text: str, language: str, failure: Failure, patience: int = 600) -> str:
+def smallest(text: str, language: str, failure: Failure, max_tries: int = 600) -> str:
     """A shorter text with the same failure: lines, then tokens taken away as long as it stays."""
-    tries = patience
+    tries = max_tries
     for split in (lambda t: t.splitlines(keepends=True), TOKEN.findall):
         parts = split(text)
         size = max(1, len(parts) // 2)

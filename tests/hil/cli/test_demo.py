@@ -21,7 +21,7 @@ from hil.machine import Setup
 from hil.terminal.app import TerminalApp
 from hil.terminal.robot import EmulatedRobot
 from tests.hil.scripted_machine import ScriptedMachine
-from tests.hil.waiting import PATIENCE_S
+from tests.hil.waiting import TIMEOUT_S
 
 REPOSITORY = Path(__file__).parents[3]
 
@@ -68,10 +68,10 @@ def test_in_the_browser_it_drives_until_ctrl_c() -> None:
         assert process.stdout is not None
         address = process.stdout.readline().rpartition(" ")[2].strip()
         assert re.fullmatch(r"http://127\.0\.0\.1:\d+/", address)
-        with urllib.request.urlopen(address, timeout=PATIENCE_S) as page:
+        with urllib.request.urlopen(address, timeout=TIMEOUT_S) as page:
             assert page.status == 200
         process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=PATIENCE_S)
+        out, err = process.communicate(timeout=TIMEOUT_S)
     assert (process.returncode, "Traceback" in err) == (0, False), err
     assert out.splitlines()[-1].startswith("virtual time ")
 
@@ -118,7 +118,7 @@ def test_hil_run_says_what_to_do_with_its_port(capsys: pytest.CaptureFixture[str
         assert process.stdout.readline().startswith("port: ")
         told = [process.stdout.readline() for _ in RUN.NEXT]
         process.send_signal(signal.SIGINT)
-        out, _ = process.communicate(timeout=PATIENCE_S)
+        out, _ = process.communicate(timeout=TIMEOUT_S)
     assert "virtual time" in out
     assert all("{port}" not in line for line in told)
     # What it says can be done: the commands are understood.

@@ -59,7 +59,7 @@ PLACE: Final = re.compile(r"[^:\n]+:[1-9]\d*(:[1-9]\d*)?: \S")
 RUN_S: Final = 2.4
 EXECUTED: Final = 12_000_000
 #: Processor seconds that no case takes; a hang takes more.
-PATIENCE_S: Final = 120.0
+TIMEOUT_S: Final = 120.0
 
 _CONSTANTS: Final = ("0", "1", "-1", "2", "3", "7", "100", "255", "32767", "65535", "100000")
 _SWAPPED: Final = {
@@ -165,14 +165,14 @@ def _swapped_arguments(rng: random.Random, text: str, language: str) -> str:
 
 
 @contextmanager
-def _patience() -> Iterator[None]:
-    """TooLong for what takes `PATIENCE_S` of the processor."""
+def _time_limit() -> Iterator[None]:
+    """TooLong for what takes `TIMEOUT_S` of the processor."""
 
     def over(_number: int, _frame: FrameType | None) -> None:
         raise TooLong
 
     before = signal.signal(signal.SIGVTALRM, over)
-    signal.setitimer(signal.ITIMER_VIRTUAL, PATIENCE_S)
+    signal.setitimer(signal.ITIMER_VIRTUAL, TIMEOUT_S)
     try:
         yield
     finally:
@@ -230,7 +230,7 @@ def write(report: Report) -> None:
 def failure(seed: int, language: str) -> str:
     """What goes wrong with the case of a seed: the exception and its innermost place; "" if nothing does."""
     name, text = mutant(seed, language)
-    with TemporaryDirectory() as folder, patch("sys.stdout", StringIO()), _patience():
+    with TemporaryDirectory() as folder, patch("sys.stdout", StringIO()), _time_limit():
         file = Path(folder) / f"{name}.{language}"
         file.write_text(text, encoding="utf-8")
         run: Callable[[], list[str]] = (lambda: _robot(name, file)) if language == "py" else (lambda: _program(file))

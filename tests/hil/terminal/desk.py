@@ -13,7 +13,7 @@ from typing import Any
 from textual.pilot import Pilot
 
 from hil.terminal.app import TerminalApp
-from tests.hil.waiting import PATIENCE_S
+from tests.hil.waiting import TIMEOUT_S
 
 
 class FarEnd:
@@ -54,7 +54,7 @@ class FarEnd:
 
 async def becomes(pilot: Pilot[Any], condition: Callable[[], bool]) -> None:
     """`tests.hil.waiting.eventually` while an app runs."""
-    limit = time.monotonic() + PATIENCE_S
+    limit = time.monotonic() + TIMEOUT_S
     while not condition():
         assert time.monotonic() < limit, "it did not happen:\n" + "\n".join(screen(pilot.app))
         await pilot.pause(0.02)

@@ -22,7 +22,7 @@ import pytest
 from hil.machine import Setup
 from hil.terminal.run import run_terminal
 from tests.hil.terminal.desk import FarEnd
-from tests.hil.waiting import PATIENCE_S, rest
+from tests.hil.waiting import TIMEOUT_S, rest
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
 
@@ -75,7 +75,7 @@ class Terminal:
         os.write(self.master, keys)
 
     def until(self, condition: Callable[[str], object]) -> None:
-        limit = time.monotonic() + PATIENCE_S
+        limit = time.monotonic() + TIMEOUT_S
         while not condition(self.text):
             assert time.monotonic() < limit, f"it did not happen:\n{self.text}"
             assert self.process.poll() is None, f"it ended:\n{self.text}"
@@ -83,7 +83,7 @@ class Terminal:
 
     def ended(self) -> int:
         """Wait for the program and give its status."""
-        limit = time.monotonic() + PATIENCE_S
+        limit = time.monotonic() + TIMEOUT_S
         while self.process.poll() is None:
             assert time.monotonic() < limit, "it does not end"
             if self.master >= 0:

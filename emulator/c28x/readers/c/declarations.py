@@ -225,7 +225,7 @@ class CDeclarationReader:
 
     def initial(self, reader: CExpressionReader, variable: Variable, given: Item | Braces) -> list[Expr]:
         """The initial values of an object.  Raises SourceError for a value that is not constant."""
-        effects, values = reader.b.apart(lambda: build.values(reader.b, variable.ctype, given))
+        effects, values = reader.b.collect_effects(lambda: build.values(reader.b, variable.ctype, given))
         for i, value in enumerate(values):
             if not effects and not build.is_constant(value) and (number := build.constant_value(value)) is not None:
                 value = values[i] = Const(value.ctype, number, where=value.where)
@@ -374,7 +374,7 @@ class FunctionReader:
         """Fill in `function.body` and `function.locals`."""
         if self.function.given is not None:
             self.b.scope[VA_GIVEN] = self.function.given
-        with self.b.aside() as self.function.body:
+        with self.b.collect() as self.function.body:
             self.statements.statements(self.node.body.block_items)
 
     def local(self, node: c_ast.Node) -> None:

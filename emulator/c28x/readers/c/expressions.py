@@ -139,7 +139,7 @@ class CExpressionReader:
 
     def constant_expression(self, node: c_ast.Node) -> Expr:
         """An expression that must not have effects: a length, a label.  Raises SourceError if it has any."""
-        effects, value = self.b.apart(lambda: self.value(node))
+        effects, value = self.b.collect_effects(lambda: self.value(node))
         if effects:
             raise SourceError.at(node.coord, "this must be a constant: it has an effect")
         return value
@@ -327,7 +327,7 @@ class CExpressionReader:
         else:
             use, self.use = self.use, _unused
             try:
-                _, place = self.b.apart(lambda: self.place(inner))
+                _, place = self.b.collect_effects(lambda: self.place(inner))
             finally:
                 self.use = use
             if isinstance(place, LValue) and place.bits is not None:
@@ -383,7 +383,7 @@ class CExpressionReader:
         effects: list[Any] = []
 
         def right() -> Expr:
-            before, value = self.b.apart(lambda: self.value(node.rvalue))
+            before, value = self.b.collect_effects(lambda: self.value(node.rvalue))
             effects.extend(before)
             self.b.out.extend(before)
             return value

@@ -185,7 +185,7 @@ class CStatementReader:
         An assignment of a constant always was.  One of another value was if it is in an `if`, has no parentheses of its
         own, and no branch uses the target.  A local that gets the result of a function may be used later: it was not.
         """
-        effects, value = self.b.apart(lambda: self.expressions.value(node.rvalue))
+        effects, value = self.b.collect_effects(lambda: self.expressions.value(node.rvalue))
         if not effects and build.constant_value(value) is not None:
             return True
         if not branches or isinstance(node, Parenthesised):
@@ -266,7 +266,7 @@ class CStatementReader:
             return None
         if _declares(limit):
             return None
-        effects, stop = self.b.apart(lambda: self.expressions.value(limit))
+        effects, stop = self.b.collect_effects(lambda: self.expressions.value(limit))
         return (limit, step) if not effects and isinstance(stop.ctype, IntType) else None
 
     def number(self, node: c_ast.Node) -> int | None:
@@ -349,7 +349,7 @@ class CStatementReader:
         """One case.  A `break` at its end ends it; without one it falls through to the case at `behind`."""
         b = self.b
         ended = False
-        with b.aside() as body:
+        with b.collect() as body:
             for i, statement in enumerate(statements):
                 if isinstance(statement, c_ast.Break):
                     ended = True

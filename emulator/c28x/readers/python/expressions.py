@@ -286,7 +286,7 @@ class PythonExpressionReader:
             return place[0]
 
         def right() -> Expr:
-            before, value = self.b.apart(lambda: self.wanted(source, place[0].ctype))
+            before, value = self.b.collect_effects(lambda: self.wanted(source, place[0].ctype))
             effects.extend(before)
             self.b.out.extend(before)
             return value
@@ -381,7 +381,7 @@ class PythonExpressionReader:
 
     def measured(self, node: ast.expr) -> CType:
         """The type of the operand of `sizeof`; the operand is not evaluated."""
-        _, place = self.b.apart(lambda: build.complete(self.place(node)))
+        _, place = self.b.collect_effects(lambda: build.complete(self.place(node)))
         if isinstance(place, LValue) and place.bits is not None:
             raise self.error(node, "a bit-field has no size")
         return place.ctype

@@ -32,7 +32,7 @@ class PythonStatementReader:
 
     def read(self, node: ast.FunctionDef) -> None:
         """Fill in `function.body` and `function.locals`."""
-        with self.b.aside() as self.function.body:
+        with self.b.collect() as self.function.body:
             self.statements(node.body)
 
     def statements(self, body: list[ast.stmt]) -> None:
@@ -147,7 +147,7 @@ class PythonStatementReader:
         variable.initialised = source is not None
         if source is None:
             return
-        effects, values = self.b.apart(lambda: self.expressions.initial(variable.ctype, source))
+        effects, values = self.b.collect_effects(lambda: self.expressions.initial(variable.ctype, source))
         for value in values:
             if effects or not build.is_constant(value):
                 raise self.error(source, f"the initial value of {variable.declaration.name} is not a constant")
@@ -185,7 +185,7 @@ class PythonStatementReader:
         if len(args) > 1:
             start = self.expressions.value(args[0])
         limit = args[1] if len(args) > 1 else args[0]
-        before, stop = self.b.apart(lambda: self.expressions.value(limit))
+        before, stop = self.b.collect_effects(lambda: self.expressions.value(limit))
         if before:  # it is evaluated again for every turn
             raise self.error(limit, "this limit of range has too many operators: use a local for it")
         build.for_range(self.b, counter, start, stop, step, lambda: self.statements(node.body), where)

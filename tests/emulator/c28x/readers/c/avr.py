@@ -20,7 +20,7 @@ from typing import Final
 _SIMAVR: Final = "/usr/include/simavr/avr"
 MCU: Final = "atmega1284p"
 #: A program that has not ended by then never will: its own tests of time are the simulator's.
-PATIENCE_S: Final = 60
+TIMEOUT_S: Final = 60
 
 _CONSOLE: Final = """
 #include <avr/io.h>
@@ -88,7 +88,7 @@ def _compile(folder: str, units: Sequence[str], optimise: str) -> subprocess.Com
         "-fno-strict-aliasing", "-w", "-Dinterrupt=", "-Wl,--undefined=_mmcu,--section-start=.mmcu=0x910000",
         "-o", "program.elf", *units,
     ]  # fmt: skip
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
 
 
 def results(
@@ -114,7 +114,7 @@ def results(
             raise DoesNotCompile(compiled.stderr)
         ran = subprocess.run(
             ["simavr", "-m", MCU, "-f", "8000000", "program.elf"], cwd=folder, capture_output=True, text=True,
-            timeout=PATIENCE_S, check=False, errors="replace",
+            timeout=TIMEOUT_S, check=False, errors="replace",
         )  # fmt: skip
     found = [int(digits, 16) for digits in _VALUE.findall(ran.stdout + ran.stderr)]
     if len(found) != len(values):
