@@ -278,7 +278,7 @@ def pin_number(name: str) -> int:
 
 
 def look_at(run: RewindableRun, name: str) -> VariableReader:
-    """A function that reads a variable, register, field, face of a part or quantity of the world.  Raises ValueError."""
+    """The function that reads a variable, register, field, face or quantity of the world.  Raises ValueError."""
     bench = run.bench
     world = {} if run.stage is None else run.stage.signals
     if name in world:
