@@ -191,11 +191,12 @@ heater follows a sensor that is dead.
 The variable keeps its last value, and nothing in it says how old it is. `hil check FILE... --silence` finds this. It
 runs a whole program a second time, three times as long as usual, and cuts serial lines and I2C parts off; a source may
 also be silent by itself. It follows each value with its time of arrival from the register or mailbox where it came in,
-through objects, parameters and results, to the statement that writes the output (a compare value, a DAC, a pin that is
-switched under a test of the value).
+through objects, parameters and results, also to an object through a pointer, to the statement that writes the output (a
+compare value, a DAC, a pin that is switched under a test of the value or by `GPIO_WritePin`).
 
 It reports the statement that still writes a value other than 0 when the source has been silent for at least ten of its
-longest intervals so far, until the end of the silence or of the run. If that statement only passes on a parameter, it
+longest intervals so far, until the end of the silence or of the run. A value of a part on the I2C is also reported if
+it is used again after a pause: then no test of its age made the pause. If that statement only passes on a parameter, it
 reports the call that chooses the value. An object that has got a constant no longer contains an old value.
 
 A program that tests the age with a limit longer than the run is reported too: run it longer (`--for`). If it is right

@@ -869,7 +869,8 @@ interrupt routine such a loop is reported, because nothing interrupts the routin
 
 A program may wait for a button, a byte or an interrupt: `hil check` makes that a note. It stays an error if only
 interrupt routines could end the wait and none of them can run (see `not-connected`), and if a part on the I2C has sent
-no acknowledgment and the loop does not look at `NACK`.
+no acknowledgment and the loop does not look at `NACK`. `hil check FILE... --silence` runs the program with parts on the
+I2C that no longer answer from the middle of the run on, and so finds waits that hang only then.
 
 **Fix:** give each wait a limit (a count or a time) and handle the time-out. Check that the event is configured before
 the wait begins.

@@ -96,7 +96,7 @@ def check(
     silence: Annotated[
         bool | None,
         typer.Option("--silence", help="Run driver files again, longer, with silent serial lines and I2C parts: find "
-                     "outputs that follow old values."),
+                     "outputs that follow old values, and waits that hang."),
     ] = None,
     fail_on: Annotated[
         str | None,

@@ -8,11 +8,12 @@ the program then goes on, to the end of the silence or of the run, with a value 
 not check its age, or the check has no effect.
 
 Modelled
-    Values that go through objects, parameters, results and locals; a pin that is set or cleared under a test of them.
+    Values that go through objects, parameters, results and locals, also to an object through a pointer parameter; a pin
+    that is set or cleared under a test of them, or by `GPIO_WritePin`.
     An object that gets a constant has no age any more: that is how a program forgets what is too old.
 Not modelled
-    Pointers, elements of arrays apart, the DMA.  A local that is given a value from elsewhere on one of its ways has no
-    age.  An output that is 0 moves nothing.
+    Values that are read through a pointer, elements of arrays apart, the DMA.  A local that is given a value from
+    elsewhere on one of its ways has no age.  An output that is 0 moves nothing.
 """
 
 from __future__ import annotations
@@ -22,8 +23,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
+from emulator.c28x.ctypes import PointerType
 from emulator.c28x.findings import Finding
 from emulator.c28x.memory import Object, Pointer
 from emulator.c28x.sites import Place, frames
@@ -36,6 +38,7 @@ from emulator.c28x.tree import (
     Const,
     CopyStruct,
     Declare,
+    Evaluate,
     Expr,
     For,
     Function,
@@ -49,9 +52,21 @@ from emulator.c28x.tree import (
     Switch,
     Variable,
 )
-from emulator.c28x.tree_queries import bare, blocks, children, parts, register_text, roots, statements, within
+from emulator.c28x.tree_queries import (
+    bare,
+    blocks,
+    children,
+    parts,
+    register_text,
+    roots,
+    source_text,
+    statements,
+    variables,
+    within,
+)
 from emulator.clock import CYCLES_PER_MS
 from emulator.registers.cell import Cell
+from hil.board import Board
 from hil.drivers.roles import Roles
 from hil.image import Build, Image
 
@@ -63,6 +78,8 @@ _INPUT: Final = re.compile(
 #: Registers that act on the outside: a level, and a pin.
 _LEVEL: Final = re.compile(r"EPwm\w*\.CMP[AB]$|Dac\w*\.DACVALS$|ECap\w*\.(CAP2|CAP4)$")
 _PIN: Final = re.compile(r"GpioDataRegs\.GP[A-F](SET|CLEAR|DAT)$")
+#: The register that TI's `GPIO_WritePin` writes for a level of 1.
+_SET: Final = tuple(f"GpioDataRegs.GP{port}SET" for port in "ABCDEF")
 #: A value is old after this many times the longest former pace.  A program that tolerates two or three lost values
 #: waits for a shorter time.
 _PACES: Final = 10
@@ -76,6 +93,14 @@ Origin = tuple[str, "int | str | None"]
 _NOTHING: Final[frozenset[Origin]] = frozenset()
 #: Source -> the cycle at which it gave the data in a value.
 Ages = dict[str, int]
+
+
+class Output(NamedTuple):
+    """What acts on the outside: the registers that it may write, its value, and its text in a report."""
+
+    registers: tuple[str, ...]
+    value: Expr
+    text: str
 
 
 class ValueSources:
@@ -101,24 +126,25 @@ class ValueSources:
                     case For(variable=LValue(root=Variable() as root), start=start):
                         self._assigned.setdefault(root, []).append(start)
 
-    def outputs(self) -> Iterator[tuple[Assign, Function, tuple[Expr, ...]]]:
-        """The assignments to registers that act on the outside."""
+    def outputs(self) -> Iterator[tuple[Output, tuple[Expr, ...]]]:
+        """The statements that act on the outside, each with the tests around it."""
         for found in self.at.values():
-            for s, function, tests in found:
-                if isinstance(s, Assign) and isinstance(s.target, RegisterRef) and _moves(s.target):
-                    yield s, function, tests
+            for s, _, tests in found:
+                output = _output(s)
+                if output is not None:
+                    yield output, tests
 
-    def used(self, s: Assign, tests: tuple[Expr, ...], calls: list[tuple[Place, str]]) -> frozenset[Origin]:
+    def used(self, output: Output, tests: tuple[Expr, ...], calls: list[tuple[Place, str]]) -> frozenset[Origin]:
         """The inputs of an output: those of its value, or for a constant value those of the tests around it."""
-        if not isinstance(bare(s.value), Const):
-            return self.origins(s.value, calls)
-        if not isinstance(s.target, RegisterRef) or not _PIN.match(_name(s.target)):
+        if not isinstance(bare(output.value), Const):
+            return self.origins(output.value, calls)
+        if not _PIN.match(output.registers[0]):
             return _NOTHING
         return frozenset().union(*(self.origins(test, calls) for test in tests))
 
-    def chosen(self, s: Assign, tests: tuple[Expr, ...], calls: list[tuple[Place, str]]) -> int:
+    def chosen(self, output: Output, tests: tuple[Expr, ...], calls: list[tuple[Place, str]]) -> int:
         """How many calls up the value of an output is chosen.  Functions in between only pass it on."""
-        if self.used(s, tests, []):
+        if self.used(output, tests, []):
             return 0
         for depth, (place, callee) in enumerate(calls, 1):
             at = (s for s, _, _ in self.at.get((place.file, place.line), ()))
@@ -133,6 +159,8 @@ class ValueSources:
             case Assign(target=LValue(root=Variable() as root) as target, value=value):
                 if root.declaration.path == path and (target.indices or target.words == word):
                     return self.origins(value, calls)
+            case Assign(target=LValue(root=Expr()), value=value):
+                return self.origins(value, calls)  # through a pointer: the object that was written is its target
             case CopyStruct(
                 target=LValue(root=Variable() as root, indices=[]) as target,
                 source=LValue(root=Variable() as source) as taken,
@@ -219,6 +247,9 @@ class ValueSources:
                         variable=root, value=Expr() as value
                     ):  # fmt: skip
                         everything.setdefault(root.declaration.path, set()).update(_mentioned(value))
+                    case Assign(target=LValue(root=Expr() as pointer), value=value):
+                        for v in variables(parts(pointer)):
+                            everything.setdefault(f"*{v.declaration.path}", set()).update(_mentioned(value))
                     case CopyStruct(target=LValue(root=Variable() as root), source=LValue(root=Variable() as source)):
                         everything.setdefault(root.declaration.path, set()).add(source.declaration.path)
                     case Return(value=Expr() as value):
@@ -227,13 +258,16 @@ class ValueSources:
                 if isinstance(p, Call):
                     for argument, parameter in zip(p.arguments, p.function.parameters, strict=False):
                         everything.setdefault(parameter.declaration.path, set()).update(_mentioned(argument))
+                        if isinstance(parameter.ctype, PointerType):
+                            for given in _pointed(argument):
+                                everything.setdefault(given, set()).add(f"*{parameter.declaration.path}")
                     if p.function.name == "Mailbox_pend":
                         for inner in (q for a in p.arguments for q in parts(a)):
                             if isinstance(inner, AddressOf) and isinstance(inner.lvalue.root, Variable):
                                 everything.setdefault(inner.lvalue.root.declaration.path, set()).add("=Mailbox")
         used: set[str] = set()
-        for s, _, tests in self.outputs():
-            for e in (s.value, *tests):
+        for output, tests in self.outputs():
+            for e in (output.value, *tests):
                 used |= _mentioned(e)
         waiting = list(used)
         while waiting:
@@ -263,6 +297,8 @@ class SourceTracking:
     last: int = 0
     uses: int = 0
     value: int = 0
+    #: Whether the program asks for the values: the source is a part on an I2C.
+    asked: bool = False
     #: (when it came in, when it was last used, how often, what was written, the pace before it): the oldest one.
     oldest: tuple[int, int, int, int, int] | None = None
     #: The objects that carried the value here.
@@ -275,12 +311,22 @@ class SourceTracking:
             if birth > self.birth:
                 self.pace = max(self.pace, birth - self.birth)
             self.birth, self.new, self.uses = birth, self.new + 1, 0
+        elif self.oldest is None and value and self.outlived() and now - self.last > _LOST * self.pace:
+            self.oldest = birth, now, self.uses, value, self.pace
         self.last, self.value = now, value
         self.uses += 1
 
     def is_in_use(self, now: int) -> bool:
         """Whether the present value acts on the outside and is still in use."""
         return self.new >= _NEW and bool(self.value) and now - self.last <= _LOST * self.pace
+
+    def outlived(self) -> bool:
+        """Whether the program asks for the values itself, and has used one for too long.
+
+        If such a value is used again after a pause, no test of its age made the pause.
+        """
+        long = self.last - self.birth >= _PACES * self.pace > 0 and self.uses > _LOST
+        return self.asked and self.new >= _NEW and long
 
     def close_use(self, now: int) -> None:
         """The use of the present value is over.  Note it if it was too old and used to the end."""
@@ -300,6 +346,10 @@ class AgeWatch:
         self._clock = image.board.clock
         self._ages: dict[tuple[str, int], Ages] = {}
         self._read: dict[str, int] = {}
+        #: What `_sources` has found: by object, word, statement and calls.
+        self._written: dict[tuple[Any, ...], tuple[frozenset[Origin], bool]] = {}
+        #: What `_outputs_of` has found: by register, statement and calls.
+        self._outputs: dict[tuple[Any, ...], list[tuple[str, frozenset[Origin], tuple[Place, ...]]]] = {}
         #: The words of the last message that was taken, and the statement that took it.  Its end also writes them.
         self._laid: set[tuple[str, int]] = set()
         self._laid_at = 0
@@ -313,7 +363,7 @@ class AgeWatch:
             block, register = name.split(".", 1)
             with suppress(KeyError, AttributeError):
                 image.board.register(block, register).tap(self._input, reads=True)
-        for name in {_name(s.target) for s, _, _ in flow.outputs() if isinstance(s.target, RegisterRef)}:
+        for name in {name for output, _ in flow.outputs() for name in output.registers}:
             block, register = name.split(".", 1)
             image.board.register(block, register).tap(self._output)
 
@@ -334,21 +384,33 @@ class AgeWatch:
         places = [self._findings.places[at] for at, _ in frames(position.at, position.calls)]
         return [(outer, inner.function) for inner, outer in pairwise(places)]
 
+    def _spot(self) -> Iterator[int]:
+        """The numbers of the running statement and of the calls around it."""
+        position = self._findings.position
+        return (at for at, _ in frames(position.at, position.calls))
+
     def _touch(self, obj: Object, word: int, write: bool) -> None:
         if not write or obj.declaration.path not in self._objects:
             return
         path = obj.declaration.path
         if (path, word) in self._laid and self._laid_at == self._findings.position.at:
             return
+        key = (path, word, *self._spot())
+        known = self._written.get(key)
+        if known is None:
+            known = self._written[key] = self._sources(path, word)
+        origins, asks = known
+        self._ages[path, word] = self._of(origins, just_now=asks) if origins else {}
+
+    def _sources(self, path: str, word: int) -> tuple[frozenset[Origin], bool]:
+        """The inputs of the value that the running statement writes to a word, and whether it asks for them itself."""
         place = self._findings.places[self._findings.position.at]
-        ages: Ages = {}
         for s, _, _ in self._flow.at.get((place.file, place.line), ()):
             origins = self._flow.written(s, path, word, self._calls())
             if origins is not None:
                 asks = any(isinstance(p, RegisterLoad | Call) for root in roots(s) for p in parts(root))
-                ages = self._of(origins, just_now=asks)
-                break
-        self._ages[path, word] = ages
+                return origins, asks
+        return _NOTHING, False
 
     def _of(self, origins: frozenset[Origin], *, just_now: bool = False) -> Ages:
         """The ages of a value's inputs; for each source the newest."""
@@ -367,23 +429,35 @@ class AgeWatch:
 
     def _output(self, register: Cell, access: str, word: int, mask: int) -> None:
         position = self._findings.position
-        place = self._findings.places[position.at]
         if access != "write" or not position.at:
             return
-        calls = self._calls()
-        for s, _, tests in self._flow.at.get((place.file, place.line), ()):
-            if not (isinstance(s, Assign) and isinstance(s.target, RegisterRef) and _name(s.target) == register.path):
-                continue
-            origins = self._flow.used(s, tests, calls)
-            path = (place, *(outer for outer, _ in calls))[self._flow.chosen(s, tests, calls) :]
+        key = (register.path, *self._spot())
+        outputs = self._outputs.get(key)
+        if outputs is None:
+            outputs = self._outputs[key] = list(self._outputs_of(register.path))
+        place = self._findings.places[position.at]
+        for text, origins, path in outputs:
             for source, birth in self._of(origins).items():
                 known = self.followed.get((place, path[0], source))
+                new = known is None
                 if known is None:
                     where = "" if path[0] == place else f" in {place}"
-                    known = SourceTracking(path, self._findings.context(), register_text(s.target), where, birth)
+                    known = SourceTracking(path, self._findings.context(), text, where, birth)
+                    known.asked = source.startswith("I2c")
                     self.followed[place, path[0], source] = known
-                known.objects |= {o[0] for o in origins if o[0] and source in self._of(frozenset({o}))}
+                if new or birth != known.birth:
+                    known.objects |= {o[0] for o in origins if o[0] and source in self._of(frozenset({o}))}
                 known.use(birth, self._clock.now, word & mask)
+
+    def _outputs_of(self, register: str) -> Iterator[tuple[str, frozenset[Origin], tuple[Place, ...]]]:
+        """What the running statement writes to a register: its text, its inputs, and the places from its choice out."""
+        calls = self._calls()
+        place = self._findings.places[self._findings.position.at]
+        for s, _, tests in self._flow.at.get((place.file, place.line), ()):
+            output = _output(s)
+            if output is not None and register in output.registers:
+                path = (place, *(outer for outer, _ in calls))[self._flow.chosen(output, tests, calls) :]
+                yield output.text, self._flow.used(output, tests, calls), path
 
     def until(self, usual: int, latest: int) -> int:
         """The end of the run.  It is later than usual while a value is in use whose source is silent, or may be.
@@ -395,13 +469,12 @@ class AgeWatch:
             return usual
         if not self._cut:
             self._cut = now
-            for bus in self._board.i2c_bus.values():
-                bus.connected, bus.missing = False, "nothing answers any more"
+            cut_off_i2c(self._board)
             for line in self._board.serial_pins.values():
                 line.disturb(lambda frame: ())
         for seen in self.followed.values():
             old = now - seen.birth > _LOST * seen.pace or now - self._cut <= _LOST * seen.pace
-            if old and seen.oldest is None and seen.is_in_use(now):
+            if seen.oldest is None and ((old and seen.is_in_use(now)) or seen.outlived()):
                 return latest
         return now
 
@@ -446,16 +519,40 @@ def watched(
     return found
 
 
+def cut_off_i2c(board: Board) -> None:
+    """From now on no part on an I2C answers."""
+    for bus in board.i2c_bus.values():
+        bus.connected, bus.missing = False, "nothing answers any more"
+
+
 def _ms(cycles: int) -> str:
-    return f"{cycles / CYCLES_PER_MS:.3g} ms"
+    ms = cycles / CYCLES_PER_MS
+    return f"{ms:.3g} ms" if ms < 1000 else f"{ms / 1000:.3g} s"
 
 
 def _name(register: RegisterRef) -> str:
     return f"{register.block}.{register.register}"
 
 
-def _moves(register: RegisterRef) -> bool:
-    return bool(_LEVEL.match(_name(register)) or _PIN.match(_name(register)))
+def _output(s: Stmt) -> Output | None:
+    """What a statement does to the outside; None if it does nothing."""
+    match s:
+        case Assign(target=RegisterRef() as target, value=value):
+            name = _name(target)
+            return Output((name,), value, register_text(target)) if _LEVEL.match(name) or _PIN.match(name) else None
+        case Evaluate(value=Call(function=Function(extern=True, name="GPIO_WritePin"), arguments=[pin, value])):
+            return Output(_SET, value, f"pin {source_text(pin)}")
+    return None
+
+
+def _pointed(argument: Expr) -> Iterator[str]:
+    """The objects that an argument points to; for a pointer that is passed on, `*` and its path."""
+    for p in parts(argument):
+        match p:
+            case AddressOf(lvalue=LValue(root=Variable() as root)):
+                yield root.declaration.path
+            case Load(lvalue=LValue(root=Variable() as root)) if isinstance(root.ctype, PointerType):
+                yield f"*{root.declaration.path}"
 
 
 def _mentioned(e: Any) -> set[str]:

@@ -12,6 +12,7 @@ from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US
 from emulator.device_reports import Reports
 from emulator.devices.at24c256 import At24c256
 from emulator.devices.l3g4200d import L3G4200D
+from hil.board import load
 from hil.cli import invoke
 from hil.drivers.check import DriverFiles, check_files
 from hil.image import Build, Image
@@ -319,3 +320,42 @@ def test_a_module_clock_is_told_where_its_prescaler_is_set(prescaler: str, told:
     found = check_files(DriverFiles([tmp_path / "clock.c"], calls=1, seconds=0.002)).findings
     at = {text.splitlines()[f.place.line - 1] for f in found if f.rule == "i2c-clock" and f.place}
     assert at == set(told)
+
+
+BOARD = """from emulator.devices.l3g4200d import L3G4200D
+from hil.board import Board
+
+class Turns(Board):
+    i2c_pins = {"A": (32, 33)}
+
+    def solder(self):
+        gyro = L3G4200D(self.clock, rng=self.rng("gyro"), report=self.reports, mark=self.reports.mark)
+        self.on_i2c("gyro", gyro.i2c, bus="A", address=gyro.i2c.address)
+"""
+LOOP = """
+void main(void)
+{
+    InitSysCtrl();
+    InitGpio();
+    Open();
+    for (;;) {
+        Read(0x68, 0x0F, 1);
+        DELAY_US(2000);
+    }
+}
+"""
+REFUSED = GYRO[GYRO.index("    if (I2caRegs.I2CSTR.bit.NACK)") : GYRO.index("    I2caRegs.I2CCNT = count;")]
+
+
+@pytest.mark.parametrize(("refusal", "silence", "told"), [(REFUSED, True, 0), ("", True, 1), ("", False, 0)])
+def test_a_wait_for_a_part_that_falls_silent_is_told_where_nobody_looks_at_its_refusal(
+    refusal: str, silence: bool, told: int, tmp_path: Path
+) -> None:
+    (tmp_path / "turns.py").write_text(BOARD, encoding="utf-8")
+    text = OPEN + GYRO.replace(REFUSED, refusal) + LOOP
+    (tmp_path / "drv.c").write_text(text, encoding="utf-8")
+    board = load(str(tmp_path / "turns.py"))
+    wanted = DriverFiles([tmp_path / "drv.c"], seconds=0.05, calls=1, board=board, board_named=True, silence=silence)
+    found = [f for f in check_files(wanted).findings if f.rule == "endless-poll" and f.how == "dynamic"]
+    assert ["RRDY" in text.splitlines()[f.place.line - 1] for f in found if f.place] == [True] * told
+    assert all("no part on the I2C answers" in f.details[-1] for f in found)

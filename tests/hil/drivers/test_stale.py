@@ -121,6 +121,18 @@ def test_a_function_that_only_hands_the_value_on_is_not_the_place(tmp_path: Path
     assert any("Put" in detail for detail in finding.details)
 
 
+def test_a_lamp_that_follows_what_came_through_a_pointer_is_told(tmp_path: Path) -> None:
+    text = RIGHT.replace("        Duty = SciaRegs.SCIRXBUF.bit.SAR;", "        Take((Uint16 *)&Duty);")
+    take = "static void Take(Uint16 *to)\n{\n    *to = SciaRegs.SCIRXBUF.bit.SAR;\n}\n"
+    text = text.replace("interrupt void Received", take + "interrupt void Received")
+    text = text.replace("EPwm1Regs.CMPA.bit.CMPA = duty * 100;", "GPIO_WritePin(31, duty > 5);")
+    assert not stale(tmp_path, text)
+    (finding,) = stale(tmp_path, text.replace(AGE, ""))
+    assert finding.place is not None
+    assert "GPIO_WritePin(31" in text.replace(AGE, "").splitlines()[finding.place.line - 1]
+    assert finding.object == "SciaRegs.SCIRXBUF"
+
+
 #: A task orders a duty every 10 ms, for 0.1 s, and another one drives with it.
 ORDERED = """#include <xdc/std.h>
 #include <ti/sysbios/BIOS.h>
