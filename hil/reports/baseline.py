@@ -24,7 +24,7 @@ VERSION: Final = 1
 
 @dataclass(frozen=True, slots=True)
 class KnownFinding:
-    """A finding as a baseline remembers it."""
+    """A finding in the form of a baseline."""
 
     fingerprint: str
     rule: str
@@ -36,7 +36,7 @@ class KnownFinding:
 
 
 def known(findings: Iterable[Finding]) -> list[KnownFinding]:
-    """Each finding as a baseline remembers it, in the order given.
+    """Each finding in the form of a baseline, in the given order.
 
     The same statement twice in a function gives a second fingerprint, counted in the order of the lines.
     """
@@ -74,7 +74,7 @@ class Baseline:
 
     @classmethod
     def read(cls, path: Path) -> Baseline:
-        """Read a baseline.  Raises ValueError, naming the file, for what is none; OSError if it cannot be read."""
+        """Read a baseline.  Raises ValueError with the file if it is not a baseline; OSError if it cannot be read."""
         if not path.is_file():
             raise ValueError(f"{path}: there is no such baseline: write it with hil check --update-baseline")
         content = read_text(path)

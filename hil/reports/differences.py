@@ -34,7 +34,7 @@ class OutputDifference:
 
     @property
     def only_times(self) -> bool:
-        """The same values, at other times."""
+        """Whether only the times differ."""
         return self.differing == 0
 
     def shown(self, value: int | None) -> str:
@@ -72,7 +72,7 @@ class RunDifferences:
 
     @property
     def anything(self) -> bool:
-        """Whether an output has another value; another time alone is not counted."""
+        """Whether an output has another value; a different time alone does not count."""
         return any(not d.only_times for d in self.differences) or self.stopped[0] != self.stopped[1]
 
     def of(self, kind: OutputKind) -> list[OutputDifference]:
@@ -81,7 +81,7 @@ class RunDifferences:
 
     @property
     def summary(self) -> str:
-        """In one sentence: "frames 1..9 (dF, dL), PWM of EPwm1Regs, 2 registers"."""
+        """The differences in one sentence: "frames 1..9 (dF, dL), PWM of EPwm1Regs, 2 registers"."""
         if not self.anything:
             return f"no output differs within {self.seconds:g} s (tried {', '.join(self.tried)})"
         parts = []

@@ -10,7 +10,7 @@ from hil.files import replacing
 
 
 def write_lcov(path: Path, coverage: Coverage) -> None:
-    """Write what was counted.  Raises OSError."""
+    """Write the counts.  Raises OSError."""
     with replacing(path) as new:
         new.write_text(lcov(coverage), encoding="utf-8")
 

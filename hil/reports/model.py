@@ -1,4 +1,5 @@
-"""One report: the findings of a run, weighed by a policy, held against a baseline, with what they reach."""
+"""One report: the findings of a run, with the severities of a policy, compared with a baseline, and with their
+effects."""
 
 from __future__ import annotations
 
@@ -45,7 +46,8 @@ class CalledFunction:
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """What ran.  Everything here follows from the setup and the orders: no wall clock, no name of a machine."""
+    """The run of a report.  Everything here follows from the setup and the orders: no wall clock, no name of a
+    machine."""
 
     #: What a reader calls it: a scenario's name, a test's identifier.
     name: str
@@ -72,7 +74,7 @@ class Run:
 
     @property
     def how_sure(self) -> str:
-        """How sure computation times are, as a sentence; empty if all code was calibrated."""
+        """The uncertainty of computation times, as a sentence; empty if all code was calibrated."""
         if self.uncalibrated_factor is None:
             return ""
         return (
@@ -88,7 +90,7 @@ class Run:
 
 @dataclass(frozen=True, slots=True)
 class DrivenTrack:
-    """Where the robot was and where it believed to be, for a picture.  Metres, in the world's frame."""
+    """The true path of the robot and its odometry, for a picture.  Metres, in the world's frame."""
 
     walls: Sequence[Wall] = ()
     posts: Sequence[Circle] = ()
@@ -98,7 +100,7 @@ class DrivenTrack:
 
 @dataclass(frozen=True, slots=True)
 class ReportEntry:
-    """A finding with all that a reader wants to know of it."""
+    """A finding with everything that a report shows of it."""
 
     finding: Finding
     rule: Rule
@@ -116,7 +118,7 @@ class ReportEntry:
 
     @property
     def state_word(self) -> str:
-        """In one word: "accepted" by the source, else its state."""
+        """The state in one word: "accepted" by the source, else "new", "unchanged" or empty."""
         return "accepted" if self.accepted else self.state
 
     @property
@@ -128,7 +130,7 @@ class ReportEntry:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """The findings of one run.  Make it with `Report.of`."""
+    """The findings of one run.  Create it with `Report.of`."""
 
     run: Run
     entries: tuple[ReportEntry, ...]
@@ -178,7 +180,7 @@ class Report:
 
     @property
     def has_times(self) -> bool:
-        """Whether something in it happened at a time."""
+        """Whether any finding has a time."""
         return any(entry.finding.how != "static" for entry in self.entries)
 
     def fails(self, entry: ReportEntry) -> bool:
@@ -202,11 +204,11 @@ class Report:
 
     @property
     def accepted(self) -> int:
-        """How many findings the source accepts."""
+        """The number of findings that the source accepts."""
         return sum(bool(entry.accepted) for entry in self.entries)
 
     def count(self, severity: Severity) -> int:
-        """How many findings have this severity."""
+        """The number of findings with this severity."""
         return sum(entry.severity is severity for entry in self.entries)
 
     @property
@@ -221,12 +223,12 @@ def report_of(findings: Iterable[Finding], name: str = "run", by: Sequence[Seque
 
 
 def merged(findings: Iterable[Finding]) -> list[Finding]:
-    """What several runs have found, each defect once: as it was found first, and how often in all of them."""
+    """Merge the findings of several runs: each defect once, as it was found first, with its count in all of them."""
     return [finding for finding, _ in merged_by(("", finding) for finding in findings)]
 
 
 def merged_by(found: Iterable[tuple[str, Finding]]) -> list[tuple[Finding, tuple[str, ...]]]:
-    """As `merged`, for pairs of (who showed it, finding): each defect with all who showed it."""
+    """As `merged`, for pairs of (test or run, finding): each defect with all tests or runs that showed it."""
     known: dict[tuple[object, ...], tuple[Finding, dict[str, None]]] = {}
     for who, finding in found:
         key = (finding.rule, finding.object, finding.place)

@@ -1,9 +1,9 @@
-"""Everything that a run puts out: bytes on the line and every write of the firmware to a register, with time.
+"""All outputs of a run: bytes on the line and every write of the firmware to a register, with time.
 
-An output is a stream of (cycles, value).  For an assignment to a field the value is that field, in its place in the
+An output is a stream of (cycles, value).  For an assignment to a field the value is that field, at its place in the
 word; for a write to the high half of a 32-bit register (CMPA) it is that half.
-Registers of the ePWM modules are the motors', GPIO registers the pins'; the others are what configures peripherals and
-talks to the gyro.  Not recorded: what peripherals do to their own registers; SCITXBUF, whose bytes are the line's.
+Registers of the ePWM modules drive the motors, GPIO registers the pins; the others configure peripherals or talk to the
+gyro.  Not recorded: changes of registers by their peripherals; SCITXBUF, whose bytes are those of the line.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class RunOutputs:
 
 
 def record(outputs: RunOutputs, blocks: Mapping[str, Block], clock: Clock) -> None:
-    """Have every register write of `blocks` from now on stand in `outputs`."""
+    """Record every register write of `blocks` in `outputs` from now on."""
 
     def put(register: Cell, _access: str, word: int, mask: int) -> None:
         value = (word & mask) >> (0 if mask & LOW else 16)

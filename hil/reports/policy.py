@@ -30,7 +30,7 @@ _SEVERITIES: Final = {severity.value: severity for severity in Severity}
 
 
 def nearest(rule_id: str) -> str:
-    """The end of a message about an identifier that is none: what may have been meant."""
+    """The end of a message about an unknown identifier: a similar known one."""
     close = get_close_matches(rule_id, RULES, n=3, cutoff=0.5)
     return f"did you mean {', '.join(close)}?" if close else "hil explain lists them all"
 
@@ -60,7 +60,8 @@ def parse_severities(table: Any) -> dict[str, Severity | None]:
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """How findings are weighed.  `Policy()` is every rule's own severity, no baseline, failing from a warning on."""
+    """The severities of findings.  `Policy()` has the severity of every rule, no baseline, and fails from a warning
+    on."""
 
     #: What differs from the rules' own severities; None is "off": not reported at all.
     severities: Mapping[str, Severity | None] = field(default_factory=dict)
@@ -107,22 +108,22 @@ class Policy:
         return policy
 
     def severity(self, rule_id: str) -> Severity | None:
-        """How bad a finding of this rule is here; None: turned off.  A rule that is unknown here: a warning."""
+        """The severity of a rule in this policy; None: turned off.  An unknown rule has that of a warning."""
         if rule_id in self.severities:
             return self.severities[rule_id]
         rule = RULES.get(rule_id)
         return Severity.WARNING if rule is None else rule.severity
 
     def severity_of(self, finding: Finding) -> Severity | None:
-        """How bad a finding is here; None: turned off.
+        """The severity of a finding in this policy; None: turned off.
 
-        What only a call with generated arguments has shown is a note: the contract of the function may exclude it.
+        A finding that only generated arguments have shown is a note: the contract of the function may exclude them.
         """
         severity = self.severity(finding.rule)
         return Severity.NOTE if severity is not None and finding.how == GENERATED else severity
 
     def with_severities(self, findings: Iterable[Finding]) -> list[tuple[Finding, Severity]]:
-        """The findings with their severities here, in their order, without those that are turned off."""
+        """The findings with their severities, in their order, without those that are turned off."""
         every = ((finding, self.severity_of(finding)) for finding in findings)
         return [(finding, severity) for finding, severity in every if severity is not None]
 

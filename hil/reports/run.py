@@ -10,7 +10,7 @@ from hil.scenarios.scenario import Scenario
 
 
 def run_of(scenario: Scenario, bench: Bench, stopped: str) -> Run:
-    """What ran: `scenario` on `bench`, to its end or until it `stopped`."""
+    """The run of `scenario` on `bench`, to its end or until it `stopped`."""
     outcome = {"uart_sha256": bench.uart_sha256}
     return Run(
         scenario.name, scenario.setup, seconds(bench.clock.now), scenario.orders, stopped, outcome,
@@ -20,5 +20,5 @@ def run_of(scenario: Scenario, bench: Bench, stopped: str) -> Run:
 
 
 def drive_of(bench: Bench) -> DrivenTrack:
-    """Where the robot was and believed to be."""
+    """The true path of the robot, and its odometry."""
     return DrivenTrack(bench.walls, bench.posts, bench.true_path(), bench.odometry_path())

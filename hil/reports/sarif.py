@@ -142,7 +142,7 @@ def _absent(known: KnownFinding, index: dict[str, int]) -> dict[str, Any]:
 
 
 def _flows(finding: Finding) -> Iterator[dict[str, Any]]:
-    """The way to the finding, and the other places it speaks of."""
+    """The call path of the finding, and the other places that it names."""
     steps = [_step(place, source_line(place.file, place.line)) for place in reversed(finding.call_path)]
     steps[-1]["location"]["message"] = {"text": readable(finding.message)}
     steps[-1]["importance"] = "essential"

@@ -42,7 +42,7 @@ def print_report(report: Report, console: Console, *, details: bool = False, mos
 
 
 def _lines(report: Report) -> Iterator[str]:
-    """What there is to say besides the findings."""
+    """The lines besides the findings."""
     if report.proof:
         proof = report.proof
         yield f"Two fills ({proof.fill_a}, {proof.fill_b}): {proof.whole.summary}"
@@ -110,7 +110,7 @@ def _where(entry: ReportEntry) -> list[Text]:
 
 
 def _seen(entry: ReportEntry) -> list[str]:
-    """By whom, when and how often; nothing of what the source shows without running."""
+    """The task, time and count; empty for a finding that the source shows without a run."""
     finding = entry.finding
     if finding.how == "static":
         return []
@@ -119,7 +119,7 @@ def _seen(entry: ReportEntry) -> list[str]:
 
 
 def _besides(entry: ReportEntry) -> Iterator[str]:
-    """What a command knows of a finding that others do not."""
+    """The properties of a finding that only some commands know."""
     if entry.accepted:
         yield f"accepted in the source: {entry.accepted}"
     elif entry.state:
@@ -142,7 +142,7 @@ def as_a_compiler(report: Report) -> Iterator[str]:
 
 
 def summary(entries: Iterable[ReportEntry]) -> str:
-    """How many findings of each severity: "11 errors, 35 warnings"."""
+    """The number of findings of each severity: "11 errors, 35 warnings"."""
     severities = [entry.severity for entry in entries]
     counts = [(severities.count(severity), severity.value) for severity in reversed(Severity)]
     texts = [f"{number} {name}{'' if number == 1 else 's'}" for number, name in counts if number]
@@ -150,7 +150,7 @@ def summary(entries: Iterable[ReportEntry]) -> str:
 
 
 def last_line(report: Report) -> str:
-    """What it came to, in one line."""
+    """The result in one line."""
     parts = [summary(report.entries)]
     if unchanged := sum(entry.state == "unchanged" for entry in report.entries):
         parts.append(f"{unchanged} known")

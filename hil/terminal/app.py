@@ -45,7 +45,7 @@ STYLES: Final = {
 
 
 class ArenaView(Widget):
-    """The arena, drawn to the size there is."""
+    """The arena, drawn in the available size."""
 
     def __init__(self) -> None:
         super().__init__(id="arena")
@@ -54,26 +54,26 @@ class ArenaView(Widget):
         self.raster = HALF_BLOCKS if os.environ.get("TERM") == "linux" else BRAILLE
 
     def render(self) -> Text:
-        """The picture."""
+        """Draw the picture."""
         canvas = self.arena.draw(self.size.width, self.size.height, self.raster)
         lines = [Text.assemble(*((run, STYLES[layer]) for run, layer in line)) for line in canvas.lines()]
         return Text("\n", no_wrap=True).join(lines)
 
 
 class FrameList(Widget):
-    """The newest lines, as many as there is room for."""
+    """The newest lines, as many as fit."""
 
     def __init__(self) -> None:
         super().__init__(id="frames")
         self._lines: deque[str] = deque(maxlen=MAX_LINES)
 
     def add(self, lines: Iterable[str]) -> None:
-        """Lines below the others."""
+        """Add lines at the end."""
         self._lines.extend(lines)
         self.refresh()
 
     def render(self) -> Text:
-        """The end of the list."""
+        """Show the end of the list."""
         return Text("\n".join(list(self._lines)[-max(1, self.size.height) :]), no_wrap=True)
 
 
@@ -108,9 +108,9 @@ class TerminalApp(App[None]):
     def __init__(
         self, link: Link | None, robot: EmulatedRobot | None, first: Sequence[str] = (), policy: Policy | None = None
     ) -> None:  # fmt: skip
-        """A line that is open, or a robot that will have one and is given the orders `first`.
+        """The app for an open line, or for a robot that opens one and gets the orders `first`.
 
-        `policy` weighs the findings (None: by their rules).
+        `policy` sets the severities of findings (None: those of the rules).
         """
         super().__init__()
         self.link = link
@@ -157,7 +157,7 @@ class TerminalApp(App[None]):
                 asyncio.get_running_loop().add_signal_handler(number, self._leave)
 
     def on_unmount(self) -> None:
-        """Give the signals back."""
+        """Restore the signal handlers."""
         with contextlib.suppress(NotImplementedError, RuntimeError, ValueError):
             for number in _signals():
                 asyncio.get_running_loop().remove_signal_handler(number)
@@ -238,7 +238,7 @@ class TerminalApp(App[None]):
     # Orders
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Which keys act now: no order while numbers are typed; arrows drive while telemanipulation is on."""
+        """Which keys are active: no orders while numbers are typed; arrows only while telemanipulation is on."""
         typing = isinstance(self.focused, Input)
         if action == "drive":
             return not typing and self.link is not None and self.link.tele is not None
@@ -247,7 +247,7 @@ class TerminalApp(App[None]):
         return True if action != "findings" else self.robot is not None
 
     def action_order(self, keyword: str) -> None:
-        """An order of one word."""
+        """Send an order of one word."""
         self._set_message(self.link is not None and self.link.order(keyword), keyword)
 
     def action_stop(self) -> None:
@@ -255,19 +255,19 @@ class TerminalApp(App[None]):
         self._set_message(self.link is not None and self.link.stop(), "stop")
 
     def action_tele(self) -> None:
-        """Arrows drive from now on; again: it ends with a stop."""
+        """Let the arrows drive from now on; a second press ends this with a stop."""
         if self.link is not None and self.link.tele is not None:
             self.action_stop()
         else:
             self._set_message(self.link is not None and self.link.begin_tele(), "tele: arrows drive")
 
     def action_rest(self) -> None:
-        """V = W = 0, in telemanipulation."""
+        """Set V = W = 0 in telemanipulation."""
         if self.link is not None and self.link.tele is not None:
             self.link.rest()
 
     def action_drive(self, arrow: str) -> None:
-        """An arrow key in telemanipulation."""
+        """Handle an arrow key in telemanipulation."""
         if self.link is not None:
             self.link.press(Arrow[arrow])
 
@@ -306,22 +306,22 @@ class TerminalApp(App[None]):
         self.set_focus(self._table)
 
     def on_data_table_row_selected(self) -> None:
-        """One finding in full."""
+        """Show one finding in full."""
         if self._table is not None and (chosen := self._table.chosen) is not None:
             self.push_screen(FindingScreen(*chosen))
 
     def action_clear(self) -> None:
-        """Forget the drawn points."""
+        """Clear the drawn points."""
         self._view.arena.clear()
         self._view.refresh()
 
     def action_raster(self) -> None:
-        """Braille or half blocks."""
+        """Switch between braille and half blocks."""
         self._view.raster = BRAILLE if self._view.raster is HALF_BLOCKS else HALF_BLOCKS
         self._view.refresh()
 
     def _leave(self) -> None:
-        """Leave on a signal, perhaps because the terminal has gone: stop the robot first."""
+        """Leave on a signal, perhaps because the terminal was closed: stop the robot first."""
         if self.link is not None:
             self.link.close()
         self.exit()

@@ -66,7 +66,7 @@ class ArenaHistory:
         self._last: OdometryFrame | None = None
 
     def add(self, frame: OdometryFrame) -> None:
-        """A frame came.  One like the last tells nothing new."""
+        """Add a frame, unless it equals the last one."""
         if frame == self._last:
             return
         self._last = frame
@@ -74,13 +74,13 @@ class ArenaHistory:
         self._echoes.extend(sonar_points(frame))
 
     def clear(self) -> None:
-        """Forget everything."""
+        """Clear the history."""
         self._path.clear()
         self._echoes.clear()
         self._last = None
 
     def draw(self, columns: int, rows: int, raster: Raster = BRAILLE) -> Canvas:
-        """The picture in `columns` x `rows` characters."""
+        """Draw the picture in `columns` x `rows` characters."""
         canvas = Canvas(columns, rows, raster)
         if not canvas.columns or not canvas.rows:
             return canvas
@@ -95,7 +95,7 @@ class ArenaHistory:
 
 
 def _draw_robot(canvas: Canvas, view: View, frame: OdometryFrame) -> None:
-    """Its place as an arrow, its heading as a line."""
+    """Draw the robot: its place as an arrow, its heading as a line."""
     x, y = view.dot(frame.x_mm / 1e3, frame.y_mm / 1e3)
     heading = float(frame.theta_rad)
     for step in range(1, HEADING_DOTS + 1):

@@ -14,7 +14,7 @@ from typing import Final
 
 
 class Layer(IntEnum):
-    """What a dot belongs to.  A character has one look: of several layers in it the highest has it."""
+    """The layer of a dot.  A character has one style: that of its highest layer."""
 
     NOTHING = 0
     CLOUD = 1
@@ -25,7 +25,7 @@ class Layer(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Raster:
-    """How dots make characters."""
+    """How dots form characters."""
 
     name: str
     #: Dots of one character, across and down.

@@ -30,18 +30,18 @@ class FindingsTable(DataTable[Text]):
     BORDER_TITLE = "findings"
 
     def __init__(self, policy: Policy) -> None:
-        """`policy` weighs them."""
+        """The table; `policy` sets the severities."""
         super().__init__(cursor_type="row", id="findings")
         self._policy = policy
         self._shown: Sequence[tuple[Finding, Severity]] = ()
 
     def on_mount(self) -> None:
-        """Columns."""
+        """Add the columns."""
         for name in COLUMNS:
             self.add_column(name, key=name)
 
     def show(self, findings: Sequence[Finding]) -> None:
-        """Add what is new, update counts."""
+        """Add new findings, and update counts."""
         if not self.columns:
             return  # not on the screen yet
         rated = self._policy.with_severities(findings)
@@ -57,7 +57,7 @@ class FindingsTable(DataTable[Text]):
 
     @property
     def chosen(self) -> tuple[Finding, Severity] | None:
-        """The one under the cursor, and its severity."""
+        """The finding under the cursor, and its severity."""
         return self._shown[self.cursor_row] if 0 <= self.cursor_row < len(self._shown) else None
 
 
@@ -85,7 +85,7 @@ class FindingScreen(ModalScreen[None]):
         self._finding, self._severity = finding, severity
 
     def compose(self) -> ComposeResult:
-        """A page that scrolls."""
+        """Build a page that scrolls."""
         rule = RULES.get(self._finding.rule)
         with VerticalScroll(id="page"):
             yield Static(_in_full(self._finding, self._severity), markup=False)
@@ -94,11 +94,11 @@ class FindingScreen(ModalScreen[None]):
         yield Footer(show_command_palette=False)
 
     def on_mount(self) -> None:
-        """Arrows scroll."""
+        """Let the arrows scroll."""
         self.query_one("#page").focus()
 
     def action_leave(self) -> None:
-        """Back to the console."""
+        """Return to the console."""
         self.dismiss()
 
 

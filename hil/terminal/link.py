@@ -46,7 +46,7 @@ Event = OdometryFrame | bytes
 
 @dataclass(frozen=True, slots=True)
 class Traffic:
-    """Counts of what passed the line so far."""
+    """The counts of frames, orders and bytes so far."""
 
     frames: int
     malformed: int
@@ -93,7 +93,7 @@ class Link:
     # For the screen
 
     def take(self) -> list[Event]:
-        """What happened since the last call, the oldest first; at most `MAX_EVENTS`."""
+        """The events since the last call, the oldest first; at most `MAX_EVENTS`."""
         with self._changed:
             events = list(self._events)
             self._events.clear()
@@ -101,7 +101,7 @@ class Link:
 
     @property
     def traffic(self) -> Traffic:
-        """Counts."""
+        """The counts so far."""
         decoder = self._decoder
         return Traffic(
             decoder.frames, decoder.malformed, decoder.skipped, self._unseen, self._sent_orders, self._references,
@@ -131,7 +131,8 @@ class Link:
         return self._send(order("tele"), setr)
 
     def begin_tele(self) -> bool:
-        """``#TELE``, and from then on a ``#SETR`` each period.  While it is on: somebody is there."""
+        """Send ``#TELE``, and from then on a ``#SETR`` each period.  While it is on, this only resets the dead man's
+        timer."""
         with self._changed:
             if self._tele.active:
                 self._tele.begin(time.monotonic())
@@ -145,17 +146,17 @@ class Link:
         return True
 
     def press(self, arrow: Arrow) -> None:
-        """An arrow key in telemanipulation."""
+        """Handle an arrow key in telemanipulation."""
         with self._changed:
             self._tele.press(arrow, time.monotonic())
 
     def rest(self) -> None:
-        """V = W = 0, still in telemanipulation."""
+        """Set V = W = 0, still in telemanipulation."""
         with self._changed:
             self._tele.rest(time.monotonic())
 
     def close(self) -> None:
-        """Send ``#STOP``, wait until it has left, give the port back.  Closing twice does nothing."""
+        """Send ``#STOP``, wait until it was sent, and close the port.  Closing twice does nothing."""
         with self._changed:
             if self._closing:
                 return
@@ -221,7 +222,7 @@ class Link:
                 self.stop_sent = self._closing and not self._orders
 
     def _next(self) -> tuple[bytes, bool] | None:
-        """Wait for what is to be sent next, and whether it is an order; None when leaving."""
+        """Wait for the next bytes to send; returns also whether they are an order.  None when leaving."""
         with self._changed:
             while True:
                 now_s = time.monotonic()
@@ -245,7 +246,7 @@ class Link:
 
 
 def _drain(line: serial.Serial) -> None:
-    """Wait until all has left.  Raises OSError when the port has gone."""
+    """Wait until everything was sent.  Raises OSError if the port was closed."""
     try:
         line.flush()
     except Exception as error:  # termios.error is no OSError, and Windows has none

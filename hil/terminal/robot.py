@@ -56,7 +56,7 @@ class EmulatedRobot:
         self._thread.start()
 
     def end(self) -> None:
-        """Power off.  Ending twice does nothing."""
+        """Switch the robot off.  Ending twice does nothing."""
         self._wanted = False
         self._thread.join(GRACE_S)
 

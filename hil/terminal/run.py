@@ -31,7 +31,7 @@ class Summary:
 
     @property
     def line(self) -> str:
-        """For people."""
+        """The result as a line for users."""
         traffic = self.traffic
         text = f"{self.seconds:.1f} s: {traffic.frames} frames, {traffic.malformed} malformed, {traffic.orders} orders"
         text += f" and {traffic.references} SETR sent" if traffic.references else " sent"

@@ -46,40 +46,40 @@ class TerminalTele:
 
     @property
     def v_m_s(self) -> float:
-        """Linear speed asked for."""
+        """The ordered linear speed."""
         return self._v_steps * V_STEP_M_S
 
     @property
     def w_rad_s(self) -> float:
-        """Angular speed asked for."""
+        """The ordered angular speed."""
         return self._w_steps * W_STEP_RAD_S
 
     def begin(self, now_s: float) -> None:
-        """Telemanipulation begins, at rest; if it is on, this only says that somebody is there."""
+        """Begin telemanipulation, at rest; while it is on, only reset the dead man's timer."""
         if not self.active:
             self.active = True
             self._rest()
         self._last_key_s = now_s
 
     def end(self) -> None:
-        """Telemanipulation is over."""
+        """End telemanipulation."""
         self.active = False
         self._rest()
 
     def press(self, arrow: Arrow, now_s: float) -> None:
-        """An arrow key; it counts at the next tick."""
+        """Note an arrow key, which takes effect at the next tick."""
         v, w = arrow.value
         self._v_pressed = v or self._v_pressed
         self._w_pressed = w or self._w_pressed
         self._last_key_s = now_s
 
     def rest(self, now_s: float) -> None:
-        """Both speeds become 0, still in telemanipulation."""
+        """Set both speeds to 0, still in telemanipulation."""
         self._rest()
         self._last_key_s = now_s
 
     def tick(self, now_s: float) -> bytes:
-        """A period has passed: the order to send."""
+        """End a period, and return the order to send."""
         if now_s - self._last_key_s > self._dead_man_s:
             self._rest()
         self._v_steps = _limited(self._v_steps + self._v_pressed, V_MOST_STEPS)
