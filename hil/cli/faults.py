@@ -36,7 +36,7 @@ def checked_faults(texts: Sequence[str] | None) -> tuple[str, ...]:
 
 
 def watched(texts: Sequence[str]) -> bool:
-    """Whether one of them needs a watched image, to know which task met it."""
+    """Whether one of them needs a watched image, to know its first access."""
     if not texts:
         return False
     from hil.faults import parse

@@ -72,7 +72,7 @@ def new(
         "", "Next:",
         *([f"  {'pip install ' + ' '.join(missing):30} what it needs and this environment lacks"] if missing else []),
         f"  cd {quote(str(folder))}",
-        "  pytest                         passes; what the emulator finds would fail the test that met it",
+        "  pytest                         passes; what the emulator finds would fail the test that caused it",
         "  hil check . --board board.py   the same without a test",
         f"Then make the commented line of {driver} a statement, and run pytest again.",
     ):  # fmt: skip

@@ -3,7 +3,7 @@
 fault = parse("gyro-reset:at=2")              # or Fault.from_table({"kind": "gyro-reset", "at": 2})
 mounted = mount(fault, machine)
 ...
-mounted.report()                              # when it fired, how often, who met it first
+mounted.report()                              # when it fired, how often, its first access
 mounted.remove()
 """
 

@@ -1,8 +1,8 @@
-"""A fault at work on a board: it begins, it fires, somebody meets it, it ends.
+"""The life of a fault on a board: it begins, fires, is accessed by the firmware, and ends.
 
-It *fires* whenever something is other than it would have been without it: a code, a level, a character, a count.  The
-first access that *met* it is the first read of the register that brings such a value into the firmware (or, in RAM, of
-the object), at its statement, by whoever ran.  A fault of which nothing comes into the firmware is met by nobody.
+It *fires* whenever something differs from a run without it: a code, a level, a character, a count.  Its *first access*
+is the first read of the register that brings such a value into the firmware (or, in RAM, of the object), with its
+statement and its task.  A fault whose values do not enter the firmware has none.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class FaultOutcome:
             return f"{self.fault}: it never fired"
         often = "once" if self.count == 1 else f"{self.count} times"
         met = self.met
-        by = f"met by {met.task} at {met.place} at {met.time_s:.6f} s" if met else "no access of the firmware met it"
+        by = f"first access by {met.task} at {met.place} at {met.time_s:.6f} s" if met else "no access of the firmware"
         return f"{self.fault}: fired {often}, first at {self.times_s[0]:.6f} s; {by}"
 
     def and_then(self, later: FaultOutcome) -> FaultOutcome:

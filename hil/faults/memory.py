@@ -1,7 +1,7 @@
 """Faults of memory: a bit of a RAM word that a particle flips.
 
-Who reads the flipped word first is known of an image that was linked with `watch` (`hil check` does; `hil run` does
-with this fault); a word that is written before anybody reads it is met by nobody.
+The first access of the flipped word is known for an image that was linked with `watch` (`hil check` does; `hil run`
+does with this fault).  A word that is written before it is read has no first access.
 """
 
 from __future__ import annotations

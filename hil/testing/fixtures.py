@@ -258,7 +258,7 @@ def hil_feed(request: pytest.FixtureRequest, hil_board: Board) -> Callable[..., 
 def hil_fault(request: pytest.FixtureRequest, hil_board: Board) -> Iterator[Callable[..., MountedFault]]:
     """`fault("gyro-reset", at=0.5)`: something breaks, timed from now; a fault that never fired fails the test.
 
-    What it gives tells when it fired and who met it: `report()`; `remove()` mends it.
+    Its `report()` gives when it fired and its first access; `remove()` ends it.
     """
     from hil.faults import Fault, mount, parse
     from hil.testing.faults import BoardTarget

@@ -1,4 +1,4 @@
-"""Tests of the driver.  What the emulator finds in it fails the test that met it: nothing has to be asserted for that."""
+"""Tests of the driver.  What the emulator finds in it fails the test that caused it: no assertion is needed."""
 
 import pytest
 

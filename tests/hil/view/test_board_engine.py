@@ -105,7 +105,7 @@ def test_what_is_broken_by_hand_breaks_again_at_its_cycle(engine: Engine) -> Non
     assert sent(engine) == ["344 2048", "344 2048", "344 2064", "344 2048", "344 2048"]
     ((fired, phase),) = told(engine)
     assert fired.startswith("adc-bit-stuck:input=B3,bit=4: fired once, first at 0.")
-    assert "met by main at " in fired
+    assert "first access by main at " in fired
     assert phase == "removed"
 
     assert run_to(engine, 0.15) == sound

@@ -133,7 +133,7 @@ def test_something_breaks_by_hand_and_is_mended(page: Any, shot: Shot) -> None:
     page.get_by_text("adc-bit-stuck: bit: 16 must be 0 to 15").first.wait_for()
     page.get_by_label("bit", exact=True).fill("11")
     page.get_by_role("button", name="Break it").click()
-    page.get_by_text(re.compile("at work; fired .* met by main at ")).wait_for()
+    page.get_by_text(re.compile("at work; fired .* first access by main at ")).wait_for()
     shot(page, "board-faults")
     page.get_by_role("button", name="Remove").click()
     page.get_by_text(re.compile("removed; fired .* times")).wait_for()
