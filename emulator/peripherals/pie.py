@@ -154,7 +154,7 @@ class Pie:
         """Write a vector: `handler` runs when interrupt `vector_id` is taken (13..0xDF).  None: nothing runs.
 
         15 to 31 are the core's own (data log, RTOS, emulation, NMI, traps), which nothing here takes.
-        `begins`: the place of a firmware routine that must acknowledge the interrupt itself.
+        `begins`: the place of the firmware's routine, where findings about it are reported.
         """
         if not DIRECT_VECTORS[0] <= vector_id < 0x80 + 8 * GROUPS:
             raise ValueError(f"PIE vector {vector_id:#x}: expected 0xd..0xdf")

@@ -18,9 +18,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any, Final
+from inspect import unwrap
+from typing import Any, Final, Protocol
 
 from emulator.c28x.memory import NULL
+from emulator.c28x.sites import Place
 from emulator.sysbios import params as struct_params
 from emulator.sysbios.core import (
     HWI,
@@ -64,6 +66,13 @@ def ier_bit(number: int) -> int:
     return 1 << (pie_group(number) or number) - 1
 
 
+class SetVector(Protocol):
+    """Writes a vector of the PIE's table; `begins` is the place of the firmware's function."""
+
+    def __call__(self, number: int, handler: Callable[[], None] | None, begins: Place | None = None, /) -> None:
+        """`handler` runs when interrupt `number` is taken."""
+
+
 class Hwi(KernelObject):
     """A hardware interrupt's handler: what a `Hwi_Handle` points to."""
 
@@ -94,7 +103,7 @@ class HwiModule:
         tasks: TaskModule,
         *,
         system_stack: tuple[int, int],
-        pie_set_vector: Callable[[int, Callable[[], None] | None], None],
+        pie_set_vector: SetVector,
         pie_enable: Callable[[int, bool], bool],
         pie_acknowledge: Callable[[int], None],
     ) -> None:
@@ -162,7 +171,8 @@ class HwiModule:
         self.table[number] = hwi
         handler = partial(self._dispatch, hwi)
         if hwi.group or number in DIRECT:
-            self._set_vector(number, handler)
+            begins = self.core.findings.beginnings
+            self._set_vector(number, handler, begins.get(function) or begins.get(unwrap(function)))
         else:
             self.core.cpu.connect(number, handler)
         return hwi

@@ -37,7 +37,7 @@ from emulator.sysbios.handles import Find, Handles
 from emulator.sysbios.heap import Heap, HeapBlocks
 from emulator.sysbios.heap_buf import HeapBuf, HeapBufModule
 from emulator.sysbios.heap_mem import HEAP_WORDS, HeapMem, HeapMemModule
-from emulator.sysbios.hwi import Hwi, HwiModule
+from emulator.sysbios.hwi import Hwi, HwiModule, SetVector
 from emulator.sysbios.log import LogModule
 from emulator.sysbios.mailbox import Mailbox, MailboxModule
 from emulator.sysbios.memory import MemoryModule
@@ -68,11 +68,11 @@ def _key_gate(kind: str) -> Find:
 class Kernel:
     """One SYS/BIOS.  Its C functions are attributes (`kernel.Semaphore_post`), all of them in `externs`.
 
-    The board gives four functions.  `pie_set_vector(id, handler)` writes a vector.  `pie_enable(id, on)` writes the
-    PIEIER bit of vector id 32..223, and returns whether it was set.  `pie_acknowledge(group)` acknowledges a group.
-    `start_tick(period_register, handler)` loads PRD of CPU timer 2 (the timer counts one more) and starts it.  The
-    timer's interrupt raises CPU line 14, which is connected to `handler` already.  `start_tick` returns the timer if
-    that can `skip` idle ticks.
+    The board gives four functions.  `pie_set_vector(id, handler, begins)` writes a vector; `begins` is the place of the
+    firmware's function.  `pie_enable(id, on)` writes the PIEIER bit of vector id 32..223, and returns whether it was
+    set.  `pie_acknowledge(group)` acknowledges a group.  `start_tick(period_register, handler)` loads PRD of CPU timer
+    2 (the timer counts one more) and starts it.  The timer's interrupt raises CPU line 14, which is connected to
+    `handler` already.  `start_tick` returns the timer if that can `skip` idle ticks.
 
     With `join_idle_ticks` False every tick is taken singly, with the same result.  `string_at(address)` returns the
     text of the string constant there, or None.  Queues and heaps need the `memory` of the C program.  `heap_words` is
@@ -87,7 +87,7 @@ class Kernel:
         findings: Findings,
         trace: Trace,
         *,
-        pie_set_vector: Callable[[int, Callable[[], None] | None], None],
+        pie_set_vector: SetVector,
         pie_enable: Callable[[int, bool], bool],
         pie_acknowledge: Callable[[int], None],
         start_tick: StartTick,

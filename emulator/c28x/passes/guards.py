@@ -386,7 +386,7 @@ class Guards:
     def unwrapped(self, e: Expr, rule: str, then: str) -> None:
         """Decide for a value that must be the mathematical one: check an unsigned result that can differ from it."""
         ctype = e.ctype
-        if not isinstance(ctype, IntType) or ctype.signed or not _computed(e):
+        if not isinstance(ctype, IntType) or ctype.signed or not _computed(e) or _shifted_out(e):
             self.value(e)
             return
         self.mathematical(e, ctype)
@@ -835,6 +835,12 @@ def wrapping_subscript(lvalue: LValue) -> str:
             case Binary(ctype=IntType(signed=False), op="-" | "+" | "*") as computed:
                 return source_text(computed)
     return ""
+
+
+def _shifted_out(e: Expr) -> bool:
+    """Whether a constant in `e` shifts by the width of its type or more: C does not define that, whatever the value."""
+    shifts = (p for p in parts(e) if isinstance(p, Binary) and p.op == "<<")
+    return any(isinstance(p.ctype, IntType) and bounds_of(p.right)[0] >= p.ctype.bits for p in shifts)
 
 
 def _computed(e: Expr) -> bool:

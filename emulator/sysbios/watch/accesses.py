@@ -14,7 +14,7 @@ from __future__ import annotations
 from typing import Final
 
 from emulator.sysbios.watch.statements import StatementNumber
-from emulator.sysbios.watch.threads import Protection, Thread, VectorClock, excluded
+from emulator.sysbios.watch.threads import Protection, Thread, VectorClock, at_clock, excluded, joined
 
 
 class LatestAccess:
@@ -56,10 +56,10 @@ class SharedCell:
         self.writers: set[Thread] = set()
         #: Thread -> the statement by which it last read and wrote the cell in one step, per protection.
         self.changed: dict[Thread, dict[Protection, StatementNumber]] = {}
-        #: The last reader and its statement.  The last writer, with its clock and its vector clock at the write.
+        #: The last reader and its statement.  The last writer, its clock and vector clock at the write, and its run.
         self.reader: Thread | None = None
         self.reader_statement: StatementNumber = 0
-        self.handed: tuple[Thread, int, VectorClock] | None = None
+        self.handed: tuple[Thread, int, VectorClock, list[int]] | None = None
 
     def conflicts(self, thread: Thread, protection: Protection) -> tuple[LatestAccess, ...]:
         """Writes of other threads that conflict with an access of `thread` under `protection`."""
@@ -83,6 +83,25 @@ class SharedCell:
             and not excluded(other.thread, other.protection, thread, protection)
         )  # fmt: skip
 
+    def hand_over(self, thread: Thread, statement: StatementNumber, time: int) -> None:
+        """A write of `thread` tells the readers of this word what it has done so far."""
+        self.handed = (thread, thread.clock, thread.vc, thread.run)
+        thread.step()
+        thread.stepped = (statement, time)
+
+    def take_over(self, thread: Thread) -> None:
+        """A read of `thread` learns what the last writer had done.
+
+        A Swi or handler has always ended its run when a thread of a lower level reads.  So its whole run is known.
+        """
+        if self.handed is None:
+            return
+        writer, clock, vc, run = self.handed
+        if writer.level > thread.level and not writer.is_task:
+            clock = run[0]
+        if not thread.knows(writer, clock):
+            thread.vc = joined(thread.vc, at_clock(vc, writer.index, clock))
+
     def cut(self, low: Thread, high: LatestAccess) -> StatementNumber | None:
         """The statement by which `low` read and wrote the cell, if `high` can interrupt it and write too; else None."""
         for protection, statement in self.changed.get(low, {}).items():
@@ -101,4 +120,6 @@ class SharedCell:
                 if write:
                     self.writes.append(known)
             self.last = known
-        known.clock, known.statement, known.time = thread.clock, statement, time
+        # In `v[n++] = x` the step of the index and the access are one statement: their order is the compiler's.
+        known.clock = thread.clock - (thread.stepped == (statement, time) and not self.hands_over)
+        known.statement, known.time = statement, time

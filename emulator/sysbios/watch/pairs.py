@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any, Final, NamedTuple
 
+from emulator.c28x.ctypes import IntType
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     AddressOf,
@@ -106,6 +107,23 @@ def continued(modules: Iterable[Module]) -> dict[str, set[tuple[str, str]]]:
                 if sets & others:
                     found.setdefault(path, set()).add((routine_name, f.name))
     return found
+
+
+def arrays_of_flags(modules: Iterable[Module]) -> set[str]:
+    """The paths of arrays of integers whose elements are only ever set to constants: each is a flag, not data."""
+    arrays: set[str] = set()
+    data: set[str] = set()
+    for f in (f for module in modules for f in module.functions):
+        for s in statements(f.body):
+            target = s.target if isinstance(s, Assign) else None
+            for part in (p for root in roots(s) for p in parts(root)):
+                whole = part.lvalue if isinstance(part, AddressOf) else None
+                if whole is not None and isinstance(whole.root, Variable):
+                    data.add(whole.root.declaration.path)
+            if isinstance(target, LValue) and isinstance(target.root, Variable):
+                constant = isinstance(target.ctype, IntType) and isinstance(bare(s.value), Const)
+                (arrays if constant else data).add(target.root.declaration.path)
+    return arrays - data
 
 
 def turned_by_both(modules: Iterable[Module]) -> dict[str, set[str]]:

@@ -25,9 +25,9 @@ from emulator.c28x.symbols import Module
 from emulator.clock import us
 from emulator.sysbios.watch.accesses import LatestAccess, SharedCell
 from emulator.sysbios.watch.names import HandleNames
-from emulator.sysbios.watch.pairs import HandOver, Pair, continued, handed_over, pairs, turned_by_both
+from emulator.sysbios.watch.pairs import HandOver, Pair, arrays_of_flags, continued, handed_over, pairs, turned_by_both
 from emulator.sysbios.watch.statements import Function, StatementLocator, StatementNumber
-from emulator.sysbios.watch.threads import HWI_LEVEL, Gate, Routine, Thread, ThreadWatch, at_clock, excluded, joined
+from emulator.sysbios.watch.threads import HWI_LEVEL, Gate, Routine, Thread, ThreadWatch, excluded
 
 _RANK: Final = {"race-word": 1, "unmasked-long": 1, "race-long": 2, "race": 3}
 #: When this many locals are kept, those of functions that have returned are dropped.
@@ -43,7 +43,7 @@ class SharedObject:
         "per_element", "rank", "run", "under", "users", "written",
     )  # fmt: skip
 
-    def __init__(self, obj: Object) -> None:
+    def __init__(self, obj: Object, flags: bool = False) -> None:
         ctype = obj.declaration.ctype
         self.object = obj
         self.cells: dict[int, SharedCell] = {}
@@ -60,8 +60,8 @@ class SharedObject:
         self.beside: set[Object] = set()
         self.findings: dict[str, Finding] = {}
         self.rank = 0
-        #: Whether its integers may tell that other data is ready.  Elements of an array are data, so they do not.
-        self.hands_over = not isinstance(ctype, ArrayType)
+        #: Whether its integers may tell that other data is ready.  Elements of an array do so if they are flags.
+        self.hands_over = flags or not isinstance(ctype, ArrayType)
         #: Gate -> the functions that use the object while they hold it, each with a statement; the threads that use
         #: the object under any gate.
         self.under: dict[Gate, dict[Function, StatementNumber]] = {}
@@ -100,6 +100,8 @@ class Races:
         self._handed: dict[str, set[HandOver]] = {}
         #: Early hand-over -> the words that `main` still uses while the routine may use them too.
         self._late: dict[HandOver, set[tuple[Object, int]]] = {}
+        #: Arrays of flags, from the source; None: not read yet.
+        self._flags: set[str] | None = None
         self._threads = threads
         self._locator = locator
         self._names = names
@@ -136,8 +138,7 @@ class Races:
             if threads.routines:
                 self._joint(shared, offset)
             if cell.hands_over and not obj.ended:
-                cell.handed = (thread, thread.clock, thread.vc)
-                thread.clock += 1
+                cell.hand_over(thread, self._position.at, self._clock.now)
         if thread.entered:
             self._gates(shared, threads.gates(thread), thread, self._locator.here())
 
@@ -163,13 +164,9 @@ class Races:
             shared.written = True
             cell.writers.add(thread)
             if cell.hands_over and not shared.object.ended:
-                cell.handed = (thread, thread.clock, thread.vc)
-                thread.clock += 1
+                cell.hand_over(thread, statement, self._clock.now)
         else:
-            handed = cell.handed
-            if handed is not None and not thread.knows(handed[0], handed[1]):
-                writer, clock, vc = handed
-                thread.vc = joined(thread.vc, at_clock(vc, writer.index, clock))
+            cell.take_over(thread)
             cell.reader, cell.reader_statement = thread, statement
         if protection.gates:
             self._gates(shared, protection.gates, thread, statement)
@@ -224,7 +221,12 @@ class Races:
         known = self._locals.get(obj)
         if known is not None:
             return known
-        shared = SharedObject(obj)
+        flags = False
+        if isinstance(obj.declaration.ctype, ArrayType):
+            if self._flags is None:
+                self._flags = arrays_of_flags(self._modules)
+            flags = obj.declaration.path in self._flags
+        shared = SharedObject(obj, flags)
         if self._threads.routines:
             if self._pairs is None:  # Read late, because most images do not need it.
                 self._pairs, self._continued = pairs(self._modules), continued(self._modules)
@@ -290,7 +292,7 @@ class Races:
             at = access.statement
         elif not bare and q and not p:
             access, other, at = other, access, other.statement  # reported where the gate is missing
-        said = self._sentence(shared, rule, lost, low, high, access)
+        said = self._sentence(shared, rule, lost, low, high, access, "writes" if other.write else "reads")
         if goes_on:
             said += ": it goes on with this object and with others, which are set one by one"
         elif early and not lost:
@@ -350,15 +352,16 @@ class Races:
         return any(cell.owner is None and cell.writers for cell in cells)
 
     def _sentence(
-        self, shared: SharedObject, rule: str, lost: bool, low: Thread, high: Thread, access: LatestAccess | None
-    ) -> str:
-        """The message of a finding.  If `access` is None, `low` reads what `high` writes."""
+        self, shared: SharedObject, rule: str, lost: bool, low: Thread, high: Thread, access: LatestAccess | None,
+        does: str = "writes",
+    ) -> str:  # fmt: skip
+        """The message of a finding; `does`: what the other thread does.  If `access` is None, `low` only reads."""
         if access is None:
             access = LatestAccess(low, False, low.protection, 0, 0, 0)
         verb = "writes" if access.write else "reads"
-        writer = high if access.thread is low else low
+        other = high if access.thread is low else low
         nothing = "the interrupt is not masked" if self._threads.routines else "they share no gate"
-        said = f"{shared.object.declaration.path}: {access.thread} {verb} what {writer} writes, and {nothing}: "
+        said = f"{shared.object.declaration.path}: {access.thread} {verb} what {other} {does}, and {nothing}: "
         if lost:
             return said + f"a write of {high} between a read and a write of {low} is lost"
         if rule == "race":

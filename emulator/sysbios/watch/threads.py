@@ -76,8 +76,8 @@ class Thread:
     """A task, Swi, Hwi, Clock object or routine (`what`), or `main`."""
 
     __slots__ = (
-        "clock", "cpu", "entered", "index", "is_task", "left", "level", "name", "protection", "taken", "vc",
-        "what",
+        "clock", "cpu", "entered", "index", "is_task", "left", "level", "name", "protection", "run", "stepped", "taken",
+        "vc", "what",
     )  # fmt: skip
 
     def __init__(
@@ -92,6 +92,10 @@ class Thread:
         #: Its own clock, which grows at each release.  `vc` holds its value as of the last call of `known`.
         self.clock = 1
         self.vc = (*vc, *(0,) * (index - len(vc)), 1)
+        #: The clock up to which its present run has come, or its latest one: a Swi or handler runs many times.
+        self.run = [1]
+        #: The statement that has last told others something through a plain word, and when it did.
+        self.stepped: tuple[int, int] = (0, 0)
         #: What protected it at the last call of `ThreadWatch.protection`.
         self.protection = Protection(_NO_GATES, level, ALL_LINES, frozenset())
         #: The clock that it has taken over last from each object.
@@ -110,6 +114,16 @@ class Thread:
         """Whether what `other` did at its `clock` is ordered before what this thread does now."""
         vc = self.vc
         return other is self or (other.index < len(vc) and vc[other.index] >= clock)
+
+    def step(self) -> None:
+        """What it does from now on is later than what it has told others."""
+        self.clock += 1
+        self.run[0] = self.clock
+
+    def begin(self) -> None:
+        """A run of a Swi or handler begins."""
+        self.clock += 1
+        self.run = [self.clock]
 
     def known(self) -> VectorClock:
         """Its vector clock now, including its own component."""
@@ -196,6 +210,7 @@ class ThreadWatch:
                 self._update_handlers()
             self._nested.append(self.current)
             routine = self.of(Routine(number, name))
+            routine.begin()
             self._follow(number, routine)
             self.current = routine
 
@@ -228,11 +243,13 @@ class ThreadWatch:
         self._account(cycles)
         timer = next(timer for timer in self.kernel.clocks.queue if timer.name == name)
         self.current = self.of(timer)
+        self.current.begin()
         self.acquire(timer)
 
     def _push(self, what: Hwi | Swi | None) -> None:
         self._nested.append(self.current)
         thread = self.of(what)
+        thread.begin()
         self.acquire(what, thread)
         if isinstance(what, Hwi):
             self._follow(what.number, thread)
@@ -277,7 +294,7 @@ class ThreadWatch:
             self._of[what] = thread
             if isinstance(what, Task):
                 self._tasks[what.name] = thread
-            creator.clock += 1
+            creator.step()
         return thread
 
     def named(self, name: str) -> Thread | None:
@@ -297,7 +314,7 @@ class ThreadWatch:
         carried = self._carried.get(what)
         known = thread.known()
         self._carried[what] = known if carried is None else joined(carried, known)
-        thread.clock += 1  # What it does from now on is later than what the object carries.
+        thread.step()
 
     def acquire(self, what: Any, thread: Thread | None = None) -> None:
         """The running thread (or `thread`) takes over the vector clock that is stored at an object."""

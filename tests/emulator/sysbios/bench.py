@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from emulator.c28x.findings import Findings
+from emulator.c28x.sites import Place
 from emulator.clock import Clock
 from emulator.cpu import Cpu
 from emulator.sysbios.kernel import Kernel
@@ -99,7 +100,7 @@ class Pie:
         self.enabled: set[int] = set()
         self.acknowledged: list[int] = []
 
-    def set_vector(self, number: int, handler: Callable[[], None] | None) -> None:
+    def set_vector(self, number: int, handler: Callable[[], None] | None, _begins: Place | None = None) -> None:
         if number < 32:  # INT13 and INT14 bypass the groups
             assert handler is not None
             self.cpu.connect(number, handler)

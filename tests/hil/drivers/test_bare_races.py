@@ -14,6 +14,7 @@ struct TIME { Uint16 hours; Uint16 minutes; };
 volatile Uint16 Count, Waiting, Head, Tail, Ready, Flags, Bytes[8];
 volatile struct { Uint16 head; Uint16 tail; Uint16 words[8]; } Ring;
 volatile Uint32 Millis; volatile struct TIME Now; struct TIME Seen; Uint16 Words[8], Sum; Uint32 Copy;
+Uint16 Halves[2][4], Half; volatile Uint16 Full[2] = {1, 1};
 """
 
 MAIN = """
@@ -79,6 +80,13 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
         # The ring is never full in this run.
         ("if (((Head + 1) & 7) == Tail && Count > 999) Tail = (Tail + 1) & 7;", "Tail = (Tail + 1) % 8;",
          [("race", "Tail")]),
+        # The half that is played is filled: main does not ask the flags.
+        ("Sum += Halves[Half][Head]; if (++Head == 4) { Head = 0; Full[Half] = 0; Half ^= 1; }",
+         "Uint16 h, i; for (h = 0; h < 2; h++) { for (i = 0; i < 4; i++) Halves[h][i] = i; Full[h] = 1; }",
+         [("race", "Halves")]),
+        # An array of data hands nothing over.
+        ("Uint16 i; for (i = 0; i < 8; i++) Words[i] = Count;", "Uint16 i; for (i = 0; i < 8; i++) Sum += Words[i];",
+         [("race", "Words")]),
         # What the routine goes on with is set anew, one object after the other.
         ("if (Ready) { Sum += Words[Head]; Head++; if (Head == 8) { Head = 0; Ready = 0; } }", "Head = 0; Ready = 1;",
          [("race", "Head")]),
@@ -144,6 +152,21 @@ def test_what_an_interrupt_can_come_into_is_told(
         (
             "if (((Head + 1) & 7) != Tail) { Bytes[Head] = Count; Head = (Head + 1) & 7; }",
             "while (Tail != Head) { Sum += Bytes[Tail]; Tail = (Tail + 1) & 7; }",
+        ),
+        # Counters that are never set back, and the step of the index in the statement of the access.
+        (
+            "if ((Uint16)(Head - Tail) < 8) Bytes[Head++ % 8] = Count;",
+            "while (Tail != Head) Sum += Bytes[Tail++ % 8];",
+        ),
+        # To main a routine is one step: in it the flag may come before what it stands for.
+        ("if (!Ready) { Uint16 i; Ready = 1; for (i = 0; i < 8; i++) Words[i] = Count; }",
+         "if (Ready) { Uint16 i; for (i = 0; i < 8; i++) Sum += Words[i]; Ready = 0; }"),
+        # Two halves, and a flag in an array for each.
+        (
+            "Sum += Halves[Half][Head];"
+            " if (++Head == 4) { Head = 0; Full[Half] = 0; Half ^= 1; if (!Full[Half]) Count++; }",
+            "Uint16 h, i; for (h = 0; h < 2; h++)"
+            " if (!Full[h]) { for (i = 0; i < 4; i++) Halves[h][i] = i; Full[h] = 1; }",
         ),
         # A buffer that a flag hands over and back.
         (

@@ -1,0 +1,60 @@
+"""Findings about an interrupt's routine are reported at the routine, also when the kernel dispatches it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from hil.drivers.check import DriverFiles, check_files
+
+PROGRAM = """#include <xdc/std.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/family/c28/Hwi.h>
+#include "F28x_Project.h"
+
+static volatile Uint16 Periods = 0;
+
+static void On_Period(UArg unused)
+{
+    Periods++;
+    BODY
+}
+
+Int main(void)
+{
+    InitSysCtrl();
+    EALLOW;
+    CpuSysRegs.PCLKCR2.bit.EPWM1 = 1;
+    EDIS;
+    EPwm1Regs.TBPRD = 10000;
+    EPwm1Regs.TBCTL.bit.CTRMODE = 0;
+    EPwm1Regs.ETSEL.bit.INTSEL = 1;
+    EPwm1Regs.ETPS.bit.INTPRD = 1;
+    EPwm1Regs.ETSEL.bit.INTEN = 1;
+    Hwi_create(48, On_Period, NULL, NULL);
+    EALLOW;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 1;
+    EDIS;
+    BIOS_start();
+    return 0;
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("body", "rules"),
+    [
+        ("EPwm1Regs.ETCLR.bit.INT = 1;", []),
+        (";", ["flag-not-cleared"]),
+        ("EPwm1Regs.ETCLR.bit.INT = 1;\n    PieCtrlRegs.PIEIFR3.bit.INTx1 = 1;", ["interrupt-storm"]),
+    ],
+)
+def test_a_finding_about_a_hwi_is_at_its_function(body: str, rules: list[str], tmp_path: Path) -> None:
+    file = tmp_path / "periods.c"
+    file.write_text(PROGRAM.replace("BODY", body), encoding="utf-8")
+    findings = [f for f in check_files(DriverFiles([file], seconds=0.3)).findings if f.rule != "unmodelled"]
+    assert [f.rule for f in findings] == rules
+    for finding in findings:
+        assert finding.place is not None
+        assert finding.place.function == "On_Period"
