@@ -114,6 +114,7 @@ class Connections:
         self._trips()
         self._trip_actions()
         self._forced_trips()
+        self._dead_bands()
         self._post_processing()
         self._pairs()
         self._chip.pie.finish()
@@ -779,6 +780,16 @@ class Connections:
                         f"{select} trips output {x}, and no statement sets {name}.TZCTL.TZ{x}: 0 is high impedance",
                         object=f"{name}.TZCTL.TZ{x}", how="dynamic",
                     )  # fmt: skip
+
+    def _dead_bands(self) -> None:
+        """Delays of a dead band that is bypassed."""
+        for n in range(1, EPWM_COUNT + 1):
+            name, control = f"EPwm{n}Regs", f"EPwm{n}Regs.DBCTL"
+            delays = [delay for delay in ("DBRED", "DBFED") if self._value(f"{name}.{delay}", delay)]
+            place = self._source.last(name, delays[-1]) if delays else None
+            if place is not None and self._stuck(control, "OUT_MODE", bool):
+                missing = MissingLink(f"{control}.OUT_MODE = 0: the dead band is bypassed", control, "OUT_MODE")
+                self._report(place, f"the delays of {name} are set, but no edge is delayed", missing, control)
 
     def _forced_trips(self) -> None:
         """Trips that the program forces and that change no output."""

@@ -1,7 +1,8 @@
 """The values that a program's source can write to registers.  They are read from its typed tree.
 
 Only functions that can run count: `main`, interrupt routines, and all functions that these call or name (a task, an
-entry of a table).  A parameter has the values that its calls pass.
+entry of a table).  A parameter has the values that its calls pass.  A pointer to a block that is a parameter points to
+the blocks that its calls name.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from emulator.c28x.tree import (
     FunctionRef,
     Load,
     LValue,
+    RegisterAddress,
     RegisterAt,
     RegisterLoad,
     RegisterRef,
@@ -32,7 +34,7 @@ from emulator.c28x.tree import (
     Variable,
     Where,
 )
-from emulator.c28x.tree_queries import bare, blocks, last_loop, parts, roots, statements, within
+from emulator.c28x.tree_queries import assigned, bare, blocks, last_loop, parts, roots, statements, within
 from emulator.chip import ECAP_INPUT, XINT_INPUT
 from emulator.peripherals.dma import CHANNELS, CHINTE, CONTINUOUS, ONESHOT, PERINTE, RUN
 
@@ -95,7 +97,7 @@ class RegisterWrites:
     def __init__(self, modules: Iterable[Module]) -> None:
         #: (block, register) -> its assignments in the order of the source; the CPU's IER and IFR are of block "CPU".
         self.writes: dict[tuple[str, str], list[Write]] = {}
-        #: Register -> its assignments through a pointer to a block.
+        #: Register -> its assignments through a pointer to a block, if the source does not show which block.
         self.pointed: dict[str, list[Write]] = {}
         #: (block, register) -> where the source reads it; the fields that it reads ("": the whole register).
         self.reads: dict[tuple[str, str], list[Place]] = {}
@@ -110,10 +112,12 @@ class RegisterWrites:
         self._over = self._of_start_up(own) - self._behind_start_up(modules, own)
         self._given: dict[Variable, list[Expr]] = {}
         self._free: set[Variable] = set()
+        #: Parameters that their function assigns to.
+        self._changed = {v for f in reached for s in statements(f.body) if (v := assigned(s)) is not None}
         for f in reached:
             self._read_calls(f)
         for f in reached:
-            self._read_writes(f)
+            self._read_accesses(f)
         for name, fields in _FUNCTIONS.items():
             for place, arguments in self.calls.get(name, ()):
                 for (block, register, mask), what in fields:
@@ -189,11 +193,7 @@ class RegisterWrites:
     def _read_calls(self, f: Function) -> None:
         for s in statements(f.body):
             for part in (part for root in roots(s) for part in parts(root)):
-                if isinstance(part, RegisterLoad) and isinstance(part.register, RegisterRef):
-                    register, field = part.register, part.register.field
-                    self.reads.setdefault((register.block, register.register), []).append(_place(f, s.where))
-                    self.read_fields.add((register.block, register.register, field.name if field else ""))
-                elif isinstance(part, FunctionRef):
+                if isinstance(part, FunctionRef):
                     self._free |= set(part.function.parameters)
                 elif isinstance(part, Call):
                     where = part.where if part.where.line else s.where
@@ -201,8 +201,15 @@ class RegisterWrites:
                     for parameter, value in zip(part.function.parameters, part.arguments, strict=False):
                         self._given.setdefault(parameter, []).append(value)
 
-    def _read_writes(self, f: Function) -> None:
+    def _read_accesses(self, f: Function) -> None:
         for s in statements(f.body):
+            for part in (part for root in roots(s) for part in parts(root)):
+                if isinstance(part, RegisterLoad):
+                    register = part.register
+                    name = register.register if isinstance(register, RegisterRef) else register.name
+                    for block in self._blocks(register) or ():
+                        self.reads.setdefault((block, name), []).append(_place(f, s.where))
+                        self.read_fields.add((block, name, register.field.name if register.field else ""))
             if not isinstance(s, Assign) or not isinstance(s.target, RegisterAt | RegisterRef):
                 continue
             target, place = s.target, _place(f, s.where)
@@ -213,10 +220,33 @@ class RegisterWrites:
                 mask, values = target.field.mask, self.values(s.value)
                 if values is not None:
                     values = frozenset(value << shift & mask for value in values)
-            if isinstance(target, RegisterAt):
-                self.pointed.setdefault(target.name, []).append(Write(mask, values, place))
-            else:
-                self.writes.setdefault((target.block, target.register), []).append(Write(mask, values, place))
+            name, named = (target.register if isinstance(target, RegisterRef) else target.name), self._blocks(target)
+            for block in named or ():
+                self.writes.setdefault((block, name), []).append(Write(mask, values, place))
+            if named is None:
+                self.pointed.setdefault(name, []).append(Write(mask, values, place))
+
+    def _blocks(self, register: RegisterRef | RegisterAt) -> list[str] | None:
+        """The blocks whose register an access can mean; None if a pointer can point to any."""
+        return [register.block] if isinstance(register, RegisterRef) else self._pointed_at(register.block)
+
+    def _pointed_at(self, pointer: Expr, deep: int = 4) -> list[str] | None:
+        """The blocks that a pointer can point to, from the calls that pass it; None if that is not known."""
+        pointer = bare(pointer)
+        if isinstance(pointer, RegisterAddress):
+            return None if pointer.register else [pointer.block]
+        match pointer:
+            case Load(lvalue=LValue(root=Variable(kind="parameter") as variable, indices=[])) if deep:
+                if variable in self._free or variable in self._changed or variable.in_memory:
+                    return None
+                found: list[str] = []
+                for given in self._given.get(variable, ()):
+                    named = self._pointed_at(given, deep - 1)
+                    if named is None:
+                        return None
+                    found += [block for block in named if block not in found]
+                return found or None
+        return None
 
     def _bits(self, value: Expr) -> tuple[int, Values]:
         """The mask of the bits that an assignment to a whole register sets, and their values.

@@ -19,6 +19,7 @@ from random import Random
 from typing import Any, Final
 
 from emulator.c28x.findings import Findings
+from emulator.c28x.sites import Place
 from emulator.clock import CYCLES_PER_MS, Clock
 from emulator.cpu import Cpu
 from emulator.sysbios.kernel import Kernel
@@ -170,7 +171,7 @@ class SyntheticTasks:
         self._cpu.write_ier(0xFFFF)
         kernel.BIOS_start()
 
-    def _set_vector(self, number: int, handler: Callable[[], None] | None) -> None:
+    def _set_vector(self, number: int, handler: Callable[[], None] | None, _begins: Place | None = None) -> None:
         if number < _FIRST_VECTOR:
             assert handler is not None
             self._cpu.connect(number, handler)

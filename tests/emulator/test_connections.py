@@ -479,6 +479,47 @@ def test_an_interrupt_of_the_spi_is_enabled_there_too(tmp_path: Path, line: int,
     assert [why in finding.message for finding in told(tmp_path, text)] == [True] * bool(why)
 
 
+#: A module is set up through a pointer; its trip comes from comparator 1 by TRIP4 of the X-BAR.
+POINTED = TRIPPED.replace("void main(void)", """static void Set_Up(volatile struct EPWM_REGS *pwm)
+{
+    EALLOW;
+    pwm->TZCTL.bit.TZA = TZ_FORCE_LO;
+    pwm->TZCTL.bit.TZB = TZ_FORCE_LO;
+    pwm->DCTRIPSEL.bit.DCAHCOMPSEL = 3;
+    pwm->TZDCSEL.bit.DCAEVT1 = TZ_DCAH_HI;
+    pwm->TZSEL.bit.DCAEVT1 = 1;
+    EDIS;
+    pwm->DBCTL.bit.POLSEL = DB_ACTV_HIC;
+    pwm->DBCTL.bit.OUT_MODE = DB_FULL_ENABLE;
+    pwm->DBRED.bit.DBRED = 20;
+}
+void main(void)""").replace("    InputXbarRegs.INPUT1SELECT = 40;", """    CpuSysRegs.PCLKCR14.bit.CMPSS1 = 1;
+    Cmpss1Regs.COMPCTL.bit.COMPDACE = 1;
+    Cmpss1Regs.DACHVALS.bit.DACVAL = 4000;
+    EPwmXbarRegs.TRIP4MUXENABLE.bit.MUX0 = 1;
+    Set_Up(&EPwm4Regs);
+    EALLOW;
+    InputXbarRegs.INPUT1SELECT = 40;""")
+for line in ("TZCTL.bit.TZA = TZ_FORCE_LO", "TZCTL.bit.TZB = TZ_FORCE_LO", "DBCTL.bit.POLSEL = DB_ACTV_HIC",
+             "DBCTL.bit.OUT_MODE = DB_FULL_ENABLE", "DBRED.bit.DBRED = 20"):  # fmt: skip
+    POINTED = POINTED.replace(f"    EPwm4Regs.{line};\n", "")
+
+
+@pytest.mark.parametrize(("was", "at", "why"), [
+    ("Cmpss1Regs.COMPCTL.bit.COMPDACE = 1;", "DCAHCOMPSEL = 3", "comparator 1 is off"),
+    ("EPwmXbarRegs.TRIP4MUXENABLE.bit.MUX0 = 1;", "DCAHCOMPSEL = 3", "no mux of it is enabled"),
+    ("pwm->TZDCSEL.bit.DCAEVT1 = TZ_DCAH_HI;", "TZSEL.bit.DCAEVT1 = 1", "names no condition"),
+    ("pwm->DBCTL.bit.OUT_MODE = DB_FULL_ENABLE;", "POLSEL", "the dead band is bypassed"),
+    ("", "", ""),
+])  # fmt: skip
+def test_a_block_that_only_a_pointer_names(tmp_path: Path, was: str, at: str, why: str) -> None:
+    assert POINTED.count(was) == 1 or not was
+    text = POINTED.replace(was, "") if was else POINTED
+    findings = told(tmp_path, text, "not-connected", seconds=0.01)
+    assert [why in f.message for f in findings] == [True] * bool(was)
+    assert all(f.place is not None and at in text.splitlines()[f.place.line - 1] for f in findings)
+
+
 #: ePWM2 moves two outputs and is tripped on order; its counter starts SOC0, whose result is watched; eCAP1 measures
 #: GPIO24, while GPIO0 is an output of ePWM1.
 PARTS = """#include "F28x_Project.h"

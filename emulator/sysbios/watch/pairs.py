@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any, Final, NamedTuple
 
-from emulator.c28x.ctypes import IntType
+from emulator.c28x.ctypes import ArrayType, IntType
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     AddressOf,
@@ -115,14 +115,13 @@ def arrays_of_flags(modules: Iterable[Module]) -> set[str]:
     data: set[str] = set()
     for f in (f for module in modules for f in module.functions):
         for s in statements(f.body):
-            target = s.target if isinstance(s, Assign) else None
             for part in (p for root in roots(s) for p in parts(root)):
                 whole = part.lvalue if isinstance(part, AddressOf) else None
                 if whole is not None and isinstance(whole.root, Variable):
                     data.add(whole.root.declaration.path)
-            if isinstance(target, LValue) and isinstance(target.root, Variable):
-                constant = isinstance(target.ctype, IntType) and isinstance(bare(s.value), Const)
-                (arrays if constant else data).add(target.root.declaration.path)
+            match s:
+                case Assign(target=LValue(root=Variable(ctype=ArrayType(element=IntType())) as root), value=value):
+                    (arrays if isinstance(bare(value), Const) else data).add(root.declaration.path)
     return arrays - data
 
 
