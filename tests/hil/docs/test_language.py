@@ -7,6 +7,11 @@ from pathlib import Path
 
 import pytest
 
+# A pytest within this one forgets what it imported, and a second one would mix two copies of reader and builder.
+import emulator.c28x.compile
+import emulator.c28x.readers.c.declarations
+import emulator.c28x.readers.c.source
+import emulator.c28x.readers.python.source  # noqa: F401
 import hil
 from emulator.c28x.readers.c import device_headers, library_headers, register_types
 from tests import pages

@@ -47,7 +47,7 @@ def main() -> None:
     try:
         with sync_playwright() as driver:
             browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-            page = browser.new_page(viewport={"width": 1500, "height": 1250})
+            page = browser.new_page(viewport={"width": 1500, "height": 1300})
             page.set_default_timeout(30_000)
             page.goto(view.address)
             page.locator("g.robot").first.wait_for(state="attached", timeout=90_000)
