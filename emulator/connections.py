@@ -21,6 +21,7 @@ from typing import Final
 
 from emulator.c28x.link import Linked
 from emulator.c28x.sites import Place
+from emulator.can_bus import TOLERANCE, CanPart
 from emulator.chip import (
     ADC_PIE,
     ADCEVT_PIE,
@@ -38,9 +39,9 @@ from emulator.chip import (
     XINT_PIE,
     Chip,
 )
-from emulator.clock import CYCLES_PER_US
+from emulator.clock import CYCLES_PER_US, SYSCLK_HZ
 from emulator.peripherals.can import REQUEST, WRITE
-from emulator.peripherals.can_objects import OBJECTS
+from emulator.peripherals.can_objects import DIR, ID, MSGLST, MSGVAL, OBJECTS, RXIE, STANDARD_ID
 from emulator.peripherals.dma import CHANNELS as DMA_CHANNELS
 from emulator.peripherals.epwm_checks import CompareBeyondPeriod
 from emulator.peripherals.epwm_xbar import TRIPS as XBAR_TRIP_OUTPUTS
@@ -892,7 +893,9 @@ class Connections:
                     missing = MissingLink(f"no statement sets {arbitration}.MsgVal", arbitration)
                     self._report(place, "the message object that is set up here is not valid", missing, arbitration)
             self._messages(block, letter, commands)
+            self._objects(block, letter, commands)
             self._own_frames(block, letter)
+            self._bit_rate(block, letter)
 
     def _messages(self, block: str, letter: str, commands: list[str]) -> None:
         """Messages that are written and never sent, or that are taken again and again."""
@@ -918,6 +921,51 @@ class Connections:
                     f"{ram[again].read_again} times more, and a new message cannot be recognised",
                     object=f"{block}.CAN_NDAT_21", how="dynamic",
                 )  # fmt: skip
+
+    def _objects(self, block: str, letter: str, commands: list[str]) -> None:
+        """Message objects with an identifier in the wrong bits, with data that are not sent, or that nobody reads."""
+        asks = any(self._requests(command, writing=True) for command in commands)
+        for number in range(1, OBJECTS + 1):
+            message = self._chip.can[letter].ram[number]
+            word = message.arbitration
+            if not word & MSGVAL or message.extended:
+                continue
+            if word & ID and not word & STANDARD_ID:
+                why = f"{word & ID:#x} is below bits 28 to 18, where an identifier of 11 bits is: it has identifier 0"
+            elif message.taken and message.control & MSGLST and not message.used:
+                how = "RxIE = 1" if message.control & RXIE else "RxIE = 0, so no interrupt says that they are there"
+                why = f"it receives messages which the program never reads ({how})"
+            elif asks and not word & DIR and any(message.data) and not message.taken:
+                why = "Dir = 0: TxRqst sends a remote frame, and not the data that were written to it"
+            else:
+                continue
+            which, word = ("MCTL", message.control) if message.taken else ("ARB", word)
+            registers = [f"{block}.CAN_IF{n}{which}" for n in (1, 2)]
+            places = [self._source.giving(*_split(register), self._mask(register, ""), word) for register in registers]
+            place = next(filter(None, places), None) or next(
+                filter(None, (self._source.last(*_split(register)) for register in registers)), None
+            )
+            if place is not None:
+                self._chip.findings.report_at(
+                    place, "not-connected", f"object {number} of {block}: {why}", object=f"{block}.{number}",
+                    how="dynamic",
+                )  # fmt: skip
+
+    def _bit_rate(self, block: str, letter: str) -> None:
+        """A controller that shares no bit rate with any node of its bus, and has neither sent nor received a frame."""
+        can = self._chip.can[letter]
+        others = [node for node in self._chip.can_bus[letter].nodes if isinstance(node, CanPart)]
+        place = self._source.last(block, "CAN_BTR")
+        own = can.bit_cycles
+        if not others or place is None or can.heard or can.in_loopback:
+            return
+        if all(abs(node.bit_cycles - own) * TOLERANCE > max(node.bit_cycles, own) for node in others):
+            self._chip.findings.report_at(
+                place, "serial-rate",
+                f"{block} sends and receives {round(SYSCLK_HZ / own)} bits a second, and the bus has "
+                f"{round(SYSCLK_HZ / others[0].bit_cycles)}: no frame has passed",
+                object=f"{block}.CAN_BTR", how="dynamic",
+            )  # fmt: skip
 
     def _own_frames(self, block: str, letter: str) -> None:
         """A controller in loopback receives only its own frames, and an object waits for a frame that never passes."""

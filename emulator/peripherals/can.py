@@ -122,6 +122,8 @@ class Can:
         self._ram_init, self._mux = registers["CAN_RAM_INIT"], registers["CAN_IP_MUX21"]
         self._observed, self._updates = registers["CAN_IF3OBS"], registers["CAN_IF3UPD"]
         self.ram = MessageRam()
+        #: Whether it has ever sent or received a frame without an error.
+        self.heard = False
         #: Frames in loopback that none of its objects took.
         self.passed_by = 0
         #: The bus at the pins; the inner bus, which no other node hears; the bus that it is on now.
@@ -341,6 +343,7 @@ class Can:
 
     def _record_result(self, lec: int, ok: int) -> None:
         """Last error code, flags and counters after a frame, with their interrupts."""
+        self.heard |= bool(ok)
         before = self._es.value
         counted = self._tec, self._rec
         state = EWARN if max(counted) >= WARNING else 0
@@ -565,6 +568,7 @@ class Can:
             if word & (DATA_A | DATA_B) and each.control & NEWDAT:
                 each.read_again += not each.fresh
                 each.fresh = False
+                each.used = True
             if word & CLEAR_PENDING:
                 each.control &= ~INTPND
             if word & REQUEST:

@@ -41,7 +41,7 @@ DLC: Final = 0xF
 class MessageObject:
     """One message object, in the format of the interface registers."""
 
-    __slots__ = ("arbitration", "control", "data", "fresh", "mask", "read_again", "taken")
+    __slots__ = ("arbitration", "control", "data", "fresh", "mask", "read_again", "taken", "used")
 
     def __init__(self) -> None:
         self.mask = 0
@@ -54,6 +54,8 @@ class MessageObject:
         self.read_again = 0
         #: Whether it has ever taken a frame.
         self.taken = False
+        #: Whether the program has ever read its message.
+        self.used = False
 
     @property
     def extended(self) -> bool:

@@ -147,13 +147,16 @@ clocks and the registers that produce them.
     _rule(
         "serial-rate",
         Severity.ERROR,
-        "The two ends of a serial line use different baud rates.",
+        "The two ends of a serial line, or the nodes of a CAN, use different rates.",
         """
 The receiver gets wrong characters, or none.
 
 The two ends of the line use different bit times. The tenth bit is sampled 9.5 bit times after the start edge, so an
 error of half a bit there is too much. The baud rate is LSPCLK / (8 * (BRR + 1)). LSPCLK is SYSCLK / 4 after reset;
 `LOSPCP` sets it. If the driver assumes another LSPCLK, its rate is wrong by that factor.
+
+On a CAN the bit time comes from `CAN_BTR` and SYSCLK. A controller that has the bit time of no other node, and that has
+neither sent nor received a frame, is reported at the end of a run.
 
 If you check a program without a board of its own (`--board`), its real peer may use another rate than the robot's
 peer. Then the finding is a note.
@@ -186,7 +189,8 @@ connections are checked:
   (`CAPLDEN`), or its sequence ends before the event that is enabled (`STOP_WRAP`).
 * eQEP: the program reads `QPOSLAT`, which the unit timer never loads (`QCLM`), or the unit timer has no period.
 * ePWM digital compare: it uses a TRIP input of the X-BAR that has no enabled mux, or a comparator that is off.
-* ePWM outputs: the dead band makes a pair of outputs, and one of them has no pin. A compare value is above the period,
+* ePWM outputs: the dead band makes a pair of outputs, and one of them has no pin. Its delays are set, and it is
+  bypassed (`OUT_MODE = 0`). A compare value is above the period,
   so the output never changes there (one above the period means 100 % and is right). A compare register is never loaded
   from its shadow (`LOADAMODE = 3`), or its values change nothing, because its output switches at the other compare. A
   trip that the program forces changes no output (`TZA = 3`).
@@ -194,7 +198,9 @@ connections are checked:
 * I2C and SCI: the module stays in reset, or an interrupt needs more characters than the FIFO holds.
 * SPI: the interrupt of a direction is not enabled.
 * CAN: an interrupt line is not enabled, the controller stays in Init, a message object that is set up is never valid,
-  nothing requests its transmission, or in loopback its filter passes none of the controller's own frames.
+  nothing requests its transmission, or in loopback its filter passes none of the controller's own frames. An identifier
+  of 11 bits is in the lower bits of `ARB`, which only extended identifiers have. Data are written to an object with
+  `Dir = 0`, whose request sends a remote frame. An object receives messages, and the program never reads one.
 * Pins: the chip itself drives a pin, and the input qualification of the pin needs longer pulses.
 
 The check is made at the end of a run. It reports a setting only if no statement of the program could set it. A program

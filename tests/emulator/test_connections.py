@@ -387,7 +387,7 @@ void main(void)
     CanaRegs.CAN_CTL.bit.Init = 0;
     for (;;) {
         if (Seen < 3) {
-            CanaRegs.CAN_IF1DATA.all = Seen;
+            CanaRegs.CAN_IF1DATA.all = Seen + 1;
             CanaRegs.CAN_IF1CMD.all = 0x00870003uL;
             Wait();
         }
@@ -420,6 +420,12 @@ GOT = """    EALLOW;
     ("0x00870003uL", "0x00830003uL", "not-connected", "no statement sets TxRqst"),
     ("0x00070004uL", "0x00030004uL", "flag-not-cleared", "NewDat of object 4"),
     ("0x80000000uL | (0x55uL << 18)", "0x80000000uL | (0x55uL << 17)", "not-connected", "for identifier 0x2a"),
+    ("0x80000000uL | (0x55uL << 18)", "0x80000000uL | 0x55uL", "not-connected", "0x55 is below bits 28 to 18"),
+    ("if (CanaRegs.CAN_NDAT_21 & 8uL) {", "if (CanaRegs.CAN_NDAT_21 & 16uL) {", "not-connected", "never reads"),
+    # Bits below an identifier of 11 bits that is where it belongs are ignored, as those of an extended one are used.
+    ("0x80000000uL | (0x55uL << 18)", "0x80000000uL | (0x55uL << 18) | 1", "", ""),
+    ("0xA0000000uL | (0x55uL << 18)", "0xE0000000uL | 0x55uL", "not-connected", "for identifier 0x55"),
+    ("0xA0000000uL | (0x55uL << 18)", "0x80000000uL | (0x55uL << 18)", "not-connected", "TxRqst sends a remote frame"),
     # Another object takes what this one does not want.
     ("    CanaRegs.CAN_IF2MCTL.all = 0x0088uL;\n    CanaRegs.CAN_IF2CMD.all = 0x00B00004uL;\n",
      "    CanaRegs.CAN_IF2MCTL.all = 0x0088uL;\n    CanaRegs.CAN_IF2CMD.all = 0x00B00004uL;\n    Wait();\n"
@@ -443,6 +449,42 @@ def test_a_can_controller_that_is_not_set_up_whole(tmp_path: Path, was: str, now
     found = [f for name in ("not-connected", "flag-not-cleared") for f in told(tmp_path, text, name, seconds=0.01)]
     assert [f.rule for f in found] == [rule] * bool(rule)
     assert all(why in f.message and f.place is not None for f in found)
+
+
+#: A node that sends 0x123 each millisecond, with 500 kbit/s.
+MASTER = """
+from emulator.can_bus import CanFrame, CanPart
+from emulator.clock import CYCLES_PER_MS
+from hil.board import Board
+
+
+class Master(Board):
+    def solder(self):
+        node = self.on_can("master", CanPart(500_000), bus="A")
+        for ms in range(1, 9):
+            self.clock.schedule(ms * CYCLES_PER_MS, lambda: node.send(CanFrame(0x123, b"12")))
+"""
+
+
+@pytest.mark.parametrize(("prescaler", "rates"), [(20, ""), (10, "1000000 bits a second, and the bus has 500000")])
+def test_a_can_controller_of_another_bit_rate(tmp_path: Path, prescaler: int, rates: str) -> None:
+    board = tmp_path / "master.py"
+    board.write_text(MASTER, encoding="utf-8")
+    text = CAN.replace("    CanaRegs.CAN_CTL.bit.Test = 1;\n    CanaRegs.CAN_TEST.bit.LBACK = 1;\n", """    EALLOW;
+    GpioCtrlRegs.GPBGMUX1.bit.GPIO36 = 1;
+    GpioCtrlRegs.GPBMUX1.bit.GPIO36 = 2;
+    GpioCtrlRegs.GPBGMUX1.bit.GPIO37 = 1;
+    GpioCtrlRegs.GPBMUX1.bit.GPIO37 = 2;
+    EDIS;
+""")
+    file = tmp_path / "drv.c"
+    file.write_text(text.replace("19uL |", f"{prescaler - 1}uL |"), encoding="utf-8")
+    wanted = DriverFiles([file], seconds=0.01, board=load(str(board)), board_named=True)
+    found = [f for f in check_files(wanted).findings if f.rule == "serial-rate"]
+    assert [rates in f.message for f in found] == [True] * bool(rates)
+    for finding in found:
+        assert finding.place is not None
+        assert "CAN_BTR" in file.read_text().splitlines()[finding.place.line - 1]
 
 
 @pytest.mark.parametrize(("statement", "silent"), [
