@@ -94,13 +94,13 @@ def test_a_build_that_is_not_whole_is_left_alone(tree: Path, damage: str) -> Non
         manifest.write_text(manifest.read_text("utf-8")[:-9], "utf-8")
     else:
         manifest.write_text("[]", "utf-8")
-    assert compiled.look(store, tree) == ("stale", {})
+    assert compiled.find_build(store, tree) == ("stale", {})
 
 
 def test_without_a_build_and_after_removing_it_python_runs(tree: Path) -> None:
     assert build.clean(store_of(tree))
     assert not build.clean(store_of(tree))
-    assert compiled.look(store_of(tree), tree) == ("none", {})
+    assert compiled.find_build(store_of(tree), tree) == ("none", {})
     assert chosen(tree) == ("pure", ".py")
 
 
@@ -138,7 +138,7 @@ def test_without_a_c_compiler_nothing_is_translated_and_the_build_before_stays(
         build.build(tree, store_of(tree))
     assert str(told.value).endswith(build.STILL)
     assert "\n" not in str(told.value)
-    assert compiled.look(store_of(tree), tree)[0] == "fresh"
+    assert compiled.find_build(store_of(tree), tree)[0] == "fresh"
     assert [each.name for each in store_of(tree).parent.iterdir()] == [store_of(tree).name]
 
 
