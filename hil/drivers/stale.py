@@ -95,7 +95,7 @@ _NOTHING: Final[frozenset[Origin]] = frozenset()
 Ages = dict[str, int]
 
 
-class Output(NamedTuple):
+class Actuation(NamedTuple):
     """What acts on the outside: the registers that it may write, its value, and its text in a report."""
 
     registers: tuple[str, ...]
@@ -126,7 +126,7 @@ class ValueSources:
                     case For(variable=LValue(root=Variable() as root), start=start):
                         self._assigned.setdefault(root, []).append(start)
 
-    def outputs(self) -> Iterator[tuple[Output, tuple[Expr, ...]]]:
+    def outputs(self) -> Iterator[tuple[Actuation, tuple[Expr, ...]]]:
         """The statements that act on the outside, each with the tests around it."""
         for found in self.at.values():
             for s, _, tests in found:
@@ -134,7 +134,7 @@ class ValueSources:
                 if output is not None:
                     yield output, tests
 
-    def used(self, output: Output, tests: tuple[Expr, ...], calls: list[tuple[Place, str]]) -> frozenset[Origin]:
+    def used(self, output: Actuation, tests: tuple[Expr, ...], calls: list[tuple[Place, str]]) -> frozenset[Origin]:
         """The inputs of an output: those of its value, or for a constant value those of the tests around it."""
         if not isinstance(bare(output.value), Const):
             return self.origins(output.value, calls)
@@ -142,7 +142,7 @@ class ValueSources:
             return _NOTHING
         return frozenset().union(*(self.origins(test, calls) for test in tests))
 
-    def chosen(self, output: Output, tests: tuple[Expr, ...], calls: list[tuple[Place, str]]) -> int:
+    def chosen(self, output: Actuation, tests: tuple[Expr, ...], calls: list[tuple[Place, str]]) -> int:
         """How many calls up the value of an output is chosen.  Functions in between only pass it on."""
         if self.used(output, tests, []):
             return 0
@@ -534,14 +534,14 @@ def _name(register: RegisterRef) -> str:
     return f"{register.block}.{register.register}"
 
 
-def _output(s: Stmt) -> Output | None:
+def _output(s: Stmt) -> Actuation | None:
     """What a statement does to the outside; None if it does nothing."""
     match s:
         case Assign(target=RegisterRef() as target, value=value):
             name = _name(target)
-            return Output((name,), value, register_text(target)) if _LEVEL.match(name) or _PIN.match(name) else None
+            return Actuation((name,), value, register_text(target)) if _LEVEL.match(name) or _PIN.match(name) else None
         case Evaluate(value=Call(function=Function(extern=True, name="GPIO_WritePin"), arguments=[pin, value])):
-            return Output(_SET, value, f"pin {source_text(pin)}")
+            return Actuation(_SET, value, f"pin {source_text(pin)}")
     return None
 
 

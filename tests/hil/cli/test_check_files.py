@@ -400,7 +400,7 @@ class TestC:
         (["ok.c", "-I", "nowhere"], "-I nowhere: there is no such folder"),
         (["ok.c", "-D", "1X"], "-D 1X: expected NAME"),
         (["ok.c", "--abi", "elf"], "--abi elf: one of coff, eabi"),
-        (["-D", "X"], "-D: it is for C files"),
+        (["-D", "X"], "-D needs C files"),
     ],
 )
 def test_bad_input_is_one_line(
