@@ -98,7 +98,7 @@ WORDS: Final = """
 ARENA: Final = """
 .arena { background:var(--paper); border:1px solid var(--line); border-radius:6px; overflow:hidden; position:relative;
   flex:1 1 0; min-height:260px; }
-.window { position:absolute; inset:0; touch-action:pan-y; cursor:grab; }
+.window { position:absolute; inset:0; touch-action:pan-y; cursor:grab; user-select:none; }
 /* Each layer is painted by itself: a robot that moves leaves the cloud alone.  Lines are as wide at any zoom. */
 .window .layer { position:absolute; inset:0; width:100%; height:100%; will-change:transform; pointer-events:none; }
 .window .layer * { vector-effect:non-scaling-stroke; }

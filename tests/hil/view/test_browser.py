@@ -139,6 +139,7 @@ def test_an_obstacle_can_be_added_moved_and_removed(page: Any, shot: Shot) -> No
     sees(page, lambda: page.locator("circle.post").count() == count + 1, "no obstacle")
     shot(page, "obstacle")
     button(page, "drag").click()
+    page.wait_for_timeout(500)  # the hand is another one when the server has heard of it
     page.mouse.move(x + 150, y)
     page.mouse.down()
     page.mouse.move(x + 150, y - 80, steps=4)
