@@ -60,7 +60,7 @@ def test_an_interrupted_one_tells_what_it_has(capsys: pytest.CaptureFixture[str]
     def ctrl_c(_soaked: SoakResult) -> None:
         raise KeyboardInterrupt
 
-    told = soak(1e6, seed=1, told=ctrl_c)
+    told = soak(1e6, seed=1, on_progress=ctrl_c)
     assert told.interrupted
     assert sum(told.mounted.values()) == 1
     assert 0 < told.seconds < 60
