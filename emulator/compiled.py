@@ -1,9 +1,9 @@
 """Uses the compiled build of these sources, if there is one that belongs to them.
 
-`hil build` compiles the modules that take most of the time into extension modules.  Names and results are the same, at
-two to three times the speed.  They lie in a folder of their own.  A manifest there names every source that they may
-depend on, with its SHA-256.  If one source differs, the whole build is ignored: so the program always runs the sources
-as they are.  `HIL_PURE=1` ignores the build too.
+`hil build` compiles the modules that take most of the time into extension modules, and with them the robot's firmware
+(`program`).  Names and results are the same, at three to five times the speed.  They lie in a folder of their own.  A
+manifest there names every source that they may depend on, with its SHA-256.  If one source differs, the whole build is
+ignored: so the program always runs the sources as they are.  `HIL_PURE=1` ignores the build too.
 """
 
 from __future__ import annotations
@@ -12,11 +12,13 @@ import json
 import os
 import sys
 from hashlib import sha256
+from importlib import import_module
 from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec
 from importlib.util import spec_from_file_location
 from pathlib import Path
 from sysconfig import get_config_var
+from types import ModuleType
 from typing import Any, Final
 
 #: The folder of the packages.  Sources are named relative to it.
@@ -67,6 +69,24 @@ def install() -> str:
         return "stale" if state == "stale" else "pure"
     sys.meta_path.insert(0, Finder(files))
     return "compiled"
+
+
+def program_name(identity: str) -> str:
+    """The name of the module with a program of firmware, which `c28x/typed_text.py` identifies."""
+    return f"program_{identity[:16]}"
+
+
+def program(identity: str) -> ModuleType | None:
+    """The module with a program of firmware.
+
+    None if the build has none, or is not used, or if a debugger is there: it stops in the program's own lines only
+    where they are interpreted.
+    """
+    if sys.gettrace() is not None or "pydevd" in sys.modules:
+        return None
+    name = program_name(identity)
+    built = any(isinstance(finder, Finder) and name in finder.files for finder in sys.meta_path)
+    return import_module(name) if built else None
 
 
 #: How this process runs.

@@ -14,7 +14,8 @@ from collections.abc import Callable
 from typing import Final, NoReturn
 
 from emulator.c28x.findings import Findings
-from emulator.c28x.sites import INTERRUPT, Place
+from emulator.c28x.position import INTERRUPT
+from emulator.c28x.sites import Place
 from emulator.clock import CYCLES_PER_MS, Clock, ms
 
 #: Cycles from recognition to the first instruction of the handler (SPRU430: 14 words saved, 14 cycles at least).

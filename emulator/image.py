@@ -17,6 +17,7 @@ from emulator.c28x.cache import compiled
 from emulator.c28x.compiled_program import Compiled, CompileOptions
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType, specified
+from emulator.c28x.emit.written import CALLED
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.c28x.link import Linked
 from emulator.c28x.memory import Pointer
@@ -241,11 +242,12 @@ def runtime_of(
 
 def bind(
     system: System, program: Compiled, runtime: Runtime, *, externs: Mapping[str, Callable[..., Any]] | None = None,
-    coverage: Coverage | None = None,
+    coverage: Coverage | None = None, built: Callable[[str], Any] | None = None,
 ) -> Linked:  # fmt: skip
     """Bind a compiled program to `system`.
 
     `externs` replaces externs or firmware functions by name.  A program that was compiled with `watch` is watched.
+    `built` is that of `Linked`.
     """
     rts = Rts(runtime)
     implemented: dict[str, Callable[..., Any]] = {
@@ -253,8 +255,9 @@ def bind(
     }
     implemented.update(system.externs())
     linked = Linked(
-        program, runtime, registers=system.register, externs=implemented, replaced=externs or {}, coverage=coverage
-    )
+        program, runtime, registers=system.register, externs=implemented, replaced=externs or {}, coverage=coverage,
+        built=built,
+    )  # fmt: skip
     if program.options.watch:
         system.watch(linked)
     return linked
@@ -269,6 +272,7 @@ def link(
     include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "coff",
     coverage: Coverage | None = None, steps: bool = False,
     calibration: Mapping[str, float] | None = None, asked: Mapping[str, Any] | None = None, keep: bool = True,
+    called: bool = CALLED, built: Callable[[str], Any] | None = None,
 ) -> Firmware:  # fmt: skip
     """Translate `modules` and bind them to `system`.
 
@@ -277,8 +281,8 @@ def link(
     (`emulator.sysbios.watch`).  `static` reports errors that the typed tree shows without a run.  `entries` are
     functions that are called from outside of the image (`us.Read_Distance`, or a pattern: `us.*`): `static` does not
     report them as never called.  `include`, `defines` and `abi` are for modules that are C files.  `float_division`
-    says how long a division takes (`calibrated`, `tmu`, `fast`, `standard`).  It, `calibration`, `coverage`,
-    `keep_locals` and `steps` are those of `CompileOptions`.
+    says how long a division takes (`calibrated`, `tmu`, `fast`, `standard`).  It, `calibration`, `called`, `coverage`,
+    `keep_locals` and `steps` are those of `CompileOptions`, `built` is that of `Linked`.
     `asked` holds further arguments for `Program`; for `keep` see `emulator.c28x.cache`.
 
     Raises ValueError for an unknown policy and for source outside the language, with file and line.
@@ -287,10 +291,10 @@ def link(
     options = CompileOptions(
         residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
         float_division=float_division, room=dict(room or {}), calibration=dict(calibration or {}), watch=watch,
-        static=static, entries=frozenset(entries), coverage=coverage is not None, steps=steps,
+        static=static, entries=frozenset(entries), coverage=coverage is not None, steps=steps, called=called,
     )  # fmt: skip
     program = compiled(
         {"names": tuple(modules), "include": include, "defines": defines, "abi": abi, **(asked or {})}, options,
         lambda block, name: system.register(block, name).looked_at, keep=keep,
     )  # fmt: skip
-    return Firmware(bind(system, program, runtime, externs=externs, coverage=coverage))
+    return Firmware(bind(system, program, runtime, externs=externs, coverage=coverage, built=built))

@@ -16,6 +16,7 @@ from functools import partial
 from math import nan
 from typing import TYPE_CHECKING, Any, ClassVar, Final, cast
 
+from emulator import compiled
 from emulator.c28x.coverage import Coverage
 from emulator.clock import SYSCLK_HZ, seconds
 from emulator.signals import SerialFrame
@@ -51,7 +52,8 @@ class Bench(RunningBoard):
 
     `traced` keeps the digest of every kernel event; without it the run is a little faster and `trace_sha256` is empty.
     `world_map`, `kind` and `feeds` are the setup's as they were read before, whatever their files hold by now.
-    `coverage` takes up how often each statement of the firmware is begun.  `awaited` are orders that are given when
+    `coverage` takes up how often each statement of the firmware is begun.  `replaceable`: functions of the firmware can
+    be replaced (`Linked.replace`), so a compiled build of it is not used.  `awaited` are orders that are given when
     something has happened after start-up: what (`hil.faults.when`), and the bytes.
     """
 
@@ -60,7 +62,8 @@ class Bench(RunningBoard):
 
     def __init__(
         self, setup: Setup | str | None = None, *, traced: bool = True, world_map: WorldMap | None = None,
-        coverage: Coverage | None = None, steps: bool = False, kind: type[Board] | None = None,
+        coverage: Coverage | None = None, steps: bool = False, replaceable: bool = False,
+        kind: type[Board] | None = None,
         feeds: Sequence[DeclaredFeed] | None = None, awaited: Sequence[tuple[str, bytes]] = (), **settings: Any,
     ) -> None:  # fmt: skip
         self.setup = setup = Setup.of(setup, **settings)
@@ -73,7 +76,7 @@ class Bench(RunningBoard):
             board, fill=setup.fill, divide=setup.divide, float_division=setup.float_division, fixes=setup.fixes,
             watch=setup.watch, static=setup.static,
             firmware=setup.firmware, include=setup.include, defines=setup.defines,
-            coverage=coverage, steps=steps,
+            coverage=coverage, steps=steps, built=None if replaceable else compiled.program,
         )  # fmt: skip
         super().__init__(
             board, firmware, "main_robot.main", start_up_cycles=int(BOOT_S * SYSCLK_HZ),

@@ -13,15 +13,19 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 from emulator.c28x.symbols import Module
-from emulator.compiled import ROOT, STORE, digest
+from emulator.c28x.typed_text import typed_text
+from emulator.compiled import ROOT, STORE, digest, program_name
+from firmware_model.corrections import ALL
+from firmware_model.image import link
 from hil.extras import has, hint
+from hil.robot.board import RobotBoard
 
 PATTERNS: Final = (
     "emulator/clock.py",
@@ -34,6 +38,7 @@ PATTERNS: Final = (
     "emulator/c28x/arithmetic.py",
     "emulator/c28x/heap_block.py",
     "emulator/c28x/memory.py",
+    "emulator/c28x/position.py",
     "emulator/peripherals/*.py",
     "emulator/devices/*.py",
     "emulator/sysbios/*.py",
@@ -49,6 +54,7 @@ STAYS: Final = {
         "emulator/c28x/compiled_program.py", "emulator/c28x/ctypes.py", "emulator/c28x/declarations.py",
         "emulator/c28x/float_division.py", "emulator/c28x/language.py", "emulator/c28x/program.py",
         "emulator/c28x/rts.py", "emulator/c28x/symbols.py", "emulator/c28x/tree.py", "emulator/c28x/tree_queries.py",
+        "emulator/c28x/typed_text.py",
         "emulator/sysbios/headers.py",
     ),
     "works while a chip is made, or where its program starts and ends": (
@@ -59,23 +65,26 @@ STAYS: Final = {
     ),
     "describes registers: their classes are made at run time": ("emulator/registers/*.py",),
     "works when something is found, or counted": (
-        "emulator/rules/*.py", "emulator/c28x/coverage.py", "emulator/c28x/findings.py",
+        "emulator/rules/*.py", "emulator/c28x/coverage.py", "emulator/c28x/findings.py", "emulator/c28x/sites.py",
     ),
     "what firmware calls beside the chip: the library of C, checks that fail, frames of CAN; not compiled so far": (
         "emulator/c28x/called_as.py", "emulator/c28x/intrinsics.py", "emulator/c28x/iq_arithmetic.py",
         "emulator/c28x/objects.py", "emulator/c28x/rts_*.py", "emulator/c28x/runtime.py", "emulator/c28x/varargs.py",
         "emulator/can_bus.py",
     ),
-    "says where the firmware stands: interpreted code writes it at every statement": ("emulator/c28x/sites.py",),
 }  # fmt: skip
-#: Why all firmware does.
-FIRMWARE_STAYS: Final = "firmware: Python made from its source when it is linked, to be edited, stepped and counted"
+#: When firmware does.
+FIRMWARE_STAYS: Final = (
+    "firmware: compiled for a run of the whole robot; Python made from its source when it is watched, debugged or "
+    "counted, and on any other board"
+)
 #: What every error of a build ends with.
 STILL: Final = "without a compiled build everything runs in plain Python, at less than half the pace"
 #: Whatever a compiled module may have taken a constant or a type from.
 SOURCES: Final = ("emulator/**/*.py", "hil/world/*.py")
-#: The library in which the modules really are.
+#: The libraries in which the modules really are: those of the emulator, and programs of firmware.
 GROUP: Final = "c2000_hil"
+PROGRAMS: Final = "c2000_programs"
 
 
 class BuildError(ValueError):
@@ -134,26 +143,49 @@ def _from(root: Path, file: str) -> str:
     return Path(file).relative_to(root).as_posix() if Path(file).is_relative_to(root) else file
 
 
-def translate(root: Path, target: Path) -> list[Any]:
-    """C for the listed modules, in `target`, as extensions that setuptools can build."""
+def programs(own: Iterable[Path] = ()) -> dict[str, str]:
+    """The text of each program of the robot that is compiled, by its identity.
+
+    They are its firmware, the same with all corrections, and its firmware with the C files `own`, if there are any.
+    Raises ValueError for C files that cannot be linked.
+    """
+    texts: dict[str, str] = {}
+    own = list(own)
+    for fixes, files in (((), ()), ([ALL], ()), *([((), own)] if own else [])):
+        linked = link(RobotBoard(), called=True, fixes=fixes, firmware=files).linked
+        texts[linked.identity] = typed_text(linked.compiled, linked.first)
+    return texts
+
+
+def translate(root: Path, target: Path, texts: Mapping[str, str]) -> list[Any]:
+    """C for the listed modules and for programs, in `target`, as extensions that setuptools can build."""
     from mypyc.build import mypycify
 
+    core = listed(root)
     options = ["--config-file=", "--ignore-missing-imports", f"--cache-dir={target / 'mypy'}"]
     try:
-        with _in_folder(root), contextlib.redirect_stdout(sys.stderr):
+        with (
+            tempfile.TemporaryDirectory() as folder, _in_folder(root), contextlib.redirect_stdout(sys.stderr)
+        ):  # fmt: skip
+            own = [str(Path(folder) / f"{program_name(identity)}.py") for identity in texts]
+            for file, text in zip(own, texts.values(), strict=True):
+                Path(file).write_text(text, "utf-8")
             extensions: list[Any] = mypycify(
-                [*options, *listed(root)], opt_level="2", debug_level="0", group_name=GROUP, multi_file=True,
-                target_dir=str(target / "c"),
+                [*options, *core, *own], opt_level="2", debug_level="0", multi_file=True, target_dir=str(target / "c"),
+                separate=[(core, GROUP), *([(own, PROGRAMS)] if own else [])],
             )  # fmt: skip
     except SystemExit as error:
         raise BuildError(f"mypyc cannot translate the sources: {error}") from None
     return extensions
 
 
-def build(root: Path = ROOT, store: Path = STORE, progress: Callable[[float], None] = lambda fraction: None) -> int:
+def build(
+    own: Iterable[Path] = (), *, root: Path = ROOT, store: Path = STORE,
+    progress: Callable[[float], None] = lambda fraction: None,
+) -> int:  # fmt: skip
     """Compile, and put the build in the place of the one before.  Returns how many modules it has.
 
-    `progress` is told the fraction 0..1 of the C files that are compiled.
+    `own` are the C files of `programs`.  `progress` is told the fraction 0..1 of the C files that are compiled.
     """
     modules = listed(root)
     sources = {name: digest(root / name) for name in _matching(root, *SOURCES)}
@@ -161,11 +193,12 @@ def build(root: Path = ROOT, store: Path = STORE, progress: Callable[[float], No
     with tempfile.TemporaryDirectory(prefix="build-", dir=store.parent) as folder:
         work, made = Path(folder), Path(folder) / "made"
         _try_tools(work)
-        extensions = translate(root, work)
+        texts = programs(own)
+        extensions = translate(root, work, texts)
         if any(digest(root / name) != known for name, known in sources.items()):
             raise BuildError("a source changed during the build: run hil build again")
         _compile(extensions, work, made, progress)
-        names = [name.removesuffix(".py").replace("/", ".") for name in modules]
+        names = [name.removesuffix(".py").replace("/", ".") for name in modules] + list(map(program_name, texts))
         files = {e.name: _file(made, e.name) for e in extensions}
         if missing := set(names) - set(files):
             raise BuildError(f"mypyc did not compile {', '.join(sorted(missing))}")
@@ -206,6 +239,8 @@ def _compile(extensions: list[Any], work: Path, made: Path, progress: Callable[[
             if self.compiler.compiler_type == "unix":
                 for extension in extensions:  # else a product and a sum become one operation where there is one (ARM)
                     extension.extra_compile_args.append("-ffp-contract=off")
+                    # Each C file of a library defines the table of the other one that it uses: one table for all.
+                    extension.extra_compile_args.append("-fcommon")
             _build_extensions(self, progress)
 
     command = SideBySide(Distribution({"name": GROUP, "ext_modules": extensions}))

@@ -25,7 +25,6 @@ from typing import Any, Final
 
 from emulator.c28x.compiled_program import Compiled, CompileOptions
 from emulator.c28x.ctypes import CType
-from emulator.c28x.emit.written import CALLED
 from emulator.c28x.program import Program, digest, folders
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import EnumType, Module, Symbol
@@ -133,7 +132,7 @@ def _file(asked: dict[str, Any], options: CompileOptions) -> Path | None:
             value = list(map(str, value))
         described.append((name, value))
     packages = _state(_package_files(asked))
-    request = repr((described, os.getcwd(), sys.version, CALLED, _translator(), packages))
+    request = repr((described, os.getcwd(), sys.version, _translator(), packages))
     return folder / f"{hashlib.sha256(request.encode()).hexdigest()[:32]}.program"
 
 

@@ -14,7 +14,8 @@ from html import escape
 from itertools import islice
 from typing import Any
 
-from emulator.c28x.sites import Calls, Place, Places, Position, frames
+from emulator.c28x.position import Calls, Position, frames
+from emulator.c28x.sites import Place, Places
 from emulator.clock import Clock, us
 from emulator.rules import RULES, Severity
 from emulator.signal import Signal

@@ -55,6 +55,7 @@ from emulator.c28x.tree import (
     Variable,
     Where,
 )  # fmt: skip
+from emulator.c28x.typed_text import attribute, identity, methods
 from emulator.clock import NEVER
 
 __all__ = ["LinkError", "Linked", "to_c"]
@@ -70,8 +71,12 @@ class Linked:
     def __init__(
         self, compiled: Compiled, runtime: Runtime, *, registers: Callable[[str, str], Any],
         externs: Mapping[str, Callable[..., Any]], replaced: Mapping[str, Callable[..., Any]],
-        coverage: Coverage | None = None,
+        coverage: Coverage | None = None, built: Callable[[str], Any] | None = None,
     ) -> None:  # fmt: skip
+        """Bind `compiled` to what `runtime` belongs to.
+
+        `built` gives the module of a program that was compiled (`typed_text.py`), by its identity, or None.
+        """
         self.program = compiled.program
         self.options = compiled.options
         self.runtime = runtime
@@ -89,6 +94,12 @@ class Linked:
         self._bound: dict[str, Function] = {}
         self._words = 0
         self.namespace: dict[str, Any] = self._runtime_names()
+        self.compiled = compiled.functions
+        #: The number of the program's first place.
+        self.first = len(runtime.findings.places)
+        module = built(self.identity) if built is not None and not self.replaced else None
+        #: The program's functions as methods; None: they are interpreted.
+        self._methods: Any = None if module is None else module.Program()
         for variable, _ in compiled.objects:
             self._place(variable)
         for finding in compiled.findings:
@@ -96,12 +107,21 @@ class Linked:
                 finding.place, finding.rule, finding.message, object=finding.object, declaration=finding.declaration,
                 value=finding.value, how="static",
             )  # fmt: skip
-        for function in compiled.functions:
-            self._define(function)
+        for function, name in zip(compiled.functions, methods(compiled.functions), strict=True):
+            self._define(function, name)
+        if module is not None:
+            self.namespace = _Attributes(self.namespace, self._methods, module.NAMES)
         for function in compiled.functions:
             self._bind(function)
+        if isinstance(self.namespace, _Attributes):
+            self.namespace.closed = True
         for variable, values in compiled.objects:
             self._initialise(variable, values)
+
+    @property
+    def identity(self) -> str:
+        """What a compiled program is known by (`typed_text.py`)."""
+        return identity(self.compiled, self.first)
 
     def watch_with(self, watcher: Callable[[Object, int, bool], None]) -> None:
         """From now on, call `watcher(object, word, write)` at every access.  Needs an image linked with `watch`."""
@@ -222,14 +242,18 @@ class Linked:
             "_c_spill": self._spill, "__builtins__": builtins.__dict__,
         }  # fmt: skip
 
-    def _define(self, compiled: CompiledFunction) -> None:
-        """Create a function and number its places."""
+    def _define(self, compiled: CompiledFunction, method: str) -> None:
+        """Create a function, or take its method, and number its places."""
         path = compiled.path
         self.sources[path] = compiled.written.text
         first = self.runtime.findings.places.add(compiled.written.places)
-        (code,) = [c for c in compiled.code().co_consts if isinstance(c, CodeType)]
-        defined = PyFunction(_numbered(code, first, compiled.function.name), self.namespace)
-        defined.__qualname__ = path
+        defined: Callable[..., Any]
+        if self._methods is not None:
+            defined = getattr(self._methods, method)
+        else:
+            (code,) = [c for c in compiled.code().co_consts if isinstance(c, CodeType)]
+            defined = PyFunction(_numbered(code, first, compiled.function.name), self.namespace)
+            defined.__qualname__ = path
         self.functions[path] = defined
         function, where = compiled.function, compiled.function.where
         self.runtime.signatures[defined] = function.ctype
@@ -274,7 +298,10 @@ class Linked:
         return found
 
     def replace(self, name: str, function: Callable[..., Any]) -> None:
-        """Redirect every call of the firmware function or extern `name` to `function`."""
+        """Redirect every call of the firmware function or extern `name` to `function`.
+
+        Raises ValueError for a function of a compiled program, which calls it directly.
+        """
         for prefix in ("_f_", "_x_"):
             if prefix + name in self.namespace:
                 self.namespace[prefix + name] = function
@@ -294,6 +321,29 @@ class Linked:
             self.last_locals[path] = {
                 v.name: list(x) if isinstance(x, list) else x for v, x in zip(variables, values, strict=True)
             }
+
+
+class _Attributes(dict[str, Any]):
+    """The names of a program whose functions are methods: what these refer to is an attribute of their object too."""
+
+    def __init__(self, names: Mapping[str, Any], program: Any, bound: frozenset[str]) -> None:
+        super().__init__()
+        self._program, self._bound = program, bound
+        #: Whether all is bound: from then on, functions stay, because methods call each other directly.
+        self.closed = False
+        self.update(names)
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        if self.closed and name.startswith("_f_"):
+            raise ValueError(f"{name[3:]} cannot be replaced in a compiled program: link it without `built`")
+        super().__setitem__(name, value)
+        if name in self._bound:
+            setattr(self._program, attribute(name), value)
+
+    def update(self, names: Mapping[str, Any]) -> None:  # type: ignore[override]
+        """Bind all of `names`."""
+        for name, value in names.items():
+            self[name] = value
 
 
 def _numbered(code: CodeType, first: int, name: str) -> CodeType:

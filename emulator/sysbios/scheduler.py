@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from greenlet import GreenletExit, getcurrent, greenlet
 
-from emulator.c28x.sites import Calls
+from emulator.c28x.position import Calls
 from emulator.sysbios.core import TASK, Function, KernelCore, KernelObject, UniqueNames, fitted, function_name
 from emulator.sysbios.stack import Stack, StackSpace
 from emulator.sysbios.swi import SwiModule

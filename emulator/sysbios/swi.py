@@ -19,7 +19,7 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, Final
 
 from emulator.c28x.memory import NULL
-from emulator.c28x.sites import INTERRUPT
+from emulator.c28x.position import INTERRUPT
 from emulator.sysbios import params as struct_params
 from emulator.sysbios.core import HWI, SWI, TASK, Function, KernelCore, KernelObject, UniqueNames, fitted, function_name
 from emulator.sysbios.params import NO_PRIORITY

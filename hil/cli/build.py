@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -19,6 +20,10 @@ def build(
     why: Annotated[
         bool, typer.Option("--why", help="Build nothing: list the functions that stay interpreted, and why.")
     ] = False,
+    firmware: Annotated[
+        list[Path] | None,
+        typer.Option("--firmware", metavar="DIR", help="Compile the robot with your C files too; repeatable."),
+    ] = None,
     json_output: Annotated[bool, typer.Option("--json", help="With --why: print one JSON object on stdout.")] = False,
 ) -> None:
     """Compile the emulator: the same results, two to three times as fast.  It needs a C compiler and a minute or two.
@@ -28,11 +33,14 @@ def build(
 
     [bold]Examples[/bold]
       hil build
+      hil build --firmware my_robot
       hil build --clean
       hil build --why | grep Read_Distance
     """
     if clean and why:
         raise UserError("--clean removes a build, --why builds none: give one of them")
+    if firmware and (clean or why):
+        raise UserError("--firmware compiles; --clean and --why do not: give one of them")
     if json_output and not why:
         raise UserError("--json needs --why")
     with user_errors():
@@ -41,7 +49,7 @@ def build(
         elif clean:
             print("removed" if builder.clean() else "there was no compiled build")
         else:
-            print(f"{_build()} modules compiled into {STORE}")
+            print(f"{_build(firmware or [])} modules compiled into {STORE}")
 
 
 def _why(*, json_output: bool) -> None:
@@ -62,7 +70,7 @@ def _why(*, json_output: bool) -> None:
     print(f"{sum(len(each.functions) for each in stays)} functions stay interpreted, {compiled} are compiled")
 
 
-def _build() -> int:
+def _build(own: list[Path]) -> int:
     """The number of modules, with a progress bar in a terminal."""
     terminal = show.console()
     bar = Progress(
@@ -71,4 +79,4 @@ def _build() -> int:
     )  # fmt: skip
     with bar:
         task = bar.add_task("translating", total=1.0)
-        return builder.build(progress=lambda done: bar.update(task, completed=done, description="compiling"))
+        return builder.build(own, progress=lambda done: bar.update(task, completed=done, description="compiling"))

@@ -50,7 +50,7 @@ def compare_runs(
 
 
 def _run(scenario: Scenario, functions: frozenset[str], progress: Callable[[float], None]) -> _Ran:
-    bench = replace(scenario, setup=replace(scenario.setup, static=False)).bench()
+    bench = replace(scenario, setup=replace(scenario.setup, static=False)).bench(replaceable=True)
     try:
         recorder = FirmwareRecorder(bench.board, bench.firmware.linked, functions)
         bench.uart_sent.connect(lambda byte, cycles: recorder.sent(byte))

@@ -28,7 +28,8 @@ from typing import Any, Final, NamedTuple
 from emulator.c28x.ctypes import PointerType
 from emulator.c28x.findings import Finding
 from emulator.c28x.memory import Object, Pointer
-from emulator.c28x.sites import Place, frames
+from emulator.c28x.position import frames
+from emulator.c28x.sites import Place
 from emulator.c28x.tree import (
     AddressOf,
     Assign,

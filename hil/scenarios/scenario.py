@@ -115,11 +115,11 @@ class Scenario:
         """The world's map, with the properties that the scenario sets."""
         return self.ground.of(load_map(self.setup.world))
 
-    def bench(self, coverage: Coverage | None = None, *, traced: bool = False) -> Bench:
-        """The robot of this scenario, not booted yet; `coverage` counts how often its statements begin."""
+    def bench(self, coverage: Coverage | None = None, *, traced: bool = False, replaceable: bool = False) -> Bench:
+        """The robot of this scenario, not booted yet; the arguments are those of `Bench`."""
         from hil.bench import Bench
 
-        return Bench(self.setup, traced=traced, coverage=coverage, **self.read())
+        return Bench(self.setup, traced=traced, coverage=coverage, replaceable=replaceable, **self.read())
 
     def read(self) -> dict[str, Any]:
         """The options of `Bench` for its robot, besides the setup."""

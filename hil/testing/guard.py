@@ -14,8 +14,9 @@ from typing import Any, Final, NoReturn
 
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked
+from emulator.c28x.position import Calls
 from emulator.c28x.runtime import EndlessPoll, Idling
-from emulator.c28x.sites import Calls, Place
+from emulator.c28x.sites import Place
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Event, seconds
 from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from hil.board import Board

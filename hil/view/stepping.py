@@ -24,7 +24,8 @@ from heapq import nlargest
 from typing import Any, Final
 
 from emulator.c28x.findings import Finding
-from emulator.c28x.sites import Calls, Place
+from emulator.c28x.position import Calls
+from emulator.c28x.sites import Place
 from emulator.clock import CYCLES_PER_US
 from emulator.registers.cell import Cell
 from hil.running import RunningBoard

@@ -8,8 +8,9 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import pytest
@@ -17,8 +18,10 @@ import pytest
 from emulator import compiled
 from firmware_model.image import link
 from hil import build
+from hil.bench import Bench
 from hil.cli import invoke
 from hil.robot.board import RobotBoard
+from tests.emulator.c28x import as_methods
 
 MODULE = "emulator.clock"
 
@@ -133,9 +136,9 @@ def test_without_a_c_compiler_nothing_is_translated_and_the_build_before_stays(
     if sys.platform == "win32":
         pytest.skip("Visual C++ is found without CC")
     monkeypatch.setenv("CC", str(tree / "no-such-compiler"))
-    monkeypatch.setattr(build, "translate", lambda root, target: pytest.fail("it was translated"))
+    monkeypatch.setattr(build, "translate", lambda root, target, texts: pytest.fail("it was translated"))
     with pytest.raises(build.BuildError, match="no-such-compiler") as told:
-        build.build(tree, store_of(tree))
+        build.build(root=tree, store=store_of(tree))
     assert str(told.value).endswith(build.STILL)
     assert "\n" not in str(told.value)
     assert compiled.find_build(store_of(tree), tree)[0] == "fresh"
@@ -240,19 +243,54 @@ def test_every_listed_module_can_be_translated(tmp_path: Path) -> None:
     """Up to C; no compiler is needed.  Fails for what mypyc does not take, in the module's own terms."""
     pytest.importorskip("mypyc.build", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
     pytest.importorskip("setuptools", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
-    names = {extension.name for extension in build.translate(build.ROOT, tmp_path)}
+    texts = build.programs()
+    names = {extension.name for extension in build.translate(build.ROOT, tmp_path, texts)}
     assert {name.removesuffix(".py").replace("/", ".") for name in build.listed()} <= names
+    assert {compiled.program_name(identity) for identity in texts} <= names
 
 
 @pytest.mark.skipif(compiled.MODE != "compiled", reason="needs `hil build` (extra speed)")
-@pytest.mark.parametrize("more", [(), ("--realistic", "--fill", "stack", "--seed", "7")])
+@pytest.mark.parametrize("more", [(), ("--realistic", "--fill", "stack", "--seed", "7"), ("--fix", "all")])
 def test_both_ways_give_the_same_bytes_and_the_same_findings(more: tuple[str, ...]) -> None:
     run = ("-m", "hil", "run", "--no-port", "--pace", "max", "--for", "6", "--order", "mission", "--json", *more)
     one, other = (json.loads(python(compiled.ROOT, *run, pure=pure)) for pure in (False, True))
     assert one["uart_sha256"] == other["uart_sha256"]
     assert one["trace_sha256"] == other["trace_sha256"]
     assert one["findings"] == other["findings"]
-    assert one["findings"]
+    assert one["findings"] or "--fix" in more
+
+
+@pytest.mark.parametrize("fixes", [(), ("all",)])
+def test_a_robot_whose_functions_are_methods_drives_alike(
+    fixes: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def driven(program: Callable[[str], Any]) -> tuple[Any, ...]:
+        monkeypatch.setattr(compiled, "program", program)
+        bench = Bench("room", fixes=fixes)
+        bench.boot()
+        bench.feed("#MISN\r")
+        bench.run_for(1.0)
+        told = [(f.rule, f.place, f.message, f.count) for f in bench.findings]
+        return type(bench.firmware.linked.namespace), (bench.uart_sha256, bench.trace_sha256, told)
+
+    program = link(RobotBoard(), fixes=fixes).linked
+    text = as_methods.module(program.compiled, program.first)
+    functions, one = driven(lambda _identity: None)
+    methods, other = driven({program.identity: text}.get)
+    assert functions is dict
+    assert methods is not dict
+    assert one == other
+
+
+def test_a_debugger_finds_the_firmware_interpreted(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = compiled.program_name("0123456789abcdef0")
+    monkeypatch.setattr(sys, "meta_path", [compiled.Finder({name: "firmware.so"}), *sys.meta_path])
+    monkeypatch.setitem(sys.modules, name, module := ModuleType(name))
+    monkeypatch.delitem(sys.modules, "pydevd", raising=False)
+    if sys.gettrace() is None:
+        assert compiled.program("0123456789abcdef0") is module
+    monkeypatch.setitem(sys.modules, "pydevd", ModuleType("pydevd"))
+    assert compiled.program("0123456789abcdef0") is None
 
 
 def test_files_are_compiled_side_by_side_and_linked_in_their_order() -> None:

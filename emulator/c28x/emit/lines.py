@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from emulator.c28x.emit.written import CALLED
-
 
 @dataclass(slots=True)
 class EmittedLine:
@@ -59,19 +57,19 @@ class Exit:
 Item = EmittedLine | Begin | Charge | LineEntry | Exit
 
 
-def printed(items: list[Item], *, places: bool, clock: bool) -> list[tuple[str, int]]:
+def printed(items: list[Item], *, places: bool, clock: bool, called: bool) -> list[tuple[str, int]]:
     """The text of a function: each line with its source line.
 
-    `places`: the function has places of its own; `clock`: it charges time.
+    `places`: the function has places of its own; `clock`: it charges time, and `called`: by a call.
     """
     lines: list[tuple[str, int]] = []
     for item in items:
         indent = "    " * item.depth
-        lines += [(indent + text, item.line) for text in _texts(item, places=places, clock=clock)]
+        lines += [(indent + text, item.line) for text in _texts(item, places=places, clock=clock, called=called)]
     return lines
 
 
-def _texts(item: Item, *, places: bool, clock: bool) -> list[str]:
+def _texts(item: Item, *, places: bool, clock: bool, called: bool) -> list[str]:
     match item:
         case EmittedLine(text=text):
             return [text]
@@ -79,7 +77,7 @@ def _texts(item: Item, *, places: bool, clock: bool) -> list[str]:
             return [*begun]
         case Charge(cycles=cycles, at=at, passing=passing):
             stand = f"_p.at = {at}; " if at else ""
-            if CALLED:
+            if called:
                 return [f"{stand}_k.charge({cycles})"]
             if passing:
                 return [f"_n = _k.now = _k.now + {cycles}", f"if _n >= _k.next: {stand}_k.run_due()"]

@@ -117,7 +117,7 @@ class PythonWriter:
 
     def __init__(
         self, function: Function, names: FunctionNames, *, costs: Costs, factor: float, watch: bool, residue: bool,
-        keep_locals: bool, coverage: bool, steps: bool,
+        keep_locals: bool, coverage: bool, steps: bool, called: bool,
     ) -> None:  # fmt: skip
         self.function = function
         self.names = names
@@ -128,6 +128,7 @@ class PythonWriter:
         self.keep_locals = keep_locals
         self.coverage = coverage
         self.steps = steps
+        self.called = called
         self.items: list[Item] = []
         self.depth = 0
         self.where = function.where
@@ -162,7 +163,7 @@ class PythonWriter:
             else:
                 # The function ends without the value that it must return: the caller gets what the register held.
                 self.leave(f"_c_uninit({self.number(f.owing)})")
-        lines = printed(self.items, places=bool(self.places), clock=self.uses_clock)
+        lines = printed(self.items, places=bool(self.places), clock=self.uses_clock, called=self.called)
         text = "\n".join(line for line, _ in lines)
         numbers = tuple(number for _, number in lines)
         return EmittedFunction(text, numbers, tuple(self.places), self.names, tuple(self.counted))

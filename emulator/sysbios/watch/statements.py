@@ -7,7 +7,8 @@ compare.  It becomes a `Place` only when a finding needs it.
 from __future__ import annotations
 
 from emulator.c28x.findings import Findings
-from emulator.c28x.sites import INTERRUPT, Calls, Place, interrupted
+from emulator.c28x.position import INTERRUPT, Calls, interrupted
+from emulator.c28x.sites import Place
 from emulator.sysbios.scheduler import Task
 
 #: The number of a statement; 0: none.

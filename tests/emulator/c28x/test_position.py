@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from emulator.c28x.sites import INTERRUPT, Position, frames, interrupted
+from emulator.c28x.position import INTERRUPT, Position, frames, interrupted
 from tests.emulator.c28x.workshop import HEADER, Workshop
 
 

@@ -1,0 +1,136 @@
+"""A program as methods does what its functions do: values, cycles, findings, places."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from emulator.c28x.typed_text import identity, methods, typed_text
+from tests.emulator.c28x import linking
+from tests.emulator.c28x.as_methods import AsMethods
+from tests.emulator.c28x.workshop import Workshop
+
+#: Wraps, a loop that steps beyond the end of an array, float arithmetic, a local that may be never written, calls, a
+#: pointer to a function, a switch.
+SOURCE = """
+total: int32
+table: array[uint16, 4]
+
+def add(a: int16, b: int16) -> int16:
+    return a + b
+
+def scaled(x: float32, n: uint16) -> float32:
+    y: float32 = x
+    i: uint16
+    for i in range(n):
+        y = y * 1.5 + 0.25
+    return y
+
+def fill(n: uint16) -> uint16:
+    global total
+    last: uint16
+    i: uint16 = 0
+    while i < n:
+        table[i] = i * 9
+        last = table[i]
+        total = total + last
+        i += 1
+    return last
+
+def chosen(which: int16) -> int16:
+    f: funcptr[int16, int16, int16] = add
+    match which:
+        case 0:
+            return f(which, 32767)
+        case 1 | 2:
+            return add(which, add(which, which))
+        case _:
+            return which << 3
+"""
+
+
+@contextmanager
+def as_methods() -> Iterator[None]:
+    """Programs are linked as methods, while this lasts."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(linking, "Linked", AsMethods)
+        yield
+
+
+def both(source: str = SOURCE, **options: Any) -> tuple[Workshop, Workshop]:
+    """The same program as functions and as methods."""
+    functions = Workshop(source, **options)
+    with as_methods():
+        return functions, Workshop(source, **options)
+
+
+def seen(workshop: Workshop) -> list[Any]:
+    """Everything that calls leave behind."""
+    objects = {path: list(obj.data) for path, obj in workshop.linked.objects.items()}
+    told = [(f.rule, f.message, f.place, f.count) for f in workshop.findings]
+    return [workshop.clock.now, workshop.cpu.sp, objects, told]
+
+
+@given(st.lists(st.tuples(
+    st.integers(-32768, 32767), st.integers(-32768, 32767), st.floats(-1e6, 1e6, width=32), st.integers(0, 6)
+), max_size=4))  # fmt: skip
+def test_methods_and_functions_leave_the_same_behind(calls: list[tuple[int, int, float, int]]) -> None:
+    functions, methods = both()
+    for a, b, x, n in calls:
+        for name, arguments in (("add", (a, b)), ("scaled", (x, n)), ("fill", (n,)), ("chosen", (a % 5,))):
+            one, other = getattr(functions, name)(*arguments), getattr(methods, name)(*arguments)
+            assert (repr(one), seen(functions)) == (repr(other), seen(methods))
+
+
+def test_the_calls_reach_what_they_are_meant_to_reach() -> None:
+    _, methods = both()
+    methods.fill(6)
+    methods.add(32767, 1)
+    methods.fill(0)
+    assert {"index", "uninitialised", "overflow"} <= set(methods.rules())
+
+
+def test_a_name_that_is_bound_again_is_bound_for_methods_too() -> None:
+    source = "def ready() -> int16:\n    return Ready()\n"
+    header = "from emulator.c28x.language import *\n@extern\ndef Ready() -> int16: ...\n"
+    functions, methods = both(source, header=header, externs={"Ready": lambda: 1})
+    for workshop in (functions, methods):
+        assert workshop.ready() == 1
+        workshop.linked.replace("Ready", lambda: 2)
+        assert workshop.ready() == 2
+
+
+def test_a_function_that_others_call_directly_cannot_be_replaced() -> None:
+    _, methods = both()
+    with pytest.raises(ValueError, match="add cannot be replaced in a compiled program"):
+        methods.linked.replace("add", lambda a, b: 0)
+    assert methods.add(1, 2) == 3
+
+
+def test_a_program_is_known_by_its_text_and_its_first_place() -> None:
+    one, other = Workshop(SOURCE).linked, Workshop(SOURCE.replace("1.5", "1.25")).linked
+    assert one.identity == Workshop(SOURCE).linked.identity != other.identity
+    assert identity(one.compiled, one.first) != identity(one.compiled, one.first + 1)
+
+
+def test_variables_of_c_have_types_and_what_may_be_unwritten_has_none() -> None:
+    linked = Workshop(SOURCE).linked
+    tree = ast.parse(typed_text(linked.compiled, linked.first))
+    (program,) = (node for node in tree.body if isinstance(node, ast.ClassDef))
+    method = {node.name: ast.unparse(node) for node in program.body if isinstance(node, ast.FunctionDef)}
+    assert list(method) == methods(linked.compiled) == ["add", "scaled", "fill", "chosen"]
+    assert method["scaled"].startswith("def scaled(self, x: float, n: int) -> float:")
+    assert "last: Any" in method["fill"]
+    assert "i: int" in method["fill"]
+    assert "self.add(which, self.add(which, which))" in method["chosen"]
+
+
+def test_a_program_without_functions_is_a_program() -> None:
+    with as_methods():
+        assert Workshop("limit: int16 = 7\n").value("limit") == 7
