@@ -308,18 +308,22 @@ class RegisterWrites:
         )
 
     def giving(self, block: str, register: str, mask: int, word: int) -> Place | None:
-        """The last assignment that can give the bits of `mask` the values that they have in `word`."""
+        """The last assignment that can give the bits of `mask` the values that they have in `word`.
+
+        Not one of TI's functions, whose source nobody sees.
+        """
         places = [
             write.place for write in self.of(block, register, mask)
             if write.values is not None and any(value & mask == word & mask for value in write.values)
+            and not write.place.file.startswith("<")
         ]  # fmt: skip
         return places[-1] if places else None
 
     def last(self, block: str, register: str = "") -> Place | None:
-        """The last assignment to a register, or without `register` to any register of the block."""
+        """The last assignment to a register, or without `register` to any of the block.  Not one of TI's functions."""
         places = [
             write.place for (its_block, name), writes in self.writes.items() for write in writes
-            if its_block == block and name == (register or name)
+            if its_block == block and name == (register or name) and not write.place.file.startswith("<")
         ]  # fmt: skip
         return max(places, key=lambda place: (place.file, place.line)) if places else None
 

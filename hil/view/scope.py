@@ -198,7 +198,7 @@ class ScopePanel:
                 ("--real", "outlined: inherited priority"), ("--line", "pale: several, too near to be told apart"),
             ):  # fmt: skip
                 ui.html(f'<span class="key" style="border-color:var({css})"></span>{text}', sanitize=False)
-        self._reading = ui.html("", sanitize=False).classes("w-full reading").mark("reading")
+        self._reading = ui.html("", sanitize=False).classes("w-full reading").props("tabindex=0").mark("reading")
         self._show_names(engine.probes.names)
 
     def update(self, _now: Snapshot) -> None:
