@@ -74,7 +74,7 @@ def test_tele_at_0_2_makes_x_grow_by_50_a_frame_as_in_figure_15(ideal: Robot) ->
 
 def test_a_setr_with_w_turns_the_robot_and_stop_stops_it(ideal: Robot) -> None:
     before = ideal.bench.world.pose.heading_rad
-    ideal.order("#SETR0.1,0.3\r", 3.0)
+    ideal.order("#TELE\r#SETR0.1,0.3\r", 3.0)
     turned = ideal.bench.world.pose.heading_rad - before
     # 0.3 rad/s for 3 s, less the wheels' rise.
     assert 0.6 < turned < 0.95
