@@ -17,7 +17,7 @@ from emulator.c28x.cache import compiled
 from emulator.c28x.compiled_program import Compiled, CompileOptions
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType, specified
-from emulator.c28x.emit.written import CALLED
+from emulator.c28x.emit.written import CHARGE_BY_CALL
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.c28x.link import Linked
 from emulator.c28x.memory import Pointer
@@ -272,7 +272,7 @@ def link(
     include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "coff",
     coverage: Coverage | None = None, steps: bool = False,
     calibration: Mapping[str, float] | None = None, asked: Mapping[str, Any] | None = None, keep: bool = True,
-    called: bool = CALLED, built: Callable[[str], Any] | None = None,
+    charge_by_call: bool = CHARGE_BY_CALL, built: Callable[[str], Any] | None = None,
 ) -> Firmware:  # fmt: skip
     """Translate `modules` and bind them to `system`.
 
@@ -281,7 +281,8 @@ def link(
     (`emulator.sysbios.watch`).  `static` reports errors that the typed tree shows without a run.  `entries` are
     functions that are called from outside of the image (`us.Read_Distance`, or a pattern: `us.*`): `static` does not
     report them as never called.  `include`, `defines` and `abi` are for modules that are C files.  `float_division`
-    says how long a division takes (`calibrated`, `tmu`, `fast`, `standard`).  It, `calibration`, `called`, `coverage`,
+    says how long a division takes (`calibrated`, `tmu`, `fast`, `standard`).  It, `calibration`,
+    `charge_by_call`, `coverage`,
     `keep_locals` and `steps` are those of `CompileOptions`, `built` is that of `Linked`.
     `asked` holds further arguments for `Program`; for `keep` see `emulator.c28x.cache`.
 
@@ -291,7 +292,8 @@ def link(
     options = CompileOptions(
         residue=runtime.fill == "stack", keep_locals=keep_locals, ieee=divide == "ieee",
         float_division=float_division, room=dict(room or {}), calibration=dict(calibration or {}), watch=watch,
-        static=static, entries=frozenset(entries), coverage=coverage is not None, steps=steps, called=called,
+        static=static, entries=frozenset(entries), coverage=coverage is not None, steps=steps,
+        charge_by_call=charge_by_call,
     )  # fmt: skip
     program = compiled(
         {"names": tuple(modules), "include": include, "defines": defines, "abi": abi, **(asked or {})}, options,

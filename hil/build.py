@@ -152,8 +152,8 @@ def programs(own: Iterable[Path] = ()) -> dict[str, str]:
     texts: dict[str, str] = {}
     own = list(own)
     for fixes, files in (((), ()), ([ALL], ()), *([((), own)] if own else [])):
-        linked = link(RobotBoard(), called=True, fixes=fixes, firmware=files).linked
-        texts[linked.identity] = typed_text(linked.compiled, linked.first)
+        linked = link(RobotBoard(), charge_by_call=True, fixes=fixes, firmware=files).linked
+        texts[linked.identity] = typed_text(linked.compiled_functions, linked.first)
     return texts
 
 

@@ -12,7 +12,7 @@ from functools import lru_cache
 from types import CodeType
 from typing import TYPE_CHECKING, Any, Final
 
-from emulator.c28x.emit.written import CALLED, EmittedFunction
+from emulator.c28x.emit.written import CHARGE_BY_CALL, EmittedFunction
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.c28x.program import Program
 from emulator.c28x.tree import Function, Variable
@@ -39,8 +39,8 @@ class CompileOptions:
     coverage: bool = False
     #: Call `Position.hold`, if it is set, before each statement.
     steps: bool = False
-    #: Charge time by a call, as is fastest with a compiled clock.
-    called: bool = CALLED
+    #: Charge time by a call and not in line: faster with a compiled clock, slower without.
+    charge_by_call: bool = CHARGE_BY_CALL
     #: Report what the typed tree shows without running it.
     static: bool = False
     #: Functions (`module.name`, or a pattern) that are called from outside of the image: `static` does not report them

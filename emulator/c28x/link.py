@@ -94,7 +94,7 @@ class Linked:
         self._bound: dict[str, Function] = {}
         self._words = 0
         self.namespace: dict[str, Any] = self._runtime_names()
-        self.compiled = compiled.functions
+        self.compiled_functions = compiled.functions
         #: The number of the program's first place.
         self.first = len(runtime.findings.places)
         module = built(self.identity) if built is not None and not self.replaced else None
@@ -121,7 +121,7 @@ class Linked:
     @property
     def identity(self) -> str:
         """What a compiled program is known by (`typed_text.py`)."""
-        return identity(self.compiled, self.first)
+        return identity(self.compiled_functions, self.first)
 
     def watch_with(self, watcher: Callable[[Object, int, bool], None]) -> None:
         """From now on, call `watcher(object, word, write)` at every access.  Needs an image linked with `watch`."""

@@ -55,11 +55,13 @@ _INFERRED: Final = ("_k", "_p", "_up")
 
 
 def identity(functions: Iterable[CompiledFunction], first: int) -> str:
-    """What tells a program apart: its functions with their text, and the number of its first place."""
-    texts = sha256(str(first).encode())
+    """What tells a program apart: its functions with their text and types, and the number of its first place."""
+    known = sha256(str(first).encode())
     for compiled in functions:
-        texts.update(f"\0{compiled.path}\0{compiled.written.text}".encode())
-    return texts.hexdigest()
+        f = compiled.function
+        types = [(local_name(variable), str(variable.ctype)) for variable in (*f.parameters, *f.locals)]
+        known.update(repr((compiled.path, str(f.ctype.result), types, compiled.written.text)).encode())
+    return known.hexdigest()
 
 
 def methods(functions: Sequence[CompiledFunction]) -> list[str]:
@@ -80,11 +82,11 @@ def _of_c(name: str) -> str:
 
 def typed_text(functions: Sequence[CompiledFunction], first: int) -> str:
     """The module with the class of a program whose first place has the number `first`."""
-    called = {compiled.path: name for compiled, name in zip(functions, methods(functions), strict=True)}
+    names = {compiled.path: name for compiled, name in zip(functions, methods(functions), strict=True)}
     bound: dict[str, str] = {}
     written = []
     for compiled in functions:
-        written.append(_Method(compiled, first, called, bound).text())
+        written.append(_Method(compiled, first, names, bound).text())
         first += len(compiled.written.places)
     declared = [f"    {attribute(name)}: {kind}\n" for name, kind in sorted(bound.items())]
     return "".join([_HEADER, *declared, *written, f"\nNAMES = frozenset({sorted(bound)!r})\n"])
@@ -94,14 +96,14 @@ class _Method(ast.NodeTransformer):
     """One function as a method."""
 
     def __init__(
-        self, compiled: CompiledFunction, first: int, called: dict[str, str], bound: dict[str, str]
+        self, compiled: CompiledFunction, first: int, names: dict[str, str], bound: dict[str, str]
     ) -> None:
         self._first = first
         self._bound = bound
         self._function = compiled.function
-        self._name = called[compiled.path]
+        self._name = names[compiled.path]
         self._methods = {
-            name: called[function.path]
+            name: names[function.path]
             for name, function in compiled.written.names.functions.items()
             if not function.extern
         }

@@ -7,12 +7,7 @@ transaction, and if no transaction in between has read the other half alone.
 
 from __future__ import annotations
 
-from typing import Final
-
 from emulator.devices.report import DeviceReport, Mark
-
-#: OUT_X, OUT_Y and OUT_Z of the L3G4200D and of the LIS3DH: the lower of their two addresses.
-FIRST_HALVES: Final = (0x28, 0x2A, 0x2C)
 
 
 class FixedAddress:
@@ -38,7 +33,7 @@ class FixedAddress:
         if number != 2:
             return
         if reading and address not in self._suspected:
-            if address in FIRST_HALVES:
+            if self._is_first_half(address):
                 self._suspected.add(address)
             return
         name = self._names.get(address, f"{address:#04x}")
@@ -49,3 +44,8 @@ class FixedAddress:
             "does not increment",
             object=f"{self._part}.{name}", since=since,
         )  # fmt: skip
+
+    def _is_first_half(self, address: int) -> bool:
+        """Whether the register and the next one are the low and the high byte of one value, by their names."""
+        low, high = self._names.get(address, ""), self._names.get(address + 1, "")
+        return low.endswith("_L") and high == f"{low[:-1]}H"

@@ -20,7 +20,7 @@ def _no_c() -> str:
 
 
 def _no_fork() -> str:
-    return "" if hasattr(os, "fork") else "wants a system that forks"
+    return "" if hasattr(os, "fork") else "needs os.fork, which this system lacks"
 
 
 def _mutant(seed: int) -> str:

@@ -68,7 +68,7 @@ def _defect() -> int:
     return hil.cli.invoke(["board", "--json"])
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="wants a system that forks")
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs os.fork, which this system lacks")
 @pytest.mark.parametrize(
     ("does", "found"),
     [

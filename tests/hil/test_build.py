@@ -274,7 +274,7 @@ def test_a_robot_whose_functions_are_methods_drives_alike(
         return type(bench.firmware.linked.namespace), (bench.uart_sha256, bench.trace_sha256, told)
 
     program = link(RobotBoard(), fixes=fixes).linked
-    text = as_methods.module(program.compiled, program.first)
+    text = as_methods.module(program.compiled_functions, program.first)
     functions, one = driven(lambda _identity: None)
     methods, other = driven({program.identity: text}.get)
     assert functions is dict

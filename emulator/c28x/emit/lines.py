@@ -57,19 +57,20 @@ class Exit:
 Item = EmittedLine | Begin | Charge | LineEntry | Exit
 
 
-def printed(items: list[Item], *, places: bool, clock: bool, called: bool) -> list[tuple[str, int]]:
+def printed(items: list[Item], *, places: bool, clock: bool, charge_by_call: bool) -> list[tuple[str, int]]:
     """The text of a function: each line with its source line.
 
-    `places`: the function has places of its own; `clock`: it charges time, and `called`: by a call.
+    `places`: the function has places of its own; `clock`: it charges time, `charge_by_call`: by a call.
     """
     lines: list[tuple[str, int]] = []
     for item in items:
         indent = "    " * item.depth
-        lines += [(indent + text, item.line) for text in _texts(item, places=places, clock=clock, called=called)]
+        texts = _texts(item, places=places, clock=clock, charge_by_call=charge_by_call)
+        lines += [(indent + text, item.line) for text in texts]
     return lines
 
 
-def _texts(item: Item, *, places: bool, clock: bool, called: bool) -> list[str]:
+def _texts(item: Item, *, places: bool, clock: bool, charge_by_call: bool) -> list[str]:
     match item:
         case EmittedLine(text=text):
             return [text]
@@ -77,7 +78,7 @@ def _texts(item: Item, *, places: bool, clock: bool, called: bool) -> list[str]:
             return [*begun]
         case Charge(cycles=cycles, at=at, passing=passing):
             stand = f"_p.at = {at}; " if at else ""
-            if called:
+            if charge_by_call:
                 return [f"{stand}_k.charge({cycles})"]
             if passing:
                 return [f"_n = _k.now = _k.now + {cycles}", f"if _n >= _k.next: {stand}_k.run_due()"]

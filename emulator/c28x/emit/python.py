@@ -117,7 +117,7 @@ class PythonWriter:
 
     def __init__(
         self, function: Function, names: FunctionNames, *, costs: Costs, factor: float, watch: bool, residue: bool,
-        keep_locals: bool, coverage: bool, steps: bool, called: bool,
+        keep_locals: bool, coverage: bool, steps: bool, charge_by_call: bool,
     ) -> None:  # fmt: skip
         self.function = function
         self.names = names
@@ -128,7 +128,7 @@ class PythonWriter:
         self.keep_locals = keep_locals
         self.coverage = coverage
         self.steps = steps
-        self.called = called
+        self.charge_by_call = charge_by_call
         self.items: list[Item] = []
         self.depth = 0
         self.where = function.where
@@ -163,7 +163,9 @@ class PythonWriter:
             else:
                 # The function ends without the value that it must return: the caller gets what the register held.
                 self.leave(f"_c_uninit({self.number(f.owing)})")
-        lines = printed(self.items, places=bool(self.places), clock=self.uses_clock, called=self.called)
+        lines = printed(
+            self.items, places=bool(self.places), clock=self.uses_clock, charge_by_call=self.charge_by_call
+        )
         text = "\n".join(line for line, _ in lines)
         numbers = tuple(number for _, number in lines)
         return EmittedFunction(text, numbers, tuple(self.places), self.names, tuple(self.counted))

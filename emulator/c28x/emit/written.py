@@ -12,7 +12,7 @@ from emulator.c28x.tree import Where
 from emulator.clock import Clock
 
 #: Whether time is charged by a call: that is fastest with a compiled clock, in-line attribute access without one.
-CALLED: Final = not isinstance(Clock.charge, FunctionType)
+CHARGE_BY_CALL: Final = not isinstance(Clock.charge, FunctionType)
 #: Places in a function's text are numbered from here, so that the linker can tell them from all other numbers: 64-bit
 #: arithmetic does not reach them, nor does constant folding in Python (128 bits).
 FIRST_NUMBER: Final = 1 << 130
