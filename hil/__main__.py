@@ -10,7 +10,7 @@ from hil import ending
 def main() -> None:
     """Entry point of ``hil`` and ``python -m hil``."""
     ending.leaves()
-    from hil.collector import collect_rarely
+    from hil.collector import collect_no_more, collect_rarely
 
     collect_rarely()
     from hil.cli import invoke
@@ -23,6 +23,7 @@ def main() -> None:
         ending.ignored()
     except KeyboardInterrupt:  # while the last line was written
         status = ending.EXIT_INTERRUPTED
+    collect_no_more()
     sys.exit(status)
 
 

@@ -1,4 +1,4 @@
-"""Python's cyclic collector, kept out of the way while a chip or a program is made."""
+"""Python's cyclic collector, kept out of the way while a chip or a program is made, and when the process ends."""
 
 from __future__ import annotations
 
@@ -27,3 +27,8 @@ def uncollected() -> Iterator[None]:
     finally:
         if enabled:
             gc.enable()
+
+
+def collect_no_more() -> None:
+    """For a process that ends: Python would look through all objects once more, a quarter of a short command's time."""
+    gc.freeze()

@@ -91,6 +91,8 @@ class MachineThread:
         self._sought: Finding | None = None
         self._arrivals: list[Future[None]] = []
         self._ended = False
+        #: Set before anybody waits for its end.
+        self._unwanted = threading.Event()
         #: Nothing may be done to the machine: the past is executed again, or a step holds it inside a slice.
         self._holding = False
         #: What runs, holds or is executed again ends at its next look.
@@ -104,10 +106,15 @@ class MachineThread:
         self._thread.start()
 
     def join(self) -> None:
-        """Wait until it has ended; `end` is the command that ends it."""
+        """Wait until it has ended; `end` is the command that ends it.
+
+        A machine that is still being linked has nothing to show and nothing to close: it is left, and ends by itself.
+        """
         if self._thread.is_alive():
             self._commands.put(self.end)
-            self._thread.join(timeout=20.0)
+            self._unwanted.set()
+            if hasattr(self, "run"):
+                self._thread.join(timeout=20.0)
 
     # The loop
 
@@ -141,6 +148,8 @@ class MachineThread:
         if run.stage is None:
             self.line.log.ends = LINE_ENDS
         self._take(run)
+        if self._unwanted.is_set():
+            return
         self._reach(run.bench.start_up_cycles, "start-up")
         self.run.plan(self._orders)
         self._port = self._open_port(self.run.bench)

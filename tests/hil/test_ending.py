@@ -59,3 +59,28 @@ def test_nor_does_it_end_a_command_that_has_more_to_show() -> None:
         assert signal.SIGHUP not in ending.ending_signals()
     finally:
         signal.signal(signal.SIGHUP, was)
+
+
+def test_signals_have_a_meaning_before_anything_of_the_project_is_imported() -> None:
+    ours = "{name for name in sys.modules if name.partition('.')[0] in ('hil', 'emulator', 'firmware_model')}"
+    run = subprocess.run(
+        [sys.executable, "-c", f"import sys; from hil import ending; print(*sorted({ours}))"],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert run.stdout.split() == ["hil", "hil.ending"]
+
+
+def test_a_command_that_ends_does_not_look_through_its_memory_once_more() -> None:
+    #: Of a cycle: only the collector would end it.
+    script = (
+        "import atexit, sys, hil.__main__\n"
+        "class Cycle:\n"
+        "    def __init__(self): self.itself = self\n"
+        "    def __del__(self): print('collected')\n"
+        "atexit.register(print, 'exit')\n"
+        "cycle = Cycle()\n"
+        "sys.argv = ['hil', '--version']\n"
+        "hil.__main__.main()\n"
+    )
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert run.stdout.splitlines()[1:] == ["exit"]

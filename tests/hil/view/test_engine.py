@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from concurrent.futures import CancelledError
 from importlib.resources import files
 from pathlib import Path
+from threading import Event
+from typing import Any
 
 import pytest
 
@@ -380,6 +382,26 @@ def test_a_port_that_goes_away_is_told_and_the_page_goes_on_without_it() -> None
     eventually(lambda: engine.snapshot.cycles > before + SYSCLK_HZ, what="it does not run on")
     engine.close()
     assert engine.error is None
+
+
+def test_a_machine_that_is_still_being_linked_is_left_and_ends_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    linking, linked = Event(), Event()
+
+    def link(*given: Any, **options: Any) -> RewindableRun:
+        linking.set()
+        linked.wait()
+        return RewindableRun(*given, **options)
+
+    monkeypatch.setattr("hil.view.machine_thread.RewindableRun", link)
+    engine = Engine(SETUP)
+    engine.start()
+    linking.wait()
+    engine.close()
+    assert not engine.ready.is_set()
+    linked.set()
+    engine.ready.wait()
+    assert engine.error is None
+    assert engine.snapshot.time_s == 0.0
 
 
 def test_an_error_at_start_is_kept_and_nobody_waits_for_ever() -> None:

@@ -81,8 +81,10 @@ def test_elsewhere_than_on_loopback_it_needs_the_token_that_it_prints() -> None:
 
 def test_ctrl_c_ends_it_cleanly_with_a_summary() -> None:
     needs_view()
-    view = View("--world", "box", "--order", "0.1:stop")
+    view = View("--world", "box", "--order", "0.1:stop", "--listen", "tcp://127.0.0.1:0")
     assert get(view.address).status == 200
+    assert view.process.stdout is not None
+    assert view.process.stdout.readline().startswith("port: ")  # it has started up
     status, summary, errors = view.end()
     assert (status, errors) == (0, "")
     # Findings of start-up (us.c reads SONAR2.previous_distances before anything was written), then the line's counts:
