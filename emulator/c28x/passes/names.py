@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from typing import Any, Final
 
 from emulator.c28x.ctypes import ArrayType, StructType
@@ -43,6 +43,7 @@ from emulator.c28x.tree import (
 from emulator.c28x.tree_queries import (
     OBSERVABLE,
     bare,
+    blocks,
     different,
     parts,
     roots,
@@ -87,6 +88,10 @@ class Liveness:
         #: Identities of statements that only limit the local of their `if`.
         self.limits = {id(s) for test in statements(function.body) if isinstance(test, If) for s in _limits(test)}
         self.found: dict[int, tuple[Where, Variable, Expr]] = {}
+        #: Identity of both last statements of an exchange (`t = a; a = b; b = t;`) -> what the other one sets.
+        self.exchanged = {id(s): other for body in _bodies(function.body) for s, other in _exchanges(body)}
+        #: Identities of statements of an exchange whose other half is used.
+        self.halves: set[int] = set()
 
     def run(self) -> None:
         """Report the dead stores of the function."""
@@ -97,9 +102,23 @@ class Liveness:
             self.to.report(self.function, where, "dead-store", message, declaration=variable.declaration)
 
     def block(self, body: list[Stmt], live: Live) -> Live:
-        for s in reversed(body):
+        for i, s in reversed(list(enumerate(body))):
+            if id(s) in self.exchanged and i and id(body[i - 1]) in self.exchanged:
+                self.exchange((body[i - 1], s), live)
             live = self.statement(s, live)
         return live
+
+    def exchange(self, halves: tuple[Stmt, Stmt], live: Live) -> None:
+        """Note which half of an exchange is needed for the other; `live` are the variables behind it.
+
+        If nothing uses either of the two, the exchange is useless (parameters that were passed by value).
+        """
+        for s in halves:
+            other = self.exchanged[id(s)].root
+            if other in live or other not in self.tracked:
+                self.halves.add(id(s))
+            else:
+                self.halves.discard(id(s))
 
     def statement(self, s: Stmt, live: Live) -> Live:
         used = self.used[id(s)]
@@ -171,7 +190,7 @@ class Liveness:
     def store(self, s: Assign | Declare, variable: Variable, value: Expr, live: Live) -> None:
         if not self.reporting or variable in live or (_harmless(variable, value) and id(s) not in self.limits):
             return
-        if isinstance(s, Assign) and self.says_unused(s, variable):
+        if id(s) in self.halves or (isinstance(s, Assign) and self.says_unused(s, variable)):
             return
         declared = isinstance(s, Declare)
         if _reads_device(value) or (_for_effect(value) and (declared or variable not in self.read_anywhere)):
@@ -180,11 +199,43 @@ class Liveness:
             self.found = {line: found for line, found in self.found.items() if found[1] is not variable}
         self.found[s.line] = (s.where, variable, value)
 
-
     def says_unused(self, s: Assign, variable: Variable) -> bool:
         """`arg = arg;` marks a parameter as unused.  (`ValueChecks` reports it if `arg` hides a file object.)"""
         itself = isinstance(s.value, Load) and s.value.lvalue == s.target
         return itself and variable.kind == "parameter"
+
+
+def _bodies(body: list[Stmt]) -> Iterator[list[Stmt]]:
+    """Every block."""
+    yield body
+    for s in statements(body):
+        yield from blocks(s)
+
+
+def _exchanges(body: list[Stmt]) -> Iterator[tuple[Stmt, LValue]]:
+    """`a = b` and `b = t` of each `t = a; a = b; b = t;` of a block, with the target of the other of the two."""
+    for first, second, third in zip(body, body[1:], body[2:], strict=False):
+        match second, third:
+            case Assign(target=LValue() as a, value=taken), Assign(target=LValue() as b, value=put):
+                if _value(taken) == b and _keeps(first, _value(put), a):
+                    yield second, b
+                    yield third, a
+
+
+def _value(e: Expr) -> LValue | None:
+    """The object of which an expression is just the value."""
+    inner = bare(e)
+    return inner.lvalue if isinstance(inner, Load) else None
+
+
+def _keeps(s: Stmt, keeper: LValue | None, what: LValue) -> bool:
+    """Whether a statement stores the value of `what` in `keeper`."""
+    match s:
+        case Assign(target=target, value=value):
+            return target == keeper and _value(value) == what
+        case Declare(variable=variable, value=Expr() as value):
+            return keeper is not None and keeper.root is variable and _value(value) == what
+    return False
 
 
 def _limits(test: If) -> list[Stmt]:

@@ -125,6 +125,32 @@ def test_a_part_that_no_way_reads_is_a_dead_store(body: str) -> None:
     assert "dead-store" in told(body)
 
 
+#: An exchange of which one half is used: the other half belongs to it.
+EXCHANGES = [
+    "{ int t, x = port; if (n > x) { t = n; n = x; x = t; } return n; }",
+    "{ int x = port; if (n > x) { int t = n; n = x; x = t; } return x; }",
+    "{ int t, v[2] = {port, n}; t = v[0]; v[0] = v[1]; v[1] = t; return v[1]; }",
+]
+
+
+@pytest.mark.parametrize("body", EXCHANGES)
+def test_an_exchange_of_which_one_half_is_used_is_no_dead_store(body: str) -> None:
+    assert "dead-store" not in told(body)
+
+
+#: Nothing uses either half, or it is no exchange.
+USELESS = [
+    "{ int t, x = port; t = n; n = x; x = t; return 0; }",
+    "{ int t, x = port; t = n; n = x; x = n; return n; }",
+    "{ int t, x = port; t = n; n = other; x = t; return n; }",
+]
+
+
+@pytest.mark.parametrize("body", USELESS)
+def test_an_exchange_that_nothing_uses_is_a_dead_store(body: str) -> None:
+    assert "dead-store" in told(body)
+
+
 def test_a_structure_that_is_never_read_is_told_once_at_its_first_store() -> None:
     found = findings_of(f"{HEAD}{{ struct P p;\n p.x = n * 2;\n p.y = n * 3;\n return n; }}\n")
     assert [(rule, line) for rule, line in found if rule == "dead-store"] == [("dead-store", 4)]
