@@ -77,7 +77,8 @@ def parse_order(text: str) -> bytes:
     for word, letters in KEYWORDS.items():
         if text.lower() in (word, letters.lower()):
             return order(word)
-    raise ValueError(f"no order {text!r}: there are {', '.join(KEYWORDS)}, set V W, their four letters, and #RAW")
+    known = f"{', '.join(KEYWORDS)}, set V W, the four letters of one of them, or # and raw characters"
+    raise ValueError(f"no order {text!r}: write {known}")
 
 
 def parse_timed_order(text: str) -> TimedOrder:

@@ -346,7 +346,7 @@
       words.setAttribute("text-anchor", right ? "end" : "start");
       setText(words, `${text}, ${(Math.hypot(dx, dy) / PX_PER_M).toFixed(2)} m away`);
     }
-    const lost = ["the firmware believes to be there", "robot"].map((text) => {
+    const lost = ["odometry", "robot"].map((text) => {
       const group = draw("g", "away", $("robots"));
       draw("path", "", group);
       draw("text", "", group);

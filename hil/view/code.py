@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from html import escape
+from textwrap import dedent
 
 from nicegui import ui
 
@@ -17,7 +18,10 @@ def show_code(place: Place, around: int = 4) -> None:
     if not lines:
         ui.label("the source is not there").classes("soft")
         return
+    # Without the indentation that all lines have, more of them is in sight.
+    texts = dedent("\n".join(each.text for each in lines)).split("\n")
     rows = "".join(
-        f'<div class="{"here" if each.marked else ""}">{each.number:5d}  {escape(each.text)}</div>' for each in lines
+        f'<div class="{"here" if each.marked else ""}">{each.number:5d}  {escape(text)}</div>'
+        for each, text in zip(lines, texts, strict=True)
     )
     ui.html(f'<div class="code mono" tabindex="0">{rows}</div>', sanitize=False).classes("w-full")

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from nicegui.elements.mixins.value_element import ValueElement
 
 HELP: Final = (
-    "Times count from the end of start-up, as those of orders; one that has passed is now. After going back it breaks "
-    "again at its time."
+    "Times count from the end of start-up, as those of orders. A time that has passed means now. After you go back in "
+    "time, the fault begins again at its time."
 )
-UNWATCHED: Final = "Who reads it first is told only of a run that begins with such a fault (--fault)."
+UNWATCHED: Final = "Which task reads it first is shown only for a run that starts with such a fault (--fault)."
 
 
 class FaultsPanel:
@@ -118,5 +118,7 @@ def _field(parameter: FaultParameter) -> Any:
             shown = "" if default is None else f"{default:g}" if isinstance(default, float) else str(default)
             made = ui.input(label, value=shown, placeholder="must be given" if default is None else "")
         made.props("dense stack-label").style("flex:none;width:9em").mark(f"parameter-{parameter.name}")
-        ui.label(f"{parameter.what} ({parameter.range})").classes("soft")
+        free_text = parameter.type is str and not parameter.choices
+        range_text = "" if free_text else f" ({parameter.range})"
+        ui.label(f"{parameter.what}{range_text}".replace("`", "")).classes("soft")
     return made

@@ -3,43 +3,34 @@ it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable
 from typing import Final
 
 from markdown_it import MarkdownIt
 from nicegui import ui
 
 from emulator.c28x.findings import Finding
-from emulator.rules import RULES, Severity
+from emulator.rules import RULES
 from hil.reports.excerpt import function_of, location, readable, shown
 from hil.view.code import show_code
 from hil.view.engine import Engine
+from hil.view.rated_finding import (
+    ACCEPTED,
+    KINDS,
+    WORST_FIRST,
+    RatedFinding,
+    by_kind,
+    in_words,
+    rated,
+    worst_first,
+)
 from hil.view.rows import Rows, TableCell, TableRow
 from hil.view.snapshot import Snapshot
 from hil.view.time_panel import WherePanel
 
 #: Page updates between two looks at the counts: once a second.
 EVERY: Final = 20
-WORST_FIRST: Final = sorted(Severity, key=lambda severity: -severity.rank)
-COLUMNS: Final = ("severity", "finding", "where", "first")
-
-
-def by_severity(rated: Iterable[tuple[Finding, Severity]]) -> dict[str, int]:
-    """The number of findings of each severity, the worst first."""
-    counts = {severity.value: 0 for severity in WORST_FIRST}
-    for _, severity in rated:
-        counts[severity.value] += 1
-    return counts
-
-
-def counted(counts: Mapping[str, int]) -> str:
-    """Counts as coloured words of HTML."""
-    words = [
-        f'<span class="severity {severity}">{count} {severity}{"s" if count > 1 else ""}</span>'
-        for severity, count in counts.items()
-        if count
-    ]
-    return " ".join(words) or "none"
+COLUMNS: Final = ("severity", "finding", "where", "first seen")
 
 
 def key_of(finding: Finding) -> str:
@@ -47,28 +38,32 @@ def key_of(finding: Finding) -> str:
     return "\n".join((finding.rule, str(finding.place), finding.object, str(finding.time_cycles)))
 
 
-def row_of(finding: Finding, severity: Severity) -> TableRow:
-    """A row of the table."""
+def row_of(rated_finding: RatedFinding, *, ahead: bool = False) -> TableRow:
+    """A row of the table.  `ahead`: the run was here later, and has gone back to before the finding."""
+    finding, severity = rated_finding.finding, rated_finding.severity
     place = finding.place
     line = "" if place is None else location(place).rpartition("/")[2]
     return TableRow(
         key_of(finding),
         (
-            TableCell(severity.value, css=f"severity {severity.value}", order=WORST_FIRST.index(severity)),
+            TableCell(
+                severity.value,
+                ACCEPTED if rated_finding.accepted else "",
+                css=f"severity {rated_finding.kind}",
+                title=f"accepted in the source: {rated_finding.accepted}" if rated_finding.accepted else "",
+                order=WORST_FIRST.index(severity),
+            ),
             TableCell(finding.rule, finding.object),
             TableCell(
                 "" if place is None else function_of(place),
                 ", ".join(filter(None, (line, finding.task))),
                 title="" if place is None else location(place),
             ),
-            TableCell(f"{finding.time_us / 1e3:.3f} ms", f"{finding.count} x", order=finding.time_cycles),
+            TableCell(
+                f"{finding.time_us / 1e3:.3f} ms", "ahead" if ahead else f"{finding.count} x", order=finding.time_cycles
+            ),
         ),
     )
-
-
-def worst_first(rated: Iterable[tuple[Finding, Severity]]) -> list[tuple[Finding, Severity]]:
-    """Sort by severity; findings of one severity keep their order."""
-    return sorted(rated, key=lambda each: -each[1].rank)
 
 
 def has_words(row: TableRow, words: str) -> bool:
@@ -85,19 +80,19 @@ class FindingsPanel:
         self._on_go_to = on_go_to
         self._turn = 0
         self._shown: tuple[Finding, ...] = ()
-        self._counted = -1
+        self._rated: list[RatedFinding] = []
         with ui.row().classes("items-center gap-x-2 gap-y-0 w-full"):
             self._filters = {
-                severity.value: ui.checkbox(severity.value, value=True, on_change=self._filter)
-                .props("dense").classes(f"severity {severity.value}").mark(f"filter-{severity.value}")
-                for severity in WORST_FIRST
+                kind: ui.checkbox(in_words(kind, 0), value=True, on_change=self._filter)
+                .props("dense").classes(f"severity {kind}").mark(f"filter-{kind}")
+                for kind in KINDS
             }  # fmt: skip
             ui.space()
             self._search = (
                 ui.input(placeholder="search", on_change=self._filter)
                 .props('dense clearable aria-label="search findings"').classes("w-40").mark("search-findings")
             )  # fmt: skip
-        self._none = ui.label("nothing found yet").classes("soft")
+        self._told = ui.label("nothing found yet").classes("soft")
         with ui.element("div").classes("scrolled w-full"):
             self._table = Rows(COLUMNS, self._chosen, name=1, sortable=True).classes("findings").mark("findings")
         self._where = WherePanel()
@@ -107,28 +102,35 @@ class FindingsPanel:
         """Update the panel while it is visible."""
         self._where.update(now)
         self._turn = (self._turn + 1) % EVERY
-        if self._turn == 1 or len(self._shown) != len(self._engine.findings):
+        if self._turn == 1 or len(self._shown) != len(self._engine.known_findings):
             self._fill()
 
     def _fill(self) -> None:
-        self._shown = self._engine.findings
+        self._shown = self._engine.known_findings
+        self._rated = worst_first(rated(self._shown, self._engine.policy))
         self._filter()
-        if self._counted != len(self._shown):
-            self._counted = len(self._shown)
-            for severity, count in by_severity(self._engine.policy.with_severities(self._shown)).items():
-                self._filters[severity].text = f"{count} {severity}{'' if count == 1 else 's'}"
+        for kind, count in by_kind(self._rated).items():
+            box = self._filters[kind]
+            if box.text != in_words(kind, count):
+                box.text = in_words(kind, count)
+            # Few programs accept anything.
+            box.visible = kind != ACCEPTED or count > 0
 
     def _filter(self) -> None:
-        wanted = {severity for severity, box in self._filters.items() if box.value}
-        rated = worst_first(self._engine.policy.with_severities(self._shown))
-        rows = [row_of(finding, severity) for finding, severity in rated if severity.value in wanted]
+        wanted = {kind for kind, box in self._filters.items() if box.value}
+        now = self._engine.snapshot.cycles
         words = str(self._search.value or "")
-        rows = [row for row in rows if has_words(row, words)]
+        every = [row_of(each, ahead=each.finding.time_cycles > now) for each in self._rated if each.kind in wanted]
+        rows = [row for row in every if has_words(row, words)]
         self._table.show(rows)
-        text = "" if rows else "nothing of this kind" if self._shown else "nothing found yet"
-        if self._none.text != text:
-            self._none.text = text
-            self._none.visible = bool(text)
+        ahead = sum(each.finding.time_cycles > now for each in self._rated)
+        if not rows:
+            text = "nothing of this kind" if self._rated else "nothing found yet"
+        else:
+            text = f"{ahead} of them are ahead: the run has gone back" if ahead else ""
+        if self._told.text != text:
+            self._told.text = text
+            self._told.visible = bool(text)
 
     def show(self, finding: Finding) -> None:
         """Choose a finding, also one later than the present time."""
@@ -150,6 +152,9 @@ class FindingsPanel:
                     f"Go to its statement at {finding.time_us / 1e3:.3f} ms", on_click=lambda: self._on_go_to(finding)
                 ).props("no-caps dense").mark("back")
             ui.label(readable(finding.message))
+            for each in rated([finding], self._engine.policy):
+                if each.accepted:
+                    ui.label(f"accepted in the source: {each.accepted}").classes("soft")
             for detail in finding.details:
                 ui.label(readable(detail)).classes("soft")
             if finding.declaration:

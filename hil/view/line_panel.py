@@ -21,7 +21,7 @@ class LinePanel:
         self._epoch = line.log.epoch
         self._next = 0
         with ui.row().classes("gap-2 items-end w-full"):
-            ui.label("Line").classes("head")
+            ui.label("Serial line").classes("head")
             self._text = ui.input("to the board").props("dense").classes("w-56").mark("send")
             self._text.on("keydown.enter", self._send)
             self._end = ui.select(ENDS, value="\r", label="then").props("dense").classes("w-24").mark("end")

@@ -219,7 +219,7 @@ class MachineThread:
         self._publish_when_due()
         last = self.moments.all[-1].cycles
         if now - last >= CHECKPOINT_CYCLES:
-            self.moments.note(now, "")
+            self.moments.note(now, "automatic")
         if self._ended or self._goal is not None or self._release or not (self._running or self._stepper.armed):
             session.stop()
 

@@ -15,8 +15,9 @@ from hil.board import made
 from hil.view.board_panel import BoardPanel
 from hil.view.engine import Engine
 from hil.view.faults_panel import FaultsPanel
-from hil.view.findings_panel import FindingsPanel, by_severity, counted
+from hil.view.findings_panel import FindingsPanel
 from hil.view.line_panel import LinePanel
+from hil.view.rated_finding import by_kind, counted, rated
 from hil.view.registers_panel import RegistersPanel
 from hil.view.scope import ScopePanel
 from hil.view.scrub import ScrubBar
@@ -292,7 +293,7 @@ class _Head:
         findings = self._engine.findings
         if len(findings) != self._counted:
             self._counted = len(findings)
-            self._found.content = counted(by_severity(self._engine.policy.with_severities(findings)))
+            self._found.content = counted(by_kind(rated(findings, self._engine.policy)))
         if self._mode.text != now.mode.value:
             self._mode.text = now.mode.value
             css = _CHIP.get(now.mode, "wait")

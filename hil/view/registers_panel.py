@@ -115,7 +115,7 @@ def row_of(register: ShownRegister, *, moved: bool, in_full: bool) -> TableRow:
     return TableRow(
         register.path,
         (
-            TableCell(register.path if in_full else register.path.partition(".")[2]),
+            TableCell(register.path) if in_full else TableCell(register.path.partition(".")[2], css="whole"),
             _value(value, reset, moved=moved),
             TableCell("" if writer is None else writer_of(writer), "" if writer is None else writer_at(writer)),
         ),
@@ -124,7 +124,7 @@ def row_of(register: ShownRegister, *, moved: bool, in_full: bool) -> TableRow:
 
 def _value(value: str, reset: str, more: str = "", *, moved: bool) -> TableCell:
     """A value, bold if it is not as after reset, marked if it has just changed."""
-    css = " ".join(name for name, on in (("moved", moved), ("not-reset", value != reset)) if on)
+    css = " ".join(name for name, on in (("whole", True), ("moved", moved), ("not-reset", value != reset)) if on)
     return TableCell(value, more, css, "" if value == reset else f"after reset: {reset}")
 
 
@@ -155,7 +155,7 @@ def field_row(shown: ShownField, *, moved: bool) -> TableRow:
     return TableRow(
         shown.name,
         (
-            TableCell(shown.name, f"bits {field.hi}:{field.lo}" if field.width > 1 else f"bit {field.lo}"),
+            TableCell(shown.name, f"bits {field.hi}:{field.lo}" if field.width > 1 else f"bit {field.lo}", css="whole"),
             _value(value, reset, meaning(field.text, shown.value), moved=moved),
             TableCell(text, field.access.value),
         ),
@@ -177,7 +177,7 @@ class RegistersPanel:
         #: Bits that changed between the last two moments at which it was looked.
         self._moved: dict[str, int] = {}
         self._writer: LastWriter | None = None
-        with ui.row().classes("items-center gap-x-3 gap-y-0"):
+        with ui.row().classes("items-center gap-x-3 gap-y-1"):
             self._block = (
                 ui.select(blocks, value=blocks[0], label="block", with_input=True, on_change=self._find)
                 .props("dense options-dense")

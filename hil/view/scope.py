@@ -6,11 +6,13 @@ are drawn as lanes below, on the same span of time.  The wheel zooms about the p
 
 from __future__ import annotations
 
+import time
 from bisect import bisect_right
 from collections.abc import Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from html import escape
+from math import ceil, floor, log10
 from typing import Any, Final
 
 from nicegui import events, ui
@@ -29,11 +31,18 @@ from hil.view.style import LINES
 from hil.view.words import DecodedWord
 
 EVERY: Final = 5
+#: The tasks of a long span are looked at once in so many times.
+ROUNDS: Final = 4
+#: A panel that was not updated for so long was out of sight.
+HIDDEN_S: Final = 0.5
 #: Points that are drawn of a signal; more are thinned to the extremes of each column.
 COLUMNS: Final = 400
 #: Height of an axis in the picture, if there are several, and of what stands above and below.
 AXIS: Final = 96
 ABOVE: Final = 28
+#: Width of a digit on the time axis, and the least gap between two numbers, in pixels.
+DIGIT: Final = 7
+GAP: Final = 24
 BELOW: Final = 40
 #: Longer spans of time than this have too many events to be sorted four times a second: once a second.
 LIVE_S: Final = 1.0
@@ -148,6 +157,10 @@ class ScopePanel:
         self._look: ScopeSpan | None = None
         self._names: list[str] = []
         self._end: int | None = None
+        #: The latest span with tasks: the lanes show it.
+        self._lanes_look: ScopeSpan | None = None
+        #: When the panel was updated last, on the monotonic clock: out of sight it is not.
+        self._updated_s = 0.0
         #: What chart and lanes show.
         self._charted: Any = None
         self._drawn: Any = None
@@ -183,7 +196,8 @@ class ScopePanel:
                 .mark("cursors")
             )
         ui.label(
-            "Levels, words, tasks, Swis, Hwis (of these the events of some 14 s are kept).  Wheel: zoom, drag: shift"
+            "Levels, words on buses, tasks, Swis and Hwis. The events of the last 14 s or so are kept. The wheel "
+            "zooms, dragging shifts."
         ).classes("soft")
         with ui.element("div").classes("lanes w-full") as lanes:
             ui.element("q-resize-observer").on("resize", self._resized, args=["width"])
@@ -195,7 +209,7 @@ class ScopePanel:
         with ui.row().classes("gap-x-4 soft"):
             for css, text in (
                 ("--run", "runs"), ("--wait", "ready, pre-empted"), ("--bad", "waits at a gate"),
-                ("--real", "outlined: inherited priority"), ("--line", "pale: several, too near to be told apart"),
+                ("--real", "outlined: inherited priority"), ("--line", "pale: several, too close to be drawn"),
             ):  # fmt: skip
                 ui.html(f'<span class="key" style="border-color:var({css})"></span>{text}', sanitize=False)
         self._reading = ui.html("", sanitize=False).classes("w-full reading").props("tabindex=0").mark("reading")
@@ -215,6 +229,10 @@ class ScopePanel:
                 if list(self._look.kinds) != self._names:  # another page has chosen
                     self._show_names(list(self._look.kinds))
         self._draw()
+        now_s, before_s = time.monotonic(), self._updated_s
+        self._updated_s = now_s
+        if now_s - before_s > HIDDEN_S:  # it comes into sight: what it showed then is old
+            self._turn, self._round = EVERY - 1, ROUNDS - 1
         self._turn = (self._turn + 1) % EVERY
         if self._turn == 0 and self._waiting is None:
             engine, cycles = self._engine, round(float(self._span.value) * SYSCLK_HZ)
@@ -223,7 +241,7 @@ class ScopePanel:
             elif not self._still.value:
                 self._end = None
             end = self._end
-            self._round = (self._round + 1) % 4
+            self._round = (self._round + 1) % ROUNDS
             live = float(self._span.value) <= LIVE_S or self._round == 0
             self._waiting = engine.submit(lambda run: look(run, engine.probes, end, cycles, with_spans=live))
 
@@ -231,45 +249,55 @@ class ScopePanel:
         now = self._look
         if now is None:
             return
-        at = self._cursors.value
-        key = (now.begin, now.end, at["min"], at["max"], tuple(now.values), self._pointer)
-        width = now.end - now.begin
-        a, b = (now.begin + width * int(at[side]) // 1000 for side in ("min", "max"))
-        # The lanes of a span may come later than its chart: to sort the events of a long one takes its time.
-        if now.spans is not None and key != self._laned:
-            self._laned = key
-            self._draw_lanes(now, now.spans, (a, b))
-        if key == self._charted:
+        # The tasks of a long span come later than its chart: sorting their events takes time.
+        if now.spans is not None:
+            self._lanes_look = now
+        if self._lanes_look is not None:
+            self._draw_lanes(self._lanes_look)
+        a, b = cursors = self._cursor_cycles(now)
+        drawn = (now.begin, now.end, cursors, tuple(now.values), self._width)
+        if (drawn, self._pointer) == self._charted:
             return
-        self._charted = key
-        if key[:-1] != self._drawn:
-            self._drawn = key[:-1]
-            self._draw_chart(now, (a, b))
+        self._charted = drawn, self._pointer
+        if drawn != self._drawn:
+            self._drawn = drawn
+            self._draw_chart(now, cursors)
         times = {"A": a, "B": b}
         if self._pointer is not None:
-            times["pointer"] = now.begin + round(width * self._pointer)
+            times["pointer"] = now.begin + round((now.end - now.begin) * self._pointer)
         self._reading.content = reading(now, times)
+
+    def _cursor_cycles(self, now: ScopeSpan) -> tuple[int, int]:
+        """The times of the cursors in a span."""
+        at, span = self._cursors.value, now.end - now.begin
+        return now.begin + span * int(at["min"]) // 1000, now.begin + span * int(at["max"]) // 1000
 
     def _draw_chart(self, now: ScopeSpan, cursors: tuple[int, int]) -> None:
         on_axes = {name: kind.unit for name, kind in now.kinds.items() if kind.draw is Draw.LINE}
         a, b = cursors
-        options = _options(on_axes, now.values, seconds(now.begin), seconds(now.end), (seconds(a), seconds(b)))
+        options = _options(
+            on_axes, now.values, seconds(now.begin), seconds(now.end), (seconds(a), seconds(b)), self._width
+        )
         self._chart.set_visibility(bool(on_axes))
         self._chart.style(f"height:{_height(len(set(on_axes.values())))}px")
         self._chart.options.clear()
         self._chart.options.update(options)
         self._chart.update()
 
-    def _draw_lanes(self, now: ScopeSpan, every: list[Span], cursors: tuple[int, int]) -> None:
+    def _draw_lanes(self, now: ScopeSpan) -> None:
+        cursors = self._cursor_cycles(now)
+        key = (now.begin, now.end, cursors, tuple(now.values), self._width)
+        if key == self._laned:
+            return
+        self._laned = key
         rows = [
             *signal_lanes(now.kinds, now.values, now.words, now.begin, now.end, self._width),
-            *task_lanes(now.owners, every, now.begin, now.end, self._width),
+            *task_lanes(now.owners, now.spans or [], now.begin, now.end, self._width),
         ]
         at = place(now.begin, now.end, self._width)
         drawn, height = picture(rows, [at(cycles) for cycles in cursors], now.begin, now.end, self._width)
-        box = f"0 0 {self._width} {height}"
-        if self._lanes.props.get("viewBox") != box:
-            self._lanes.props["viewBox"] = box
+        # In pixels: nothing in it is stretched until it is drawn for another width.
+        self._lanes.props["width"], self._lanes.props["height"] = self._width, height
         self._lanes.content = drawn
 
     def _tick(self, name: str, on: bool) -> None:
@@ -285,7 +313,7 @@ class ScopePanel:
             for name in self._names:
                 ui.button(f"{name}  x", on_click=lambda name=name: self._tick(name, False)).props(
                     "no-caps dense outline size=sm"
-                ).tooltip("record it no more")
+                ).tooltip("stop recording it")
         self._tree.show(self._names)
 
     def _period(self, period_ms: float) -> None:
@@ -324,9 +352,9 @@ class ScopePanel:
         self._pointer = self._grip = None
 
     def _resized(self, e: events.GenericEventArguments) -> None:
-        # Drawn in its own pixels, its names can be read at any width.
-        self._width = max(LEFT + 1, round(float(e.args["width"])))
-        self._laned = None
+        # Drawn in its own pixels, its names can be read at any width.  Out of sight it has none.
+        if width := round(float(e.args["width"])):
+            self._width = max(LEFT + 1, width)
 
     def _share(self, of_the_width: float) -> float:
         """The position of the pointer between the left and the right end of the lanes, 0..1."""
@@ -356,9 +384,25 @@ def _height(axes: int) -> int:
     return 250 if axes <= 1 else ABOVE + BELOW + AXIS * axes
 
 
+def tick_times(begin_s: float, end_s: float, width: int) -> list[float]:
+    """Round times for an axis of `width` pixels, as many as have room; none whose number would be cut at an end."""
+    span_s = end_s - begin_s
+    if span_s <= 0 or width <= 0:
+        return []
+    for exponent in range(floor(log10(span_s / width)), floor(log10(span_s)) + 1):
+        digits = len(f"{end_s:.{max(0, -exponent)}f}")
+        for factor in (1, 2, 5):
+            step = factor * 10.0**exponent
+            if step * width / span_s >= digits * DIGIT + GAP:
+                margin = span_s / width * digits * DIGIT / 2
+                first, last = ceil((begin_s + margin) / step), floor((end_s - margin) / step)
+                return [round(n * step, 9) for n in range(first, last + 1)]
+    return []
+
+
 def _options(
     units: dict[str, str], values: dict[str, list[Sample]], begin_s: float, end_s: float,
-    cursors_s: tuple[float, float] | None = None,
+    cursors_s: tuple[float, float] | None = None, width: int = WIDTH,
 ) -> dict[str, Any]:  # fmt: skip
     """The options of ECharts: an axis for each unit, one below the other; `units` are those of the signals to be
     drawn."""
@@ -387,6 +431,7 @@ def _options(
                 "data": marks, "symbol": "none", "animation": False, "precision": 9, "lineStyle": {"color": grey},
             },
         } for n in range(len(axes))]  # fmt: skip
+    ticks = {"customValues": tick_times(begin_s, end_s, width - LEFT)}
     each = (_height(len(axes)) - ABOVE - BELOW) // len(axes)
     last = len(axes) - 1
     return {
@@ -402,8 +447,9 @@ def _options(
         "xAxis": [
             {"type": "value", "gridIndex": n, "min": round(begin_s, 9), "max": round(end_s, 9),
              "name": "s" if n == last else "", "nameLocation": "center", "nameGap": 22,
-             "axisLabel": text | {"show": n == last, "showMinLabel": False, "showMaxLabel": False},
-             "nameTextStyle": text, "splitLine": {"lineStyle": {"color": "var(--line)"}}, "axisLine": {"onZero": False}}
+             "axisLabel": text | ticks | {"show": n == last}, "axisTick": ticks,
+             "nameTextStyle": text, "splitLine": ticks | {"lineStyle": {"color": "var(--line)"}},
+             "axisLine": {"onZero": False}}
             for n in range(len(axes))
         ],
         "yAxis": [

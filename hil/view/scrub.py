@@ -10,8 +10,8 @@ from nicegui import events, ui
 
 from emulator.c28x.findings import Finding
 from emulator.clock import SYSCLK_HZ, seconds
-from emulator.rules import Severity
 from hil.view.engine import Engine
+from hil.view.rated_finding import RatedFinding, rated
 from hil.view.showing import Mark
 from hil.view.snapshot import Mode, Snapshot
 
@@ -35,16 +35,13 @@ CLICKED: Final = """(e) => { const box = e.currentTarget.getBoundingClientRect()
   emit((e.clientX - box.left) / box.width); }"""
 
 
-def ticks(rated: Iterable[tuple[Finding, Severity]], marks: Iterable[Mark], end: float, known_cycles: int = 0) -> str:
+def ticks(findings: Iterable[RatedFinding], marks: Iterable[Mark], end: float, known_cycles: int = 0) -> str:
     """The ticks: findings above, inputs and events below, each with its text; and how far the run is known."""
 
     def x(cycles: int) -> float:
         return round(STEPS * min(1.0, seconds(cycles) / end), 1)
 
-    drawn = [
-        (x(each.time_cycles), 0, f"finding {severity.value}", f"{each.rule}, {each.time_us / 1e3:.3f} ms")
-        for each, severity in rated
-    ]
+    drawn = [(x(each.finding.time_cycles), 0, f"finding {each.kind}", _in_words(each)) for each in findings]
     drawn += [(x(each.cycles), 9, each.kind.value, f"{each.text}, {seconds(each.cycles):.3f} s") for each in marks]
     known = f'<rect class="known" x="0" y="16" width="{x(known_cycles)}" height="1"/>'
     return known + "".join(
@@ -52,6 +49,12 @@ def ticks(rated: Iterable[tuple[Finding, Severity]], marks: Iterable[Mark], end:
         f'<rect class="{css}" x="{at}" y="{top}" width="2" height="8"/><title>{escape(text)}</title></g>'
         for at, top, css, text in drawn
     )
+
+
+def _in_words(rated_finding: RatedFinding) -> str:
+    finding = rated_finding.finding
+    accepted = f", accepted: {rated_finding.accepted}" if rated_finding.accepted else ""
+    return f"{finding.rule}, {finding.time_us / 1e3:.3f} ms{accepted}"
 
 
 def nearest(findings: Iterable[Finding], marks: Iterable[Mark], at_s: float, reach_s: float) -> Finding | Mark | None:
@@ -147,8 +150,8 @@ class ScrubBar:
             self._end_s = end
             self._slider.props(f"max={end} step={end / STEPS}")
             self._end.text = f"{end} s"
-        rated = self._engine.policy.with_severities(self._engine.known_findings)
-        drawn = ticks(rated, self._engine.marks, end, self._engine.known_cycles)
+        findings = rated(self._engine.known_findings, self._engine.policy)
+        drawn = ticks(findings, self._engine.marks, end, self._engine.known_cycles)
         if drawn != self._ticks.content:
             self._ticks.content = drawn
 

@@ -32,6 +32,8 @@ from hil.running import RunningBoard
 from hil.view.taps import RegisterTaps
 
 MAX_REGISTERS: Final = 6
+#: The most characters of a local's value.
+MAX_TEXT: Final = 60
 
 
 class Step(Enum):
@@ -168,9 +170,18 @@ class Stepper:
 
 
 def _shown(value: Any) -> str:
+    """The value of a local as text.  Of a long array the first elements; an element never written is a `?`."""
     if value is None:
         return "never written"
-    if isinstance(value, float):
-        return f"{value:.6g}"
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+    if not isinstance(value, list):
+        return _cut(_number(value))
+    unwritten = "  (?: never written)" if None in value else ""
+    return _cut(f"{{{', '.join('?' if each is None else _number(each) for each in value)}}}") + unwritten
+
+
+def _number(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else repr(value)
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= MAX_TEXT else f"{text[: MAX_TEXT - 3]}..."

@@ -83,6 +83,7 @@ WORDS: Final = """
 .tile .title { font-size:11px; color:var(--soft); line-height:1.2; } .tile .value { font-weight:600; line-height:1.3; }
 .severity { font-weight:600; white-space:nowrap; } .severity.error { color:var(--bad); }
 .severity.warning { color:var(--wait); } .severity.note { color:var(--odo); }
+.severity.accepted { color:var(--soft); }
 .soft { color:var(--soft); }
 .head { font-weight:600; font-size:13px; }
 .mono, .mono td, .mono th, .mono .nicegui-log, .mono div { font-family:ui-monospace,
@@ -99,6 +100,8 @@ ARENA: Final = """
 .arena { background:var(--paper); border:1px solid var(--line); border-radius:6px; overflow:hidden; position:relative;
   flex:1 1 0; min-height:260px; }
 .window { position:absolute; inset:0; touch-action:pan-y; cursor:grab; user-select:none; }
+:is(.hand-add, .hand-remove) .window { cursor:crosshair; }
+.hand-remove .window .grip { cursor:pointer; }
 /* Each layer is painted by itself: a robot that moves leaves the cloud alone.  Lines are as wide at any zoom. */
 .window .layer { position:absolute; inset:0; width:100%; height:100%; will-change:transform; pointer-events:none; }
 .window .layer * { vector-effect:non-scaling-stroke; }
@@ -151,24 +154,25 @@ button.tile { cursor:pointer; }
 .scrub svg { display:block; width:100%; height:17px; }
 .scrub svg { cursor:pointer; } .scrub .reach { fill:transparent; } .scrub .known { fill:var(--post); }
 .scrub .finding { fill:var(--odo); } .scrub .error { fill:var(--bad); } .scrub .warning { fill:var(--wait); }
+.scrub .accepted { fill:var(--post); }
 .scrub .order { fill:var(--run); } .scrub .hand { fill:var(--real); } .scrub .world { fill:var(--cloud); }
 .console { display:flex; flex-direction:column; gap:8px; }
 .stick { flex:none; width:170px; height:170px; touch-action:none; } .stick.off { opacity:.5; }
+/* A panel scrolls: nothing in it becomes smaller but the log. */
+.q-tab-panel > * { flex-shrink:0; }
 .log { flex:1 1 200px; min-height:200px; }
 .panel { background:var(--panel); border:1px solid var(--line); border-radius:6px; padding:8px; color:var(--ink); }
-.q-uploader__list { display:none; }
+.q-uploader__list { display:none; } .q-notification__message { overflow-wrap:anywhere; }
 .one-line { flex:1 1 0; min-width:0; overflow:hidden; text-overflow:ellipsis; }
 /* A table takes the panel's height, and makes room when the chosen row is explained below it. */
-@media (min-width:761px) {
-  .scrolled:has(~ .detail:not(:empty), ~ .fields:not(.hidden)) { overflow:auto; max-height:min(42vh, 420px); }
-}
+.scrolled:has(~ .detail:not(:empty), ~ .fields:not(.hidden)) { overflow:auto;
+  max-height:clamp(130px, 32vh, 420px); }
 .rows { width:100%; border-collapse:collapse; }
 .rows th { position:sticky; top:0; z-index:1; background:var(--panel); text-align:left; font-weight:600; }
 .rows th, .rows td { padding:3px 6px; font-size:12px; line-height:1.45; overflow-wrap:anywhere; vertical-align:top; }
-.rows td { border-top:1px solid var(--line); } .rows td:last-child, .rows.findings th:last-child { white-space:nowrap; }
-.rows.registers td:last-child, .rows.fields td:last-child { white-space:normal; }
+.rows td { border-top:1px solid var(--line); } .rows.findings :is(td, th):last-child { white-space:nowrap; }
 .rows tbody tr:has(button) { cursor:pointer; } .rows tbody tr:has(button):hover { background:var(--line); }
-.rows .chosen { background:var(--mark); }
+.rows .whole { white-space:nowrap; } .rows .chosen { background:var(--mark); }
 .moved { background:var(--mark); border-radius:3px; padding:0 3px; } .not-reset { font-weight:700; }
 .link { all:unset; cursor:pointer; text-decoration:underline; text-decoration-color:var(--line); }
 .side { flex:1 1 46%; min-width:0; display:flex; flex-direction:column; gap:4px; padding:4px; }
@@ -189,7 +193,7 @@ button.tile { cursor:pointer; }
 .reading th, .reading td { padding:1px 12px 1px 0; text-align:left; font-size:12px; white-space:nowrap; }
 .reading th div { font-weight:400; color:var(--soft); }
 .nicegui-echart, .lanes { touch-action:pan-y; }
-.lanes { position:relative; } .lanes svg { display:block; width:100%; overflow:visible; }
+.lanes { position:relative; } .lanes svg { display:block; overflow:visible; }
 .arena .tools { position:absolute; right:6px; top:6px; z-index:2; } .arena .hands { right:auto; left:6px; }
 .arena .tools .q-btn, .arena .hands .q-field { background:var(--paper); min-width:28px; }
 .arena .tools .q-btn { padding:2px 6px; min-height:28px; }
@@ -215,6 +219,16 @@ button.tile { cursor:pointer; }
   .top { flex-wrap:wrap; } .tiles { order:3; flex-basis:100%; } .hint { display:none; }
   .q-tab { padding:0 7px; } .q-tab__label { font-size:13px; }
 }
+@media (max-width:1000px) {
+  .q-tab { padding:0 4px; flex:1 1 auto; } .q-tab__label { font-size:12px; }
+}
+/* A phone in landscape: what is above the buttons scrolls away, they stay; below them arena and panel as high as it. */
+@media (min-width:761px) and (max-height:500px) {
+  .nicegui-content { height:auto; padding:4px 8px; gap:6px; } .tiles { order:-1; flex-basis:100%; flex-wrap:nowrap; }
+  .top { flex-wrap:wrap; top:-46px; } .tile { flex:1 1 auto; min-width:46px; padding:1px 6px; font-size:12px; }
+  .big { min-height:40px; min-width:120px; } .side .wide { display:none !important; }
+  .main { flex:none; height:calc(100dvh - 56px); min-height:300px; } .arena { min-height:180px; }
+}
 @media (max-width:760px) {
   .nicegui-content { padding:4px 8px; gap:6px; height:auto; } .main { flex-direction:column; gap:6px; flex:none; }
   .top { position:static; display:contents; }
@@ -226,7 +240,7 @@ button.tile { cursor:pointer; }
   .left { flex:none; width:100%; } .arena { flex:none; height:60vw; min-height:210px; }
   .legend { font-size:11px; column-gap:8px; } .legend .key { width:12px; }
   .side { flex:none; width:100%; } .side.console, .in-sight { flex:none; overflow:visible; }
-  .q-tab { padding:0 4px; min-height:40px; flex:1 1 auto; } .q-tab__label { font-size:12px; }
+  .q-tab { min-height:40px; }
   .log { height:220px; } .timebar { flex-wrap:nowrap; } .wide { display:none !important; }
   .narrow { display:inline-flex !important; }
 }

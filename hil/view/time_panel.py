@@ -22,6 +22,8 @@ STEPS: Final = (
     (Step.STATEMENT, "statement", "n"), (Step.ACCESS, "register access", "r"), (Step.SWITCH, "task switch", "k"),
     (Step.FRAME, "frame", "f"), (Step.FINDING, "finding", "g"),
 )  # fmt: skip
+#: CHOICE: the latest time to which one can go, in seconds: a day.
+MAX_S: Final = 86_400
 NOWHERE: Final = "Not inside a statement. Step, or go to a finding: its source, locals and registers stand here then."
 
 
@@ -82,13 +84,13 @@ class TimePanel:
         self._engine = engine
         with ui.row().classes("items-end gap-2"):
             self._to = (
-                ui.number("time, s", value=engine.moments.all[0].time_s, min=0.0, step=0.1, format="%.6f")
+                ui.number("time, s", value=engine.moments.all[0].time_s, step=0.1, format="%.6f")
                 .props("dense")
                 .classes("w-32")
                 .mark("to")
             )
             ui.button("Go to this time", on_click=self._go).props("no-caps dense").mark("go")
-            self._label = ui.input("name of this moment").props("dense").classes("w-40")
+            self._label = ui.input("name of this moment").props("dense stack-label maxlength=60").classes("w-40")
             ui.button("Remember", on_click=self._remember).props("no-caps dense outline").mark("remember")
         ui.label(
             "An earlier moment is executed again from power-up with the same inputs at the same cycles: the same run, "
@@ -99,10 +101,14 @@ class TimePanel:
         self._where = WherePanel(NOWHERE)
         ui.label("Moments").classes("head")
         with ui.element("div").classes("scrolled w-full"):
-            self._moments = Rows(("time", "before, or its name"), self._go_to).mark("moments")
+            self._moments = Rows(("time", "what follows, or its name"), self._go_to).mark("moments")
 
     def _go(self) -> None:
-        self._engine.go_to(round(float(self._to.value or 0.0) * SYSCLK_HZ))
+        time_s = self._to.value
+        if time_s is None or not 0.0 <= time_s <= MAX_S:
+            ui.notify(f"the time must be from 0 to {MAX_S} s", type="warning")
+            return
+        self._engine.go_to(round(float(time_s) * SYSCLK_HZ))
 
     def _remember(self) -> None:
         self._engine.note(str(self._label.value or "remembered"))
@@ -114,7 +120,7 @@ class TimePanel:
             self._ahead.text = text
         self._where.update(now)
         moments = [
-            TableRow(str(each.cycles), (TableCell(f"{each.time_s:.3f} s"), TableCell(each.label)))
+            TableRow(str(each.cycles), (TableCell(f"{each.time_s:.3f} s", css="whole"), TableCell(each.label)))
             for each in reversed(self._engine.moments.all)
         ]
         self._moments.show(moments)

@@ -120,7 +120,7 @@ class ArenaPanel:
         self._view = view = Viewport.around(corners)
         self._cloud = PointCloud(engine.line.log)
         self._newest: list[Point] = []
-        with ui.element("div").classes("arena w-full").mark("arena"):
+        with ui.element("div").classes("arena w-full hand-drag").mark("arena") as self._box:
             self._window = window = Window(view.extent(corners), self._touched, self._looked, self._follow_no_more)
             self._grid = window.layer()
             window.layer().content = draw.walls(view, self._scene.walls)
@@ -157,6 +157,7 @@ class ArenaPanel:
             self._diameter.visible = False
 
     def _choose(self, tool: str) -> None:
+        self._box.classes(remove=f"hand-{self._tool}", add=f"hand-{tool}")
         self._tool = tool
         self._diameter.visible = tool == "add"
 
@@ -188,7 +189,7 @@ class ArenaPanel:
         shown = draw.robot(view, pose, "robot", bumper=scene.bumper, unit=seen.unit)
         if scene.believed is not None:
             shown = draw.robot(view, scene.believed, "ghost", unit=seen.unit) + shown
-            shown += draw.out_of_sight(view, scene.believed, seen, "the firmware believes to be there")
+            shown += draw.out_of_sight(view, scene.believed, seen, "odometry")
         shown += draw.out_of_sight(view, pose, seen, "robot")
         if shown != self._robot.content:
             self._robot.content = shown

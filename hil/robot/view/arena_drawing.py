@@ -29,8 +29,8 @@ ARROW_PX: Final = 16
 BODY: Final = RobotParams()
 #: What its colours mean: the colour, text.
 LEGEND: Final = (
-    ("--true", "robot, its way"), ("--odo", "where the firmware believes to be"), ("--beam", "measured by the sonars"),
-    ("--real", "really there: ray, echo"), ("--cloud", "points of the frames"),
+    ("--true", "robot and path"), ("--odo", "odometry"), ("--beam", "measured by the sonars"),
+    ("--real", "true ray and echo"), ("--cloud", "points in the frames"),
 )  # fmt: skip
 
 

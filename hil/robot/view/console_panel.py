@@ -64,8 +64,8 @@ class ConsolePanel:
                 self._reference = ui.label(UNDRIVEN).classes("value")
                 ui.label(HELP).classes("soft wide")
         with ui.row().classes("gap-2 items-end"):
-            self._v = ui.number("V, m/s", value=0.1, step=0.05).props("dense").classes("w-20").mark("v")
-            self._w = ui.number("W, rad/s", value=0.0, step=0.1).props("dense").classes("w-20").mark("w")
+            self._v = ui.number("V, m/s", value=0.1, step=0.05).props("dense stack-label").classes("w-20").mark("v")
+            self._w = ui.number("W, rad/s", value=0.0, step=0.1).props("dense stack-label").classes("w-20").mark("w")
             ui.button("Set V, W", on_click=self._set).props("no-caps outline dense").mark("set")
             ui.button("Calibrate", on_click=lambda: self.send(order("calibrate"))).props("no-caps outline dense").mark(
                 "calb"
@@ -73,10 +73,11 @@ class ConsolePanel:
             ui.button("Initialise", on_click=lambda: self.send(order("init"))).props("no-caps outline dense").mark(
                 "init"
             )
-            self._raw = ui.input("any order", placeholder="#SETR0.2,0").props("dense stack-label").classes("w-36")
+            self._raw = ui.input("any order", placeholder="#SETR0.2,0").classes("w-36")
+            self._raw.props("dense stack-label maxlength=200")
             self._raw.on("keydown.enter", self._send_raw)
         with ui.row().classes("gap-2 items-center w-full"):
-            ui.label("Line").classes("head")
+            ui.label("Serial line").classes("head")
             self._counts = ui.label().classes("soft value")
             ui.space()
             ui.button("Save points", on_click=self._save).props("no-caps dense flat size=sm").mark("save")
@@ -86,7 +87,7 @@ class ConsolePanel:
             load = ui.button("Load points", on_click=lambda: upload.run_method("pickFiles"))
             load.props("no-caps dense flat size=sm")
         self._log = ui.log(max_lines=MAX_LINES).classes("w-full mono log").props(
-            'role=log aria-label="line" tabindex=0'
+            'role=log aria-label="serial line" tabindex=0'
         ).mark("log")  # fmt: skip
         self._failure = ui.label().style("color:var(--bad)")
 
@@ -162,7 +163,8 @@ class ConsolePanel:
             self._next = entry.number + 1
         if self.tele.on and ended_by_others(entries):
             self.tele.end()
-        damaged = f", {log.malformed} damaged" if log.malformed else ""
+        frames = "frame" if log.malformed == 1 else "frames"
+        damaged = f", {log.malformed} damaged {frames}" if log.malformed else ""
         _text(self._counts, f"{log.bytes_from_robot} B in, {log.bytes_to_robot} B out{damaged}")
 
     def _ask_reference(self) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import urllib.request
 from collections.abc import Callable
+from operator import ne
 from typing import Any
 
 import pytest
@@ -139,13 +140,13 @@ def test_an_obstacle_can_be_added_moved_and_removed(page: Any, shot: Shot) -> No
     sees(page, lambda: page.locator("circle.post").count() == count + 1, "no obstacle")
     shot(page, "obstacle")
     button(page, "drag").click()
-    page.wait_for_timeout(500)  # the hand is another one when the server has heard of it
+    page.locator(".arena.hand-drag").wait_for()  # the server has heard of it
     page.mouse.move(x + 150, y)
     page.mouse.down()
     page.mouse.move(x + 150, y - 80, steps=4)
     page.mouse.up()
     button(page, "remove").click()
-    page.wait_for_timeout(500)
+    page.locator(".arena.hand-remove").wait_for()
     page.mouse.click(x + 150, y - 80)
     sees(page, lambda: page.locator("circle.post").count() == count, "it was not where it was moved to, or stays")
     button(page, "drag").click()
@@ -208,7 +209,8 @@ def test_time_is_paused_stepped_and_gone_back_in(page: Any, shot: Shot) -> None:
     button(page, "Pause").click()
     wait(page, "paused")
     before = number_in(page, TIME)
-    page.wait_for_timeout(500)
+    tab(page, "Registers")
+    page.get_by_role("row").filter(has_text="ADCCTL2").first.wait_for()  # the server looks at the machine, and answers
     assert number_in(page, TIME) == before
     tab(page, "Time")
     button(page, "statement").click()
@@ -375,32 +377,38 @@ def test_the_scope_is_a_logic_analyser(page: Any, shot: Shot) -> None:
     lanes = page.locator(".lanes svg").first
     lanes.scroll_into_view_if_needed()
     readable = page.locator(".lanes .word", has_text="read OUT_Z_L")
-    for _ in range(20):
+    for _ in range(60):
         if readable.count():
             break
         # The wheel, a little right of where the first word begins, as the picture has it now.
         begin = float(re.findall(r"M([\d.]+)", str(words.first.get_attribute("d")))[0])
-        place = lanes.bounding_box()
+        place, times = lanes.bounding_box(), ends(page)
         page.mouse.move(place["x"] + begin + 1, place["y"] + 30)
-        for _ in range(3):
-            page.mouse.wheel(0, -100)
-        page.wait_for_timeout(500)
+        page.mouse.wheel(0, -100)
+        sees(page, lambda times=times: ends(page) != times, "the wheel does not zoom")
     assert readable.count() > 0
     wait(page, re.compile(r"^pointer"))
     shot(page, "logic")
     button(page, "Run").click()
 
 
+def ends(page: Any) -> list[str]:
+    """The times at both ends of the lanes."""
+    return [str(each) for each in page.locator(".lanes .time").all_text_contents()]
+
+
 def test_keys_are_listed_and_light_and_dark_can_be_read(page: Any, shot: Shot) -> None:
     page.keyboard.press("?")
     wait(page, "step to the next statement")
     page.keyboard.press("Escape")
-    colours = []
+    colours: list[list[str]] = []
+    style = "getComputedStyle(document.body)"
+    now = f"[{style}.color, {style}.backgroundColor]"
     for _ in range(2):
+        before = page.evaluate(now)
         button(page, "light / dark").click()
-        page.wait_for_timeout(600)
-        style = "getComputedStyle(document.body)"
-        colours.append(page.evaluate(f"[{style}.color, {style}.backgroundColor]"))
+        sees(page, lambda before=before: all(map(ne, page.evaluate(now), before)), "the theme stays")
+        colours.append(page.evaluate(now))
         shot(page, f"light-{len(colours)}")
     contrasts = [contrast(*pair) for pair in colours]
     # WCAG 2.1, 1.4.6: 7 to 1.

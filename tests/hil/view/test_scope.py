@@ -31,7 +31,7 @@ def panel() -> Any:
     )
     panel._lanes = SimpleNamespace(props={}, content="")
     panel._reading = SimpleNamespace(content="")
-    panel._charted = panel._drawn = panel._laned = panel._pointer = panel._end = None
+    panel._charted = panel._drawn = panel._laned = panel._lanes_look = panel._pointer = panel._end = None
     return panel
 
 
@@ -73,6 +73,47 @@ def test_each_unit_has_its_axis_and_each_signal_its_unit(panel: Any) -> None:
     panel._pointer = 0.1
     panel._draw()
     assert "<tr><th>c</th><td>-1 V</td><td>-1 V</td><td>-1 V</td></tr>" in panel._reading.content
+
+
+@pytest.mark.parametrize(
+    ("begin_s", "end_s", "width", "ticks"),
+    [
+        # A number of two digits of 7 pixels and a gap of 24 are less than the 58 pixels of a second.
+        (22.15, 27.15, 293, [23.0, 24.0, 25.0, 26.0, 27.0]),
+        # Half of the number 27 would be beyond the end.
+        (22.1, 27.05, 293, [23.0, 24.0, 25.0, 26.0]),
+        (0.0, 1.0, 576, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]),
+        # Nine digits of 7 and the gap: 87 pixels, which are 2.6 us.
+        (30.720410, 30.720427, 576, [30.720415, 30.72042, 30.720425]),
+        (33.0, 38.0, 210, [34.0, 35.0, 36.0, 37.0]),
+        (1.0, 1.0, 576, []),
+    ],
+)
+def test_the_time_axis_has_round_numbers_and_none_at_its_ends(
+    begin_s: float, end_s: float, width: int, ticks: list[float]
+) -> None:
+    needs_view()
+    from hil.view.scope import tick_times
+
+    assert tick_times(begin_s, end_s, width) == ticks
+
+
+def test_lanes_are_drawn_for_the_width_that_is_in_sight(panel: Any) -> None:
+    from hil.view.scope import ScopeSpan
+
+    panel._look = ScopeSpan(0, SYSCLK_HZ, {}, [], ("TaskUS",))
+    panel._resized(SimpleNamespace(args={"width": 400}))
+    panel._draw()
+    assert panel._lanes.props["width"] == 400
+    # Another panel is in sight: the lanes have no width, and keep theirs.
+    panel._resized(SimpleNamespace(args={"width": 0}))
+    # The next look brings no tasks; the picture follows the width nevertheless.
+    panel._look = ScopeSpan(0, SYSCLK_HZ, {}, None, ("TaskUS",))
+    panel._draw()
+    assert panel._lanes.props["width"] == 400
+    panel._resized(SimpleNamespace(args={"width": 640}))
+    panel._draw()
+    assert panel._lanes.props["width"] == 640
 
 
 def drawn(kind: SignalKind, values: list[Sample], words: list[DecodedWord], span: int) -> str:
