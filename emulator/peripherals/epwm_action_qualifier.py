@@ -1,15 +1,15 @@
-"""The action qualifier of an ePWM module: from compare values and actions to a waveform and its exact duty.
+"""The action qualifier of an ePWM module.  It computes the waveform and its exact duty from compare values and actions.
 
-At most six events of one period set, clear or toggle an output.  Where several fall on one TBCLK the highest priority
-wins; an event whose action is "nothing" takes no part.
+In one period, at most six events set, clear or toggle an output.  If several events happen in one TBCLK, the event with
+the highest priority wins.  An event whose action is "nothing" is ignored.
 
     up         PRD > CBU > CAU > ZRO
     down       ZRO > CBD > CAD > PRD
     up-down    CBU > CAU > ZRO while counting up, CBD > CAD > PRD > CBU > CAU at CTR = TBPRD, CBD > CAD counting down
 
-In up-down mode a compare value at or beyond TBPRD gives both its up and its down event at CTR = TBPRD, and a compare
-value of 0 gives no down event (the counter already counts up at 0).  In down mode a compare value at or beyond TBPRD
-gives its event at TBPRD; in up mode one beyond TBPRD gives none.
+In up-down mode, a compare value at or above TBPRD causes both its up event and its down event at CTR = TBPRD.  A value
+of 0 causes no down event, because at 0 the counter counts up already.  In down mode, a compare value at or above TBPRD
+causes its event at TBPRD.  In up mode, a compare value above TBPRD causes no event.
 
 Sources: TRM ePWM, action-qualifier event priority, behaviour for compare values greater than the period.  CHOICE: the
 priority at CTR = TBPRD in up-down mode is that of a decrementing counter (unconfirmed).
@@ -31,7 +31,7 @@ Phases = tuple[int, ...]
 
 
 def event_phases(mode: int, period: int, compare_a: int, compare_b: int) -> dict[str, Phases]:
-    """Phases of the time base at which each event happens, lowest priority first."""
+    """The phases of the time base at which each event happens; the event of the lowest priority comes first."""
     if mode == UP:
         return {
             "ZRO": (0,),
@@ -65,13 +65,13 @@ def event_phases(mode: int, period: int, compare_a: int, compare_b: int) -> dict
 
 #: The bit position of each event's action in AQCTLA and AQCTLB.
 _SHIFT: Final = {name: field.lo for name, field in AQCTLA.fields.items()}
-#: Bits of AQCTLA and AQCTLB that give an event of CMPA or of CMPB an action.
+#: The bits of AQCTLA and AQCTLB that assign an action to an event of CMPA or CMPB.
 USES_COMPARE_A: Final = AQCTLA.CAU.mask | AQCTLA.CAD.mask
 USES_COMPARE_B: Final = AQCTLA.CBU.mask | AQCTLA.CBD.mask
 
 
 def act(action: int, level: int) -> int:
-    """The level after an action: 0 nothing, 1 clear, 2 set, 3 toggle."""
+    """The level after an action: 0 is nothing, 1 is clear, 2 is set, 3 is toggle."""
     if action == TOGGLE:
         return 1 - level
     return action - 1 if action else level
@@ -103,7 +103,7 @@ class OutputWaveform:
         self._fixed = self._toggles < len(by_phase)
 
     def action_at(self, phase: int) -> int:
-        """The action that wins at `phase`; 0 if none."""
+        """The action that wins at `phase`; 0 if there is none."""
         for at, action in self._actions:
             if at == phase:
                 return action
@@ -124,7 +124,7 @@ class OutputWaveform:
         return self._walk(level, -1, last - length) if last >= length else level
 
     def next_change(self, level: int, phase: int) -> int:
-        """The number of arrivals after `phase` until an output of this level changes; 0: never."""
+        """The number of arrivals after `phase` until an output with this level changes; 0 if it never does."""
         for at, action in self._actions:
             if at > phase and act(action, level) != level:
                 return at - phase
@@ -145,7 +145,7 @@ class OutputWaveform:
         return level
 
     def high_time(self, level: int, phase: int) -> tuple[int, int]:
-        """(TBCLK high, TBCLK in all) of the steady waveform when the output is `level` at `phase`.
+        """(periods of TBCLK high, periods of TBCLK in all) of the steady waveform, if the output is `level` at `phase`.
 
         If an output is only toggled, an odd number of times in a period, it repeats after two periods.  The second is
         the inverse of the first.

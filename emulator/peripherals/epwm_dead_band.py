@@ -12,11 +12,11 @@
     OUTSWAP   13, 12 S6: output A has the B path; S7: output B has the A path
     DEDB_MODE 14     S8: the falling edge delay gets what the rising edge delay gives
 
-A delayed edge comes DBRED or DBFED TBCLK after its cause; one that is undone before never comes ("the falling edge has
-precedence").
-CHOICE: an edge keeps the delay that was active when it began, whatever is loaded meanwhile.  CHOICE: the delays begin
-to run with OUT_MODE: what lies before is not delayed.  CHOICE: a delay under way goes on while TBCLK stands.  CHOICE:
-with DEDB_MODE the A path has the rising edge delay; the manual calls it invalid.
+A delayed edge leaves the dead band DBRED or DBFED periods of TBCLK after the edge of the input.  If the input changes
+back before that, the delayed edge never comes ("the falling edge has precedence").
+CHOICE: an edge keeps the delay that was active when it began, even if another value is loaded meanwhile.  CHOICE: the
+delays start to run when OUT_MODE is set; edges before that are not delayed.  CHOICE: a delay that runs goes on while
+TBCLK stands.  CHOICE: with DEDB_MODE set, the A path has the rising edge delay; the manual calls this setting invalid.
 
 Sources: TRM ePWM, dead-band submodule and its figure; HDR F2837xS_epwm.h.
 """
@@ -49,7 +49,7 @@ Edge = tuple[int, int, int]
 
 
 class _Delay:
-    """A delay for edges to the level `slow`.  Other edges pass at once."""
+    """A delay for edges that lead to the level `slow`.  Other edges pass at once."""
 
     __slots__ = ("_input", "_slow", "cycles", "due", "level")
 
@@ -62,12 +62,12 @@ class _Delay:
         self.due = -1
 
     def begin(self, level: int) -> None:
-        """The input has this level, and always had."""
+        """Start with this level of the input, as if it had always been there."""
         self._input = self.level = level
         self.due = -1
 
     def feed(self, level: int, now: int) -> None:
-        """The input has this level from `now` on."""
+        """Set the level of the input from the cycle `now` on."""
         if level == self._input:
             return
         self._input = level
@@ -84,7 +84,7 @@ class _Delay:
             self.due = -1
 
     def like(self, other: _Delay) -> None:
-        """Take over the state of another one."""
+        """Copy the state of another delay."""
         self.cycles, self._input, self.level, self.due = other.cycles, other._input, other.level, other.due
 
 
@@ -104,7 +104,7 @@ class DeadBand:
         self.on = False
 
     def configure(self, switches: int, rising_cycles: int, falling_cycles: int, a: int, b: int, now: int) -> None:
-        """DBCTL and the delays as they are from `now` on; `a` and `b` are the levels of A in and B in."""
+        """Set the bits of DBCTL and both delays from cycle `now` on; `a` and `b` are the levels of A in and B in."""
         was, self._switches = self._switches, switches
         self.on = bool(switches & _ACTIVE)
         self._rising.cycles, self._falling.cycles = rising_cycles, falling_cycles
@@ -118,7 +118,7 @@ class DeadBand:
             self.pass_to(now)
 
     def feed(self, a: int, b: int, now: int) -> None:
-        """A in and B in have these levels from `now` on; what was due before has passed."""
+        """Set the levels of A in and B in from cycle `now` on.  Edges that were due before `now` have left already."""
         self._a, self._b = a, b
         switches = self._switches
         self._rising.feed(b if switches & _S4 else a, now)
@@ -129,7 +129,7 @@ class DeadBand:
 
     @property
     def due(self) -> int:
-        """When the next delayed edge comes out; -1: none is under way."""
+        """The cycle when the next delayed edge comes out; -1 if none is under way."""
         rising, falling = self._rising.due, self._falling.due
         if rising < 0 or falling < 0:
             return max(rising, falling)

@@ -44,7 +44,7 @@ class TimeBase:
         self.reset()
 
     def reset(self) -> None:
-        """TBCTR 0, stopped; the clock gates stay as they are."""
+        """Set TBCTR to 0 and stop the counter.  The clock gates stay as they are."""
         self.mode = STOPPED
         self.period = 0
         self.tick = 1
@@ -54,7 +54,7 @@ class TimeBase:
 
     @property
     def running(self) -> bool:
-        """Whether the counter moves."""
+        """Whether the counter runs."""
         return self.enabled and self.mode != STOPPED
 
     @property
@@ -62,10 +62,10 @@ class TimeBase:
         """Whether the count changes: with TBPRD = 0 it stays at 0 once it is there."""
         return self.running and (self.period > 0 or self._ticks() < self._lead)
 
-    # -- where it is ---------------------------------------------------------------------------------------------
+    # -- Count and phase ---------------------------------------------------------------------------------------------
 
     def count(self) -> int:
-        """TBCTR now."""
+        """The present value of TBCTR."""
         ticks = self._ticks()
         if ticks < self._lead or not self.running:
             return self._count + ticks if self._up else self._count - ticks
@@ -77,7 +77,7 @@ class TimeBase:
         return phase if phase <= self.period else 2 * self.period - phase
 
     def up(self) -> bool:
-        """TBSTS.CTRDIR now.  At CTR = 0 an up-down counter counts up, at CTR = TBPRD it counts down."""
+        """The value of TBSTS.CTRDIR.  At CTR = 0 an up-down counter counts up, at CTR = TBPRD it counts down."""
         ticks = self._ticks()
         if ticks < self._lead or not self.running:
             return self._up
@@ -85,7 +85,7 @@ class TimeBase:
         return self.mode == UP or (self.mode == UP_DOWN and (phase == 0 or phase < self.period))
 
     def phase(self) -> int:
-        """Phase now (that of the end of the lead while there is one)."""
+        """The present phase.  During a lead, it is the phase at the end of the lead."""
         return (self._phase + max(self._ticks() - self._lead, 0)) % self.length
 
     def arrivals(self) -> tuple[int, int]:
@@ -96,15 +96,15 @@ class TimeBase:
         return self._phase, ticks
 
     def arrival_time(self, n: int) -> int:
-        """The cycle of the nth of those arrivals, n >= 1."""
+        """The cycle of the nth arrival of `arrivals`, n >= 1."""
         return self._base + (self._lead + n - 1 if self._lead else n) * self.tick
 
     def next_tick(self) -> int:
-        """The cycle of the next TBCLK, later than now.  Only while running."""
+        """The cycle of the next TBCLK after now.  Call it only while the counter runs."""
         return self._base + (self._ticks() + 1) * self.tick
 
     def next_time(self, phase: int) -> int:
-        """The cycle of the next arrival at `phase`, later than now.  Only while running."""
+        """The cycle of the next arrival at `phase` after now.  Call it only while the counter runs."""
         ticks = self._ticks()
         first = self._lead + (phase - self._phase) % self.length
         if first <= ticks:
@@ -126,7 +126,7 @@ class TimeBase:
         first = self._lead + ((0 if self.mode == DOWN else self.period) - self._phase) % self.length
         return (ticks - first) // self.length > (before - first) // self.length
 
-    # -- setting it ----------------------------------------------------------------------------------------------
+    # -- Settings ------------------------------------------------------------------------------------------------
 
     def change(self, *, mode: int | None = None, period: int | None = None, tick: int | None = None,
                enabled: bool | None = None, count: int | None = None, up: bool | None = None) -> None:  # fmt: skip

@@ -1,17 +1,17 @@
 """The kernel's Clock: `ti.sysbios.knl.Clock`, tick mode PERIODIC (the C28x timer cannot do another).
 
 Modelled
-    The tick handler counts, and posts the Clock Swi (priority 15).  The Swi replays every missed tick in order; for
-    each tick it walks the Clock objects in the order of their creation.  One-shot and periodic objects without drift.
-    A start counts from the present tick, also within a late Clock function.  Timeouts of `Task_sleep` and
-    `Semaphore_pend` are temporary objects at the end of the queue.
+    The tick handler counts, and posts the Clock Swi (priority 15).  The Swi handles every missed tick in order; for
+    each tick it goes through the Clock objects in the order of their creation.  Objects are one-shot or periodic; a
+    periodic object does not drift.  A start counts from the present tick, also in a Clock function that runs late.
+    Timeouts of `Task_sleep` and `Semaphore_pend` are temporary objects at the end of the queue.
 Not modelled
     `Clock_setTicks`, `Clock_tickStop`, tick sources USER and NULL.  An object started with timeout 0
     while asserts are off would first fire when 32 bits wrap; here it fires after 2^32 ticks.
 Time
-    `clock_tick` in the handler, `clock_work` and `clock_walk` per object in the Swi, `clock_call` per function
-    called. A tick at which nothing is due costs the same CPU cycles, but the queue is not walked: `_next_due` tells
-    that no object is due.
+    `clock_tick` for the handler, `clock_work` for the Swi, `clock_walk` for each object, and `clock_call` for each
+    function that is called.  A tick at which no object is due takes the same CPU cycles, but the emulator does not go
+    through the queue: `_next_due` tells that no object is due.
 Sources
     BIOS; `knl/Clock.c` 6.83 (Clock_workFunc, Clock_startI, Clock_Instance_init), `knl/Clock.xdt` Clock_doTick.
 """
@@ -34,7 +34,7 @@ SWI_PRIORITY: Final = 15
 
 
 class ClockObject(KernelObject):
-    """A Clock: what a `Clock_Handle` points to.  `due` is the absolute tick of its next call, not wrapped."""
+    """The object of a `Clock_Handle`.  `due` is the tick of its next call, counted from the start without wrapping."""
 
     __slots__ = ("active", "arg", "due", "function", "period", "timeout")
 
@@ -87,7 +87,7 @@ class ClockModule:
             self.swis.post(self.swi)
 
     def quiet_ticks(self) -> int:
-        """How many of the next ticks will call no function.  0 also without any Clock object: then no Swi runs."""
+        """The number of the next ticks that will call no function.  Without a Clock object it is 0: no Swi runs."""
         return self._next_due - 1 - self.ticks if self.queue and not self._missed else 0
 
     def _work(self, _arg0: int, _arg1: int) -> None:
@@ -109,7 +109,7 @@ class ClockModule:
                 self._walk(tick)
 
     def _walk(self, tick: int) -> None:
-        """Call what is due at `tick`, in order of creation."""
+        """Call the functions that are due at `tick`, in the order of creation of their objects."""
         core = self.core
         for timer in self.queue:
             if timer.active and timer.due == tick:
@@ -138,7 +138,7 @@ class ClockModule:
         self.queue.remove(timer)
 
     def start(self, timer: ClockObject) -> None:
-        """`Clock_start` without its time."""
+        """Start an object as `Clock_start` does, but charge no cycles."""
         timer.due = self.ticks + (timer.timeout or WRAP)
         timer.active = True
         if timer.due < self._next_due:
@@ -147,12 +147,12 @@ class ClockModule:
     # C functions
 
     def Clock_Params_init(self, params: Any) -> None:
-        """Defaults: not started, one-shot, argument 0."""
+        """Set the defaults: not started, one-shot, argument 0."""
         self.core.clock.charge(self.core.costs["params_init"])
         struct_params.initialise("Clock_Params", params)
 
     def Clock_create(self, function: Function, timeout: int, params: Any, error_block: Any = None) -> ClockObject:
-        """A Clock that calls `function` `timeout` ticks (16 bits) after its start, then every `period` ticks."""
+        """Create a Clock that calls `function` `timeout` ticks (16 bits) after its start, then every `period` ticks."""
         core = self.core
         core.clock.charge(core.costs["clock_create"])
         p = struct_params.read(core, "Clock_Params", params)
@@ -211,18 +211,18 @@ class ClockModule:
         return timer.period
 
     def Clock_getTimeout(self, timer: ClockObject) -> int:
-        """Ticks left of a running Clock; 0 for a stopped one."""
+        """The ticks left until a running Clock calls its function; 0 for a stopped Clock."""
         return max(0, timer.due - self.ticks) & UINT32 if timer.active else 0
 
     def Clock_isActive(self, timer: ClockObject) -> int:
-        """Whether it runs."""
+        """Whether the Clock runs."""
         return int(timer.active)
 
     def Clock_getTicks(self) -> int:
-        """Ticks since BIOS_start, 32 bits."""
+        """The number of ticks since BIOS_start, 32 bits."""
         self.core.clock.charge(self.core.costs["clock_service"])
         return self.ticks & UINT32
 
     def Clock_getTickPeriod(self) -> int:
-        """Tick period in microseconds."""
+        """The tick period in microseconds."""
         return self.tick_period_us

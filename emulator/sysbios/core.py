@@ -31,7 +31,7 @@ Function = Callable[..., Any]
 
 
 class KernelError(Exception):
-    """The kernel has stopped the program, as `Assert` and `Error_raise` without an Error_Block do (System_abort).
+    """The kernel has aborted the program (System_abort), as `Assert`, and `Error_raise` without an Error_Block, do.
 
     `identifier` is the kernel's own name of the reason: `Semaphore_A_badContext`, `Task_E_stackOverflow`, ...
     """
@@ -42,7 +42,7 @@ class KernelError(Exception):
 
 
 class KernelObject:
-    """What a handle points to.  `name` may be set to the firmware's own; `deleted`: its `*_delete` was called."""
+    """The object of a handle.  `name` may be set to the firmware's name; `deleted`: `*_delete` was called for it."""
 
     __slots__ = ("deleted", "name")
 
@@ -68,7 +68,7 @@ class KernelCore:
         self.thread_type = MAIN
 
     def check(self, condition: bool, identifier: str, message: str) -> None:
-        """`Assert_isTrue`: raise KernelError unless it holds; nothing while asserts are disabled."""
+        """`Assert_isTrue`: raise KernelError unless `condition` holds.  Does nothing while asserts are disabled."""
         if not condition and self.asserts:
             raise KernelError(identifier, message)
 
@@ -80,7 +80,7 @@ class KernelCore:
 
 
 def error_number(identifier: str) -> int:
-    """The number that stands for an error in `Error_Block.id`: never 0.  CHOICE: a sum of its characters."""
+    """The number of an error in `Error_Block.id`, never 0.  CHOICE: it is a sum of the identifier's characters."""
     return sum((i + 1) * ord(c) for i, c in enumerate(identifier)) & 0xFFFF | 0x10000
 
 
@@ -88,8 +88,8 @@ def fitted(core: KernelCore, function: Function | None, given: int, what: str) -
     """A firmware function, ready to be called with `given` arguments.
 
     C casts function pointers freely and passes arguments in registers, so a function with fewer parameters ignores
-    the rest.  Raises ValueError for one that wants more than it would get (it would read a stale register).  What is
-    no function (NULL) is a finding when it is called, at the place where it was given.
+    the rest.  Raises ValueError for a function with more parameters, which would read a stale register.  A pointer to
+    no function (NULL) is a finding when it is called, at the place where the firmware passed it.
     """
     if not callable(function):
         return _nowhere(core, what)

@@ -1,12 +1,12 @@
 """CPU cycles that kernel services take.
 
-CHOICE: the proportions are those of the benchmark tables that TI publishes with SYS/BIOS for C28x devices (a semaphore
-post or pend without a switch is in the order of a hundred cycles, a task switch below two hundred, interrupt prologue
-and epilogue about a hundred together).  `scale` multiplies the whole table.  The board of the robot uses the times that
-were measured on it: 5 us for the tick's interrupt and 4.05 us for entering and leaving a gate (TFG 3.4.2, 3.4.3).  The
-time of System_sprintf is computed from TaskODO, which takes 860..873 us and calls it six times (TFG figures 37 and 39):
-the rest of TaskODO's time is divided among the six calls, because nothing else there can take so long.  Almost all of
-it must be the same for every call, or the figures would differ more.
+CHOICE: the proportions are those of the benchmark tables that TI publishes with SYS/BIOS for C28x devices.  There, a
+post or pend of a semaphore without a task switch takes about a hundred cycles, a task switch less than two hundred, and
+the prologue and epilogue of an interrupt together about a hundred.  `scale` multiplies the whole table.  The board of
+the robot uses the times that were measured on it: 5 us for the tick's interrupt, and 4.05 us to enter and leave a gate
+(TFG 3.4.2, 3.4.3).  The time of System_sprintf is computed from TaskODO, which takes 860 to 873 us and calls it six
+times (TFG figures 37 and 39).  The rest of TaskODO's time is divided by six, because nothing else there can take so
+long.  Almost all of that time must be the same for every call, because otherwise the figures would differ more.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from typing import Final
 
 #: Service -> cycles.  A call is charged its cycles before it acts.  So it can be pre-empted before it acts, not within.
 CYCLES: Final[Mapping[str, int]] = {
-    # Interrupts: the dispatcher around the handler (the core's own 14 + 8 cycles are charged by the CPU).
+    # Interrupts: the dispatcher around the handler.  The CPU itself charges the core's 14 + 8 cycles.
     "hwi_prologue": 90,
     "hwi_epilogue": 60,
     "hwi_disable": 6,
     "hwi_create": 300,
-    # The tick: what its handler adds to the dispatcher, and the Clock Swi.
+    # The tick: the cycles of its handler, added to the dispatcher's, and the Clock Swi.
     "clock_tick": 40,
     "clock_work": 70,
     "clock_walk": 14,
@@ -48,18 +48,18 @@ CYCLES: Final[Mapping[str, int]] = {
     "semaphore_block": 70,
     "semaphore_service": 15,
     "pend_timeout": 60,  # of semaphores and events
-    # Events: a mask to match in place of a count
+    # Events.  They match a mask where a semaphore has a count.
     "event_create": 150,
     "event_pend": 110,
     "event_post": 120,
     "event_block": 70,
     "event_service": 15,
-    # Mailboxes: besides their two semaphores; a message takes "mailbox_word" for each of its words
+    # Mailboxes.  Their two semaphores come on top, and "mailbox_word" for each word of a message.
     "mailbox_create": 600,
     "mailbox_copy": 60,
     "mailbox_word": 2,
     "mailbox_service": 15,
-    # Queues: four pointers, with interrupts off in those that are atomic
+    # Queues.  A function changes four pointers; the atomic functions do so with interrupts disabled.
     "queue_create": 150,
     "queue_link": 25,
     "queue_look": 10,
@@ -69,7 +69,7 @@ CYCLES: Final[Mapping[str, int]] = {
     "gate_leave": 160,
     "gate_mutex": 25,  # besides its semaphore
     "gate_key": 10,  # besides the scheduler or the interrupts that it disables
-    # Heaps, besides the gate of HeapMem; each free block that is looked at, each word that is set or copied
+    # Heaps.  The gate of HeapMem comes on top, and a time for each free block examined and each word set or copied.
     "heap_create": 250,
     "heap_service": 60,
     "heap_look": 12,

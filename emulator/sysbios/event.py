@@ -1,11 +1,11 @@
 """Events: `ti.sysbios.knl.Event`.
 
 Modelled
-    Sixteen bits; a pend on all bits of one mask or any bit of another, which consumes the bits that it matched; one
-    task that waits at a time; timeouts as those of semaphores; semaphores and mailboxes that keep a bit of an event up
-    to date.
+    An event has sixteen bits.  A pend waits for all bits of one mask or any bit of another, and consumes the bits that
+    it matched.  Only one task can wait at a time.  Timeouts are like those of semaphores.  Semaphores and mailboxes can
+    keep a bit of an event up to date.
 Time
-    `event_pend` and `event_post` per call, `event_block` when the caller blocks.
+    `event_pend` and `event_post` for each call, `event_block` when the caller blocks.
 Sources
     BIOS; `knl/Event.c` 6.83 (Event_pend, Event_post, Event_checkEvents, Event_pendTimeout, Event_sync).
 """
@@ -23,7 +23,7 @@ from emulator.sysbios.task import TaskModule
 
 
 class Event(KernelObject):
-    """An event: what an `Event_Handle` points to; `posted` are the bits that no pend has consumed."""
+    """The object of an `Event_Handle`; `posted` are the bits that no pend has consumed."""
 
     __slots__ = ("posted", "waiters")
 
@@ -36,7 +36,7 @@ class Event(KernelObject):
         return f"<Event {self.name} posted {self.posted:#x}>"
 
     def take(self, and_mask: int, or_mask: int) -> int:
-        """The bits that match (`Event_checkEvents`), which are consumed; 0 for none."""
+        """Consume the bits that match, and return them; 0 if the wait is not over (`Event_checkEvents`)."""
         matching = or_mask & self.posted
         if and_mask & self.posted == and_mask:
             matching |= and_mask
@@ -44,7 +44,7 @@ class Event(KernelObject):
         return matching
 
     def sync(self, event_id: int, count: int) -> None:
-        """Set the bits if `count` is not 0, else clear them; wakes no task (`Event_sync`)."""
+        """Set the bits if `count` is not 0, else clear them.  No task is woken (`Event_sync`)."""
         self.posted = self.posted | event_id if count else self.posted & ~event_id
 
 
@@ -78,7 +78,7 @@ class EventModule:
         return event
 
     def post(self, event: Event, event_id: int) -> None:
-        """`Event_post` without its time."""
+        """Do what `Event_post` does, but charge no cycles."""
         event.posted |= event_id
         if not event.waiters:
             return
@@ -99,7 +99,7 @@ class EventModule:
         struct_params.initialise("Event_Params", params)
 
     def Event_create(self, params: Any = None, error_block: Any = None) -> Event:
-        """An event with no bit posted."""
+        """Create an event with no bit posted."""
         self.core.clock.charge(self.core.costs["event_create"])
         struct_params.read(self.core, "Event_Params", params)
         return Event(self._names.unique("Event"))

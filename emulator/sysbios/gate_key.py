@@ -1,12 +1,12 @@
-"""Gates that disable something: `ti.sysbios.gates.GateTask`, `GateSwi`, `GateHwi`, `GateAll`.
+"""Gates that disable a scheduler or interrupts: `ti.sysbios.gates.GateTask`, `GateSwi`, `GateHwi`, `GateAll`.
 
 Modelled
-    To enter a gate disables the Task scheduler, the Swi scheduler or interrupts, by the kind of the gate and not by the
-    instance; the key is that of the disable function.  Which threads may not enter it.  A GateAll disables interrupts
-    and the Swi scheduler, and keeps their keys itself.  It returns 0, or 1 if it was entered already; only a leave with
-    0 leaves it.
+    A GateTask disables the task scheduler, a GateSwi the Swi scheduler, a GateHwi interrupts.  This depends only on the
+    kind of the gate, not on the instance.  The key is that of the disable function.  The assertions say which threads
+    may not enter.  A GateAll disables interrupts and the Swi scheduler, and stores their keys itself.  Its `enter`
+    returns 0, or 1 if it was entered already; only a `leave` with key 0 releases it.
 Time
-    `gate_key` besides that of what is disabled.
+    `gate_key`, added to the time of the disable function.
 Sources
     BIOS; `gates/GateTask.c`, `gates/GateSwi.c`, `gates/GateHwi.c`, `gates/GateAll.c` 6.83.
 """
@@ -78,7 +78,7 @@ class GateKeyModule:
         self._initialise("GateTask", params)
 
     def GateTask_create(self, params: Any = None, error_block: Any = None) -> GateKey:
-        """A gate that keeps tasks apart."""
+        """Create a gate that disables task switches."""
         return self._create("GateTask", params)
 
     def GateTask_delete(self, pointer: Any) -> None:
@@ -105,7 +105,7 @@ class GateKeyModule:
         self._initialise("GateSwi", params)
 
     def GateSwi_create(self, params: Any = None, error_block: Any = None) -> GateKey:
-        """A gate that keeps tasks and Swis apart."""
+        """Create a gate that disables Swis and task switches."""
         return self._create("GateSwi", params)
 
     def GateSwi_delete(self, pointer: Any) -> None:
@@ -128,7 +128,7 @@ class GateKeyModule:
         self._initialise("GateHwi", params)
 
     def GateHwi_create(self, params: Any = None, error_block: Any = None) -> GateKey:
-        """A gate that keeps everything apart."""
+        """Create a gate that disables interrupts."""
         return self._create("GateHwi", params)
 
     def GateHwi_delete(self, pointer: Any) -> None:
@@ -150,7 +150,7 @@ class GateKeyModule:
         self._initialise("GateAll", params)
 
     def GateAll_create(self, params: Any = None, error_block: Any = None) -> GateKey:
-        """A gate that disables interrupts and Swis."""
+        """Create a gate that disables interrupts and Swis."""
         return self._create("GateAll", params)
 
     def GateAll_delete(self, pointer: Any) -> None:
@@ -158,7 +158,7 @@ class GateKeyModule:
         self._delete(pointer)
 
     def GateAll_enter(self, gate: GateKey) -> int:
-        """`Hwi_disable`, then `Swi_disable`; 1 and nothing else while the gate is entered."""
+        """Call `Hwi_disable`, then `Swi_disable`.  While the gate is entered, it only returns 1."""
         self._charge()
         if gate.entered:
             return NESTED_ENTER
@@ -168,7 +168,7 @@ class GateKeyModule:
         return FIRST_ENTER
 
     def GateAll_leave(self, gate: GateKey, key: int) -> None:
-        """`Swi_restore`, then `Hwi_restore`, if `key` is 0."""
+        """Call `Swi_restore`, then `Hwi_restore`, if `key` is 0."""
         self._charge()
         if key == FIRST_ENTER:
             gate.entered = False

@@ -1,10 +1,11 @@
 """Gates without priority inheritance: `ti.sysbios.gates.GateMutex`.
 
 Modelled
-    Nesting through the key alone (0 first, 1 nested); a counting semaphore of 1, so that waiters come in order of
-    arrival; `leave` by any caller, without a check of the owner.
+    Only the key shows the nesting: the first `enter` returns 0, a nested one 1.  The gate has a counting semaphore with
+    a count of 1, so tasks that wait are served in the order of their arrival.  Any caller can `leave`; the owner is not
+    checked.
 Time
-    `gate_mutex`, and the call of the semaphore, which a nested `enter` or `leave` does not make.
+    `gate_mutex`, and the call of the semaphore.  A nested `enter` or `leave` does not call the semaphore.
 Sources
     BIOS; `gates/GateMutex.c` 6.83 (GateMutex_enter, GateMutex_leave).
 """
@@ -23,7 +24,7 @@ from emulator.sysbios.task import TaskModule
 
 
 class GateMutex(KernelObject):
-    """A gate: what a `GateMutex_Handle` points to."""
+    """The object of a `GateMutex_Handle`."""
 
     __slots__ = ("owner", "semaphore")
 
@@ -56,7 +57,7 @@ class GateMutexModule:
         struct_params.initialise("GateMutex_Params", params)
 
     def GateMutex_create(self, params: Any = None, error_block: Any = None) -> GateMutex:
-        """A free gate."""
+        """Create a free gate."""
         self.core.clock.charge(self.core.costs["gate_create"])
         struct_params.read(self.core, "GateMutex_Params", params)
         return GateMutex(self._names.unique("GateMutex"))

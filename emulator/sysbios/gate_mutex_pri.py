@@ -1,12 +1,13 @@
 """Gates with priority inheritance: `ti.sysbios.gates.GateMutexPri`.
 
 Modelled
-    Nesting through the key alone (0 first, 1 nested); inheritance when a higher task actually waits; no transitivity;
-    `leave` by any caller, without a check of the owner; a saved priority, to which any leave lowers the owner; waiters
-    by priority, FIFO among equals.  `order_fault` gives the behaviour of 6.37 and older: if a task waits already, the
-    place of another one depends on the low half of that task's address.
+    Only the key shows the nesting: the first `enter` returns 0, a nested one 1.  The owner inherits the priority of a
+    higher task as soon as that task waits.  Inheritance is not transitive.  Any caller can `leave`; the owner is not
+    checked.  Any leave lowers the owner to the priority that was saved.  Tasks wait in the order of their priorities,
+    those of one priority in FIFO order.  `order_fault` selects the behaviour of 6.37 and older: if a task waits
+    already, the place of another one depends on the low half of that task's address.
 Time
-    `gate_enter`, `gate_leave`.
+    `gate_enter` and `gate_leave`.
 Sources
     BIOS; `gates/GateMutexPri.c` 6.83 (GateMutexPri_enter, _leave, _insertPri) and 6.37.
 """
@@ -26,7 +27,7 @@ NESTED_ENTER: Final = 1
 
 
 class GateMutexPri(KernelObject):
-    """A gate: what a `GateMutexPri_Handle` points to."""
+    """The object of a `GateMutexPri_Handle`."""
 
     __slots__ = ("free", "original_priority", "owner", "waiters")
 
@@ -58,7 +59,7 @@ class GateMutexPriModule:
         struct_params.initialise("GateMutexPri_Params", params)
 
     def GateMutexPri_create(self, params: Any = None, error_block: Any = None) -> GateMutexPri:
-        """A free gate."""
+        """Create a free gate."""
         self.core.clock.charge(self.core.costs["gate_create"])
         struct_params.read(self.core, "GateMutexPri_Params", params)
         return GateMutexPri(self._names.unique("GateMutexPri"))

@@ -71,24 +71,24 @@ class HeapBlocks:
         return Pointer(self.memory, block, 0, block.declaration.ctype)
 
     def check(self, function: str, heap: Heap, pointer: Pointer | None, words: int | None) -> bool:
-        """Report what was not given out by `heap`, or not so; `words`: how many are given back, if that is said."""
+        """Report a block that `heap` did not allocate, or not with `words` words; None: the call has no size."""
         address = pointer.addr if pointer is not None else 0
         block, taken = heap.given.get(address, NONE_GIVEN)
         obj = pointer.obj if pointer is not None else None
         if pointer is None:
-            why = "is given NULL"
+            why = "gets NULL"
         elif block is not None:
             if words is None or heap.rounded(words) == taken:
                 return True
-            why = f"gives back {words} words of {block.declaration.path}, which has {block.words}"
+            why = f"frees {words} words of {block.declaration.path}, which has {block.words}"
         elif isinstance(obj, HeapBlock) and obj.ended:
-            why = f"gives back {obj.declaration.path} ({obj.words} words) again: it was given back {obj.freed}"
+            why = f"frees {obj.declaration.path} ({obj.words} words) again: it was freed {obj.freed}"
         elif isinstance(obj, HeapBlock):
             within = f"word {pointer.offset} of " if pointer.offset else ""
-            why = f"is given {within}{obj.declaration.path} ({obj.words} words), which {heap.name} did not give out so"
+            why = f"frees {within}{obj.declaration.path} ({obj.words} words), which {heap.name} did not allocate there"
         else:
             what = obj.declaration.path if obj is not None else f"address {address:#x}"
-            why = f"is given {what}, which {heap.name} never gave out"
+            why = f"frees {what}, which {heap.name} never allocated"
         path = obj.declaration.path if obj is not None else heap.name
         self._core.findings.report("invalid-free", f"{function} {why}", object=path, value=address)
         return False

@@ -1,10 +1,10 @@
 """Heaps of blocks of one size: `ti.sysbios.heaps.HeapBuf`.
 
 Modelled
-    A number of blocks in the caller's buffer, allocated in the order in which they were freed; the assertions;
-    `HeapBuf_E_size`.  Any thread may call.
+    The heap divides the caller's buffer into blocks.  It allocates them in the order in which they were freed.  The
+    assertions and `HeapBuf_E_size` are there.  Any thread may call.
 Not modelled
-    The links of free blocks within the buffer: the heap keeps a list of its own.  `getExtendedStats`.
+    The links between free blocks in the buffer: the heap keeps a list of its own.  `getExtendedStats`.
 Time
     `heap_service`.
 Sources
@@ -28,7 +28,7 @@ _SMALLEST: Final = 4
 
 
 class HeapBuf(Heap):
-    """A heap: what a `HeapBuf_Handle` points to."""
+    """The object of a `HeapBuf_Handle`."""
 
     __slots__ = ("align", "block_words", "free")
 
@@ -91,19 +91,19 @@ class HeapBufModule:
         heap.free.append(address)
 
     def statistics(self, heap: HeapBuf) -> tuple[int, int, int]:
-        """Words of the heap, free words, and those of the largest free block."""
+        """The words of the heap, its free words, and the words of its largest free block."""
         self._charge()
         return heap.words, len(heap.free) * heap.block_words, heap.block_words if heap.free else 0
 
     # C functions
 
     def HeapBuf_Params_init(self, params: Any) -> None:
-        """Defaults: no buffer, no blocks."""
+        """Set the defaults: no buffer, no blocks."""
         self.core.clock.charge(self.core.costs["params_init"])
         struct_params.initialise("HeapBuf_Params", params)
 
     def HeapBuf_create(self, params: Any = None, error_block: Any = None) -> HeapBuf:
-        """A heap in the caller's buffer."""
+        """Create a heap in the caller's buffer."""
         core = self.core
         core.clock.charge(core.costs["heap_create"])
         p = struct_params.read(core, "HeapBuf_Params", params)
@@ -132,7 +132,7 @@ class HeapBufModule:
         pointer.store(NULL)
 
     def HeapBuf_alloc(self, heap: HeapBuf, size: int, align: int, error_block: Any = None) -> Pointer:
-        """A block; NULL if all are given out."""
+        """Allocate a block; NULL if there is no free block."""
         return self.give(heap, size, align, error_block, "HeapBuf_alloc")
 
     def HeapBuf_free(self, heap: HeapBuf, block: Pointer | None, size: int) -> None:
@@ -140,7 +140,7 @@ class HeapBufModule:
         self.give_back(heap, block, size, "HeapBuf_free")
 
     def HeapBuf_getStats(self, heap: HeapBuf, stats: Any) -> None:
-        """Size, free words, largest free block."""
+        """Store the size, the free words and the largest free block."""
         store_statistics(self.core, "HeapBuf_getStats", stats, self.statistics(heap))
 
     def HeapBuf_Handle_upCast(self, heap: HeapBuf) -> HeapBuf:

@@ -1,16 +1,17 @@
 """Heaps of blocks of any size: `ti.sysbios.heaps.HeapMem`.
 
 Modelled
-    First fit from the lowest address; blocks and buffer rounded to 4 words (a header of pointer and size) or to
-    `minBlockAlign`; alignment; the rest of a block returns to the list; a freed block is joined with its neighbours;
-    the assertions; `HeapMem_E_memory`.  The module's GateMutex: only main and tasks may call, and a task waits while
-    another one is inside.  A free block begins with its header: the next one and its size.  The default heap:
+    The search starts at the lowest address and takes the first block that fits.  Sizes of blocks and of the buffer are
+    rounded to 4 words (a header of pointer and size) or to `minBlockAlign`, and the alignment is kept.  The rest of a
+    block returns to the list, and a freed block is joined with its neighbours.  A free block begins with its header:
+    the address of the next free block, and the size.  The assertions and `HeapMem_E_memory` are there.  The module has
+    a GateMutex: only main and tasks may call, and a task waits while another task is inside.  The default heap has
     `BIOS.heapSize` words.
 Not modelled
-    The effect of a header that the program overwrites: the heap keeps a list of its own.  That tasks, their stacks,
-    mailboxes and the other objects of `*_create` are taken out of the default heap.  `primaryHeap`, other gates.
+    The effect of a header that the program overwrites: the heap keeps a list of its own.  Tasks, their stacks,
+    mailboxes and the other objects of `*_create` take nothing from the default heap.  `primaryHeap`, other gates.
 Time
-    `heap_service`, `heap_look` for each free block that is examined, and that of the gate.
+    `heap_service`, `heap_look` for each free block that is examined, and the time of the gate.
 Sources
     BIOS; `heaps/HeapMem.c`, `heaps/HeapMem.xs`, `BIOS.xdc` (heapSize) 6.83.
 """
@@ -40,7 +41,7 @@ def is_power_of_two(number: int) -> bool:
 
 
 class HeapMem(Heap):
-    """A heap: what a `HeapMem_Handle` points to."""
+    """The object of a `HeapMem_Handle`."""
 
     __slots__ = ("align", "free", "looked_at")
 
@@ -180,7 +181,7 @@ class HeapMemModule:
         self.put(heap, address, words)
 
     def statistics(self, heap: HeapMem) -> tuple[int, int, int]:
-        """Words of the heap, free words, and those of the largest free block."""
+        """The words of the heap, its free words, and the words of its largest free block."""
         key = self.gates.GateMutex_enter(self._gate)
         heap.looked_at = len(heap.free)
         self._charge(heap)
@@ -191,12 +192,12 @@ class HeapMemModule:
     # C functions
 
     def HeapMem_Params_init(self, params: Any) -> None:
-        """Defaults: no buffer, blocks of whole headers."""
+        """Set the defaults: no buffer, and sizes that are multiples of a header."""
         self.core.clock.charge(self.core.costs["params_init"])
         struct_params.initialise("HeapMem_Params", params)
 
     def HeapMem_create(self, params: Any = None, error_block: Any = None) -> HeapMem:
-        """A heap in the caller's buffer, of which the aligned part is used."""
+        """Create a heap in the aligned part of the caller's buffer."""
         core = self.core
         core.clock.charge(core.costs["heap_create"])
         p = struct_params.read(core, "HeapMem_Params", params)
@@ -218,7 +219,7 @@ class HeapMemModule:
         pointer.store(NULL)
 
     def HeapMem_alloc(self, heap: HeapMem, size: int, align: int, error_block: Any = None) -> Pointer:
-        """A block of `size` words; NULL if there is none."""
+        """Allocate a block of `size` words; NULL if there is none."""
         return self.give(heap, size, align, error_block, "HeapMem_alloc")
 
     def HeapMem_free(self, heap: HeapMem, block: Pointer | None, size: int) -> None:
@@ -226,7 +227,7 @@ class HeapMemModule:
         self.give_back(heap, block, size, "HeapMem_free")
 
     def HeapMem_getStats(self, heap: HeapMem, stats: Any) -> None:
-        """Size, free words, largest free block."""
+        """Store the size, the free words and the largest free block."""
         store_statistics(self.core, "HeapMem_getStats", stats, self.statistics(heap))
 
     def HeapMem_Handle_upCast(self, heap: HeapMem) -> HeapMem:

@@ -1,15 +1,17 @@
 """Hardware interrupts: `ti.sysbios.family.c28.Hwi` and its dispatcher.
 
 Modelled
-    Handlers for CPU interrupts 1..15 and for the PIE (32..127 = INTx.1-8, 128..223 = INTx.9-16); automatic nesting
-    with the masking options (default SELF: the handler's whole PIE group stays masked in IER); the system stack; PIE
-    acknowledge before the handler; the Swi scheduler locked while a handler runs; `Hwi_disable` and its keys.
+    A handler belongs to a CPU interrupt 1 to 15, or to one of the PIE (32 to 127 are INTx.1 to 8, 128 to 223 are
+    INTx.9 to 16).  Interrupts nest as the masking option says; with the default SELF, the whole PIE group of the
+    handler stays masked in IER.  Handlers run on the system stack.  The dispatcher acknowledges the PIE group before
+    the handler runs, and locks the Swi scheduler while it runs.  `Hwi_disable` returns a key.
 Not modelled
-    Zero-latency interrupts, hooks, `Hwi_plug`, `Hwi_restoreInterrupt`, `Hwi_clearInterrupt`, the calls on
-    whole IER and PIEIER words; that enabling or disabling an interrupt of the PIE also drops what its group has latched
-    in IFR and acknowledges it; the FPU context (STF rounding is the same everywhere).
+    Zero-latency interrupts, hooks, `Hwi_plug`, `Hwi_restoreInterrupt`, `Hwi_clearInterrupt`, and the calls on whole
+    words of IER and PIEIER.  On the chip, enabling or disabling an interrupt of the PIE also clears what its group has
+    latched in IFR, and acknowledges the group; here it does not.  The FPU context is not saved (STF rounding is the
+    same everywhere).
 Time
-    `hwi_prologue` and `hwi_epilogue` around the handler, besides what the core takes.
+    `hwi_prologue` and `hwi_epilogue` around the handler, added to the cycles of the core.
 Sources
     BIOS; `family/c28/Hwi.c`, `Hwi.xdc` 6.83 (Hwi_Instance_init, Hwi_enableInterrupt, Hwi_dispatchC, Hwi_dispatchCore).
 """
@@ -70,11 +72,11 @@ class SetVector(Protocol):
     """Writes a vector of the PIE's table; `begins` is the place of the firmware's function."""
 
     def __call__(self, number: int, handler: Callable[[], None] | None, begins: Place | None = None, /) -> None:
-        """`handler` runs when interrupt `number` is taken."""
+        """Write the vector: `handler` runs when interrupt `number` is taken."""
 
 
 class Hwi(KernelObject):
-    """A hardware interrupt's handler: what a `Hwi_Handle` points to."""
+    """The handler of a hardware interrupt: the object of a `Hwi_Handle`."""
 
     __slots__ = ("ack", "arg", "disable_mask", "function", "group", "ier_bit", "number", "restore_mask", "who")
 
@@ -121,7 +123,7 @@ class HwiModule:
         self._cost_epilogue = core.costs["hwi_epilogue"]
 
     def _dispatch(self, hwi: Hwi) -> None:
-        """The dispatcher: called by the core with interrupts off, on the interrupted stack.
+        """Run a handler.  The core calls it with interrupts disabled, on the interrupted stack.
 
         Swis and tasks that the handler made ready run when the core has left its outermost interrupt.
         """
@@ -165,7 +167,7 @@ class HwiModule:
         tasks.locked, swis.locked = task_key, swi_key
 
     def create(self, number: int, function: Function, *, name: str = "", arg: int = 0, ack: bool = True) -> Hwi:
-        """Plug a handler without enabling it; default masking SELF."""
+        """Plug a handler with the default masking SELF.  The interrupt is not enabled."""
         name = self._names.unique(name or function_name(function))
         hwi = Hwi(name, number, fitted(self.core, function, 1, "Hwi function"), arg, ack)
         self.table[number] = hwi
@@ -184,12 +186,12 @@ class HwiModule:
     # C functions
 
     def Hwi_Params_init(self, params: Any) -> None:
-        """Defaults: masking SELF, enabled at once, PIE acknowledged by the dispatcher."""
+        """Set the defaults: masking SELF, enabled at once, the dispatcher acknowledges the PIE."""
         self.core.clock.charge(self.core.costs["params_init"])
         struct_params.initialise("Hwi_Params", params)
 
     def Hwi_create(self, number: int, function: Function, params: Any, error_block: Any = None) -> Hwi | None:
-        """A handler for interrupt `number`; NULL if it has one already and an Error_Block was given."""
+        """Create a handler for interrupt `number`.  NULL if it has one already and an Error_Block was passed."""
         core = self.core
         core.clock.charge(core.costs["hwi_create"])
         p = struct_params.read(core, "Hwi_Params", params)
@@ -214,7 +216,7 @@ class HwiModule:
         return hwi
 
     def Hwi_delete(self, pointer: Any) -> None:
-        """Disable the interrupt and take its handler away."""
+        """Disable the interrupt and remove its handler."""
         self.core.clock.charge(self.core.costs["delete"])
         hwi = pointer.load()
         if hwi.number <= LAST_ENABLED or hwi.number >= FIRST_PIE:
@@ -229,11 +231,11 @@ class HwiModule:
         pointer.store(NULL)
 
     def _unplugged(self, number: int) -> None:
-        """An interrupt occurs whose handler was deleted: `Hwi_unPluggedInterrupt` ends the program."""
+        """End the program: an interrupt occurred whose handler was deleted (`Hwi_unPluggedInterrupt`)."""
         raise KernelError("Hwi_E_unpluggedInterrupt", f"interrupt {number} came, whose Hwi was deleted")
 
     def Hwi_enableInterrupt(self, number: int) -> int:
-        """Let interrupt `number` through: its PIEIER bit if it has one, and its IER bit.
+        """Enable interrupt `number`: set its PIEIER bit if it has one, and its IER bit.
 
         Returns the old PIEIER bit, or for a CPU interrupt the old IER bit, at the bit's own position.
         """
@@ -244,7 +246,7 @@ class HwiModule:
         return was
 
     def Hwi_disableInterrupt(self, number: int) -> int:
-        """Hold interrupt `number` back: its PIEIER bit, or its IER bit if it does not come from the PIE.
+        """Disable interrupt `number`: clear its PIEIER bit, or its IER bit if it does not come from the PIE.
 
         Returns the old bit at its own position.
         """
@@ -267,7 +269,7 @@ class HwiModule:
         return bit if self._enable(number, on) else 0
 
     def Hwi_disable(self) -> int:
-        """DINT; returns the key for `Hwi_restore`: whether interrupts were off already."""
+        """Disable interrupts (DINT).  Returns the key for `Hwi_restore`: whether they were disabled already."""
         cpu = self.core.cpu
         key = cpu.intm
         cpu.intm = True
@@ -275,7 +277,7 @@ class HwiModule:
         return int(key)
 
     def Hwi_enable(self) -> int:
-        """EINT; returns whether interrupts were off.  Latched interrupts are taken within this call."""
+        """Enable interrupts (EINT).  Returns whether they were disabled.  Latched interrupts are taken in this call."""
         cpu = self.core.cpu
         key = cpu.intm
         cpu.enable_interrupts()

@@ -1,13 +1,14 @@
-"""SYS/BIOS on a board: connects the kernel's modules with time, the CPU and each other, and lets a host run them.
+"""SYS/BIOS on a board.  It connects the kernel's modules with time, the CPU and each other, and a host runs them.
 
 Modelled
-    Start-up in the kernel's order (main with interrupts off; then tick timer, interrupts, posted Swis, tasks);
-    interrupts before Swis before tasks before idle; the idle loop; BIOS_exit.  Every task is a greenlet, interrupts
-    and Swis are nested calls on the interrupted one.
+    The start-up in the kernel's order: `main` runs with interrupts disabled; then the tick timer, interrupts, posted
+    Swis and tasks start.  Interrupts run before Swis, Swis before tasks, tasks before the idle loop.  BIOS_exit ends
+    the program.  Every task is a greenlet.  Interrupts and Swis are calls on the greenlet that they interrupt.
 Not modelled
-    Load, `*_construct` and `*_destruct`, rom, SMP.
+    The module Load, `*_construct` and `*_destruct`, the kernel in ROM, SMP.
 Time
-    costs.py, times `cost_scale`.  While nothing is ready, time is carried from event to event.
+    A service takes the cycles of costs.py times `cost_scale`.  While no thread is ready, time moves on from event to
+    event.
 Sources
     BIOS; `BIOS.xdt` (BIOS_startFunc), `knl/Task.c` 6.83.
 
@@ -219,7 +220,7 @@ class Kernel:
         }
 
     def __getattr__(self, name: str) -> Function:
-        """The C functions of all modules."""
+        """A C function of any module."""
         if name != "externs" and name in self.externs:
             return self.externs[name]
         raise AttributeError(f"the kernel has no function {name}")
@@ -324,7 +325,7 @@ class Kernel:
             self._leave()
 
     def _fail(self, error: BaseException, name: str) -> NoReturn:
-        """A greenlet has ended with an exception.  Pass it to the host."""
+        """Pass the exception that has ended a greenlet to the host."""
         who = self.context()
         where = name if who == name else f"{who}, on the stack of {name}"
         error.add_note(f"in {where} at {us(self.core.clock.now):.3f} us of virtual time")
@@ -428,5 +429,5 @@ class Kernel:
         self._exit(status)
 
     def BIOS_getThreadType(self) -> int:
-        """Hwi 0, Swi 1, Task 2, Main 3."""
+        """The type of the running thread: 0 is a Hwi, 1 a Swi, 2 a Task, 3 is main."""
         return self.core.thread_type

@@ -1,11 +1,12 @@
-"""`xdc.runtime.Log` as far as UIA's benchmark events go, and `xdc.runtime.Error`.
+"""The benchmark events of `xdc.runtime.Log` (UIA), and `xdc.runtime.Error`.
 
 Modelled
-    `Log_write1(UIABenchmark_start/stop, label)` as trace events `benchmark start` and `benchmark stop` with the
-    label, also where C hands it over as an integer (`(xdc_IArg)"label"`); `Error_init`, `Error_check`, `Error_getId`
-    on an Error_Block that a create call filled.
+    `Log_write1(UIABenchmark_start, label)` and `Log_write1(UIABenchmark_stop, label)` become the trace events
+    `benchmark start` and `benchmark stop` with the label.  C may also pass the label as an integer:
+    `(xdc_IArg)"label"`.  `Error_init`, `Error_check` and `Error_getId` read an Error_Block that a create call filled.
 Not modelled
-    Other events (counted as trace event `log`), Diags masks (every event is on), loggers and their buffers.
+    Another event becomes a trace event `log` with its number, without its arguments.  There are no Diags masks: every
+    event is on.  There are no loggers and no buffers.
 Sources
     `ti/uia/events/UIABenchmark.xdc`, `xdc/runtime/Log`, `xdc/runtime/Error`.
 """
@@ -47,19 +48,19 @@ class LogModule:
         return str(value) if text is None else text
 
     def Log_write0(self, event: int) -> None:
-        """An event without arguments."""
+        """Log an event without arguments."""
         self._write(event, ())
 
     def Log_write1(self, event: int, *arguments: tuple[Any, Any]) -> None:
-        """An event with one argument."""
+        """Log an event with one argument."""
         self._write(event, self._counted(1, arguments))
 
     def Log_write2(self, event: int, *arguments: tuple[Any, Any]) -> None:
-        """An event with two arguments."""
+        """Log an event with two arguments."""
         self._write(event, self._counted(2, arguments))
 
     def Log_write3(self, event: int, *arguments: tuple[Any, Any]) -> None:
-        """An event with three arguments."""
+        """Log an event with three arguments."""
         self._write(event, self._counted(3, arguments))
 
     @staticmethod
@@ -70,7 +71,7 @@ class LogModule:
         return arguments
 
     def Error_init(self, error_block: Any) -> None:
-        """Clear an Error_Block; nothing for NULL (Error_ABORT)."""
+        """Clear an Error_Block.  For NULL (Error_ABORT) it does nothing."""
         self.core.clock.charge(self.core.costs["system_service"])
         if error_block is not None:
             error_block.member("id").store(0)

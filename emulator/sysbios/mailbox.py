@@ -1,13 +1,13 @@
 """Mailboxes: `ti.sysbios.knl.Mailbox`.
 
 Modelled
-    A number of messages of one size, copied in and out; a semaphore that counts messages and one that counts free
-    places, which give the order of waiters and the timeouts; events of reader and writer.
+    A mailbox holds a number of messages of one size, which are copied in and out.  One semaphore counts messages, and
+    one counts free places; they determine the order of waiters and the timeouts.  Reader and writer can have events.
 Not modelled
-    The messages in a buffer that C can see: the size of a buffer that is passed as `buf` is checked, and the buffer
-    stays unchanged.
+    The messages are not in memory that C can see.  The size of a buffer that is passed as `buf` is checked, and the
+    buffer stays unchanged.
 Time
-    That of two semaphore calls, `mailbox_copy`, and `mailbox_word` for each word copied.
+    The time of two semaphore calls, `mailbox_copy`, and `mailbox_word` for each word that is copied.
 Sources
     BIOS; `knl/Mailbox.c` 6.83 (Mailbox_Instance_init, Mailbox_pend, Mailbox_post).
 """
@@ -33,7 +33,7 @@ Piece = tuple[int, "CType | None", Any]
 
 
 class Mailbox(KernelObject):
-    """A mailbox: what a `Mailbox_Handle` points to."""
+    """The object of a `Mailbox_Handle`."""
 
     __slots__ = ("count", "free", "full", "messages", "places", "size")
 
@@ -66,12 +66,12 @@ class MailboxModule:
     # C functions
 
     def Mailbox_Params_init(self, params: Any) -> None:
-        """Defaults: no events, messages in the default heap."""
+        """Set the defaults: no events, messages in the default heap."""
         self.core.clock.charge(self.core.costs["params_init"])
         struct_params.initialise("Mailbox_Params", params)
 
     def Mailbox_create(self, size: int, count: int, params: Any = None, error_block: Any = None) -> Mailbox:
-        """A mailbox for `count` messages of `size` words."""
+        """Create a mailbox for `count` messages of `size` words."""
         core = self.core
         core.clock.charge(core.costs["mailbox_create"])
         p = struct_params.read(core, "Mailbox_Params", params)
@@ -142,12 +142,12 @@ class MailboxModule:
         return message
 
     def Mailbox_getMsgSize(self, mailbox: Mailbox) -> int:
-        """Words of a message."""
+        """The number of words of a message."""
         self.core.clock.charge(self.core.costs["mailbox_service"])
         return mailbox.size
 
     def Mailbox_getNumFreeMsgs(self, mailbox: Mailbox) -> int:
-        """Places without a message."""
+        """The number of free places."""
         self.core.clock.charge(self.core.costs["mailbox_service"])
         return mailbox.places
 

@@ -1,15 +1,15 @@
 """The functions that allocate from heaps: `xdc.runtime.Memory`, and the `malloc` of C's library.
 
 Modelled
-    NULL selects the default heap, 0 the default alignment; `Error_E_memory` if a heap had no block and raised no error
-    of its own.  `malloc` and its kin on the default heap: a header of 4 words before each block holds its begin and
-    length.  `free` returns what the header says, right or wrong.  The size with the header wraps at 32 bits:
-    `malloc(-1)` gives a block in which no word may be used.
+    NULL selects the default heap, and 0 the default alignment.  `Error_E_memory` is raised if a heap has no block and
+    raised no error of its own.  `malloc`, `calloc`, `realloc` and `free` use the default heap.  A header of 4 words
+    before each block holds its start and length.  `free` frees what the header says, right or wrong.  The size with
+    the header wraps at 32 bits, so `malloc(-1)` returns a block in which no word may be used.
 Not modelled
     `memalign`, `aligned_alloc`, `Memory_query`.  A program without SYS/BIOS has the heap of its linker (`.esysmem`)
-    with an algorithm of its own: CHOICE, it gets this one.
+    with an algorithm of its own.  CHOICE: it uses the algorithm of SYS/BIOS here.
 Time
-    That of the heap; `memory_word` for each word that is set or copied.
+    The time of the heap, and `memory_word` for each word that is set or copied.
 Sources
     XDCtools `xdc/runtime/Memory.c`; BIOS `rts/MemAlloc.xdt` 6.83; for the types of this chip the alignment is 2 words.
 """
@@ -70,11 +70,11 @@ class MemoryModule:
         return self._alloc(heap, size, align, error_block, "Memory_alloc")
 
     def Memory_calloc(self, heap: Any, size: int, align: int, error_block: Any = None) -> Pointer:
-        """A block of words that are 0."""
+        """Allocate a block and set its words to 0."""
         return self._valloc(heap, size, align, 0, error_block, "Memory_calloc")
 
     def Memory_valloc(self, heap: Any, size: int, align: int, value: int, error_block: Any = None) -> Pointer:
-        """A block of words that are `value`."""
+        """Allocate a block and set its words to `value`."""
         return self._valloc(heap, size, align, value, error_block, "Memory_valloc")
 
     def _valloc(self, heap: Any, size: int, align: int, value: int, error_block: Any, call: str) -> Pointer:
@@ -93,7 +93,7 @@ class MemoryModule:
             self.mem.give_back(real, block, size, "Memory_free")
 
     def Memory_getStats(self, heap: Any, stats: Any) -> None:
-        """Size, free words, largest free block."""
+        """Store the size, the free words and the largest free block."""
         real = self._heap(heap)
         if isinstance(real, HeapBuf):
             values = self.buf.statistics(real)
@@ -103,17 +103,17 @@ class MemoryModule:
         store_statistics(self.core, "Memory_getStats", stats, values)
 
     def Memory_getMaxDefaultTypeAlign(self) -> int:
-        """The alignment that 0 stands for."""
+        """The alignment that the argument 0 selects."""
         return MAX_ALIGN
 
     # The C library (SYS/BIOS replaces TI's functions by these)
 
     def malloc(self, size: int) -> Pointer:
-        """A block of `size` words; NULL if there is none, and for 0."""
+        """Allocate a block of `size` words; NULL if there is none, and for 0."""
         return self._packet(size, "malloc")
 
     def calloc(self, count: int, size: int) -> Pointer:
-        """A block for `count` elements of `size` words that are 0; NULL if there is none."""
+        """Allocate a block for `count` elements of `size` words, and set it to 0; NULL if there is none."""
         words = count * size
         if words > _SIZE:
             return NULL
@@ -127,7 +127,7 @@ class MemoryModule:
         return block
 
     def realloc(self, block: Pointer | None, size: int) -> Pointer:
-        """A new block with the content of the old one, which is freed.  If there is none, the old one stays."""
+        """Allocate a new block, copy the old one into it, and free that.  If there is none, the old block stays."""
         if block is None:
             return self._packet(size, "realloc")
         if size == 0:
@@ -183,7 +183,7 @@ class _IgnoredErrorBlock:
     """An Error_Block whose content is not used."""
 
     def member(self, name: str) -> _IgnoredErrorBlock:
-        """Any member."""
+        """Return itself for any member."""
         return self
 
     def store(self, value: int) -> None:

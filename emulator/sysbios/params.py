@@ -56,7 +56,7 @@ STRUCTS: Final[Mapping[str, Fields]] = {
 
 
 def size(struct: str) -> int:
-    """`sizeof` in words: 32-bit members lie on even words, the whole is rounded to its alignment."""
+    """`sizeof` in words.  Members of 32 bits lie on even words, and the size is rounded up to the alignment."""
     offset = 0
     for _, words, _ in STRUCTS[struct]:
         offset = -(-offset // words) * words + words

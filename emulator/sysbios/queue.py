@@ -1,13 +1,13 @@
 """Queues: `ti.sysbios.knl.Queue`.
 
 Modelled
-    Doubly linked lists through the `Queue_Elem` at the begin of each element.  Queue and links are in the memory of the
-    C program.  So an empty queue gives itself, an element that is put twice or into two queues breaks both, and the
-    links of an element in a function's frame end with the frame.
+    A queue is a doubly linked list through the `Queue_Elem` at the start of each element.  Queue and links are in the
+    memory of the C program.  So an empty queue returns itself, an element that is put twice or into two queues breaks
+    them, and the links of an element in a function's frame end with the frame.
 Not modelled
-    That the object comes from a heap.  CHOICE: it has an address beside the objects of the image.
+    The object does not come from a heap.  CHOICE: it has an address beside the objects of the image.
 Time
-    `queue_link` for what changes links, `queue_look` for what reads them.
+    `queue_link` for a function that changes links, `queue_look` for one that only reads them.
 Sources
     BIOS; `knl/Queue.c` 6.83.
 """
@@ -25,7 +25,7 @@ from emulator.sysbios.handles import headers
 
 
 class Queue(KernelObject):
-    """A queue: what a `Queue_Handle` points to, the C object at `pointer`."""
+    """The object of a `Queue_Handle`: the C object at `pointer`."""
 
     __slots__ = ("pointer",)
 
@@ -41,13 +41,13 @@ class QueueModule:
         self.core = core
         self._memory = memory
         self._names = UniqueNames()
-        #: By address.
+        #: The queues by address.
         self._queues: dict[int, Queue] = {}
         self._cost_link = core.costs["queue_link"]
         self._cost_look = core.costs["queue_look"]
 
     def find(self, handle: Any) -> Queue | None:
-        """The queue that a handle points to; None if there is none."""
+        """The queue of a handle; None if there is none."""
         return self._queues.get(handle.addr) if isinstance(handle, Pointer) else None
 
     def _put_before(self, place: Pointer, element: Pointer) -> None:
@@ -84,7 +84,7 @@ class QueueModule:
         struct_params.initialise("Queue_Params", params)
 
     def Queue_create(self, params: Any = None, error_block: Any = None) -> Pointer:
-        """An empty queue: its links lead to itself."""
+        """Create an empty queue.  Its links point to itself."""
         self.core.clock.charge(self.core.costs["queue_create"])
         struct_params.read(self.core, "Queue_Params", params)
         ctype = headers()["Queue_Object"]
@@ -117,7 +117,7 @@ class QueueModule:
         return self._taken(queue, "prev", "next")
 
     def Queue_dequeue(self, queue: Pointer) -> Pointer:
-        """`Queue_get` that leaves interrupts on."""
+        """Do what `Queue_get` does, but leave interrupts enabled."""
         return self._taken(queue, "next", "prev")
 
     def _taken(self, queue: Pointer, ahead: str, back: str) -> Pointer:
@@ -135,7 +135,7 @@ class QueueModule:
         self._put_before(self._head(queue), self._real(element, "Queue_put: the element"))
 
     def Queue_enqueue(self, queue: Pointer, element: Any) -> None:
-        """`Queue_put` that leaves interrupts on."""
+        """Do what `Queue_put` does, but leave interrupts enabled."""
         self.Queue_put(queue, element)
 
     def Queue_putHead(self, queue: Pointer, element: Any) -> None:
@@ -154,12 +154,12 @@ class QueueModule:
         return self._link(self._head(queue), "next")
 
     def Queue_next(self, element: Any) -> Pointer:
-        """The element after another; after the last the queue itself."""
+        """The element after another; after the last one, the queue itself."""
         self.core.clock.charge(self._cost_look)
         return self._link(self._real(element, "Queue_next: the element"), "next")
 
     def Queue_prev(self, element: Any) -> Pointer:
-        """The element before another; before the first the queue itself."""
+        """The element before another; before the first one, the queue itself."""
         self.core.clock.charge(self._cost_look)
         return self._link(self._real(element, "Queue_prev: the element"), "prev")
 

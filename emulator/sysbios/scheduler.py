@@ -1,4 +1,4 @@
-"""The task scheduler: ready queues, selection, the switch of greenlets (the inner part of `ti.sysbios.knl.Task`).
+"""The task scheduler: it keeps the ready queues, selects a task and switches greenlets (`ti.sysbios.knl.Task`).
 
 task.py holds the functions that firmware calls.  Sources: BIOS; `knl/Task.c` 6.83 (Task_schedule, Task_setPri,
 Task_blockI, Task_unblockI, Task_exit).
@@ -34,7 +34,7 @@ OBJECT_WORDS: Final = 40
 
 
 class Task(KernelObject):
-    """A task: what a `Task_Handle` points to.  Its greenlet runs `run(task)`.  When it ends, `parent` runs."""
+    """The object of a `Task_Handle`.  Its greenlet runs `run(task)`.  When it ends, `parent` runs."""
 
     __slots__ = (
         "address", "arguments", "at", "calls", "env", "function", "greenlet", "mode", "pend", "priority", "stack",
@@ -78,10 +78,10 @@ class Waiter:
 
 
 class Scheduler:
-    """Ready queues, task switches, the begin and end of tasks.
+    """Keeps the ready queues, switches tasks, and starts and ends them.
 
-    Swis and tasks can lock each other, so the scheduler creates the Swi module; Swis run on `system_stack`.  `host()`
-    is the greenlet that runs when a task ends.  `vital_tasks`: how many vital tasks exist before main begins.
+    Swis and tasks can lock each other, so the scheduler creates the Swi module.  Swis run on `system_stack`.  `host()`
+    is the greenlet that runs when a task ends.  `vital_tasks` is the number of vital tasks before main begins.
     """
 
     def __init__(
@@ -119,13 +119,13 @@ class Scheduler:
     # The scheduler
 
     def lock(self) -> bool:
-        """`Task_disable` without its time."""
+        """Do what `Task_disable` does, but charge no cycles."""
         key = self.locked
         self.locked = True
         return key
 
     def restore(self, key: bool) -> None:
-        """`Task_restore` without its time."""
+        """Do what `Task_restore` does, but charge no cycles."""
         if not key:
             if self.work and not self.swis.locked:
                 self.schedule()
@@ -162,7 +162,7 @@ class Scheduler:
             self.core.trace.emit("ready", task.name)
 
     def schedule(self) -> None:
-        """Give the CPU to the highest ready task if it is strictly above the running one."""
+        """Give the CPU to the ready task of the highest priority, if that is higher than the running task's."""
         clock = self.core.clock
         self.locked = True
         while self.work:
@@ -264,7 +264,7 @@ class Scheduler:
         self.restore(False)
 
     def drop(self, task: Task) -> None:
-        """`Task_delete` of a task that does not run and is in no queue of a semaphore, event or gate."""
+        """Delete a task that does not run and is in no queue of a semaphore, event or gate."""
         if task.mode == READY:
             queue = self._ready[task.priority]
             queue.remove(task)
@@ -286,7 +286,7 @@ class Scheduler:
     def add(
         self, function: Function, priority: int, stack: Stack, arguments: tuple[int, int], vital: bool, name: str
     ) -> Task:
-        """Create a task with its greenlet, in its ready queue or inactive."""
+        """Create a task with its greenlet.  It is in its ready queue, or inactive if its priority is -1."""
         name = self._names.unique(name or function_name(function))
         task = Task(
             name, fitted(self.core, function, 2, "task"), arguments, priority, stack, vital=vital,
@@ -302,7 +302,7 @@ class Scheduler:
         return task
 
     def set_priority(self, task: Task, priority: int) -> int:
-        """`Task_setPri` without its time and without the switch."""
+        """Do what `Task_setPri` does, but charge no cycles and do not switch tasks."""
         self.core.check(
             priority == -1 or 0 < priority < PRIORITIES or (priority == 0 and self.idle is None),
             "Task_A_badPriority", f"{priority} is not -1 or 1..15",

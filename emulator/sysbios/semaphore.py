@@ -1,11 +1,12 @@
 """Semaphores: `ti.sysbios.knl.Semaphore`.
 
 Modelled
-    Counting and binary, FIFO or by priority at the time of the pend; a post wakes the first waiter and does not count;
-    timeouts through Clock (of a timeout and a post, exactly one takes effect); the count's 16 bits and their assertion;
-    an event that follows the count.  CHOICE: `Semaphore.supportsEvents` is on for a semaphore with an event.
+    A semaphore is counting or binary.  Its waiters are in FIFO order, or in the order of their priorities at the time
+    of the pend.  A post wakes the first waiter and then does not count.  Timeouts use Clock; of a timeout and a post,
+    exactly one takes effect.  The count has 16 bits and its assertion.  An event can follow the count.  CHOICE:
+    `Semaphore.supportsEvents` is on for a semaphore with an event.
 Time
-    `semaphore_pend` and `semaphore_post` per call, `semaphore_block` when the caller blocks.
+    `semaphore_pend` and `semaphore_post` for each call, `semaphore_block` when the caller blocks.
 Sources
     BIOS; `knl/Semaphore.c` 6.83.
 """
@@ -29,7 +30,7 @@ BINARY_PRIORITY: Final = 3
 
 
 class Semaphore(KernelObject):
-    """A semaphore: what a `Semaphore_Handle` points to; `event_id` is kept set in `event` while it can be taken."""
+    """The object of a `Semaphore_Handle`.  The bits `event_id` of `event` are set while the semaphore can be taken."""
 
     __slots__ = ("count", "event", "event_id", "mode", "waiters")
 
@@ -58,12 +59,12 @@ class SemaphoreModule:
         self._cost_block = core.costs["semaphore_block"]
 
     def Semaphore_Params_init(self, params: Any) -> None:
-        """Defaults: counting, FIFO."""
+        """Set the defaults: counting, FIFO."""
         self.core.clock.charge(self.core.costs["params_init"])
         struct_params.initialise("Semaphore_Params", params)
 
     def Semaphore_create(self, count: int, params: Any = None, error_block: Any = None) -> Semaphore:
-        """A semaphore with an initial count of 0..65535 (a 16-bit Int: above 32767 it arrives negative)."""
+        """Create a semaphore with an initial count of 0 to 65535.  As a 16-bit Int, a count above 32767 is negative."""
         core = self.core
         core.clock.charge(core.costs["semaphore_create"])
         p = struct_params.read(core, "Semaphore_Params", params)
@@ -73,7 +74,7 @@ class SemaphoreModule:
         return semaphore
 
     def register(self, semaphore: Semaphore, event: Event | None, event_id: int) -> None:
-        """Tie a new semaphore to an event.  From now on the event's bits tell whether the semaphore can be taken."""
+        """Tie a new semaphore to an event.  From now on the event's bits show whether the semaphore can be taken."""
         semaphore.event, semaphore.event_id = event, event_id & 0xFFFF
         if event is not None:
             if semaphore.count:
@@ -91,9 +92,9 @@ class SemaphoreModule:
         pointer.store(NULL)
 
     def Semaphore_pend(self, semaphore: Semaphore, timeout: int) -> int:
-        """Take one, and wait up to `timeout` ticks for it: (timeout-1, timeout] periods; 0xFFFF: for ever.
+        """Take the semaphore, and wait up to `timeout` ticks for it; 0xFFFF waits for ever.
 
-        Returns FALSE on timeout.
+        The wait lasts between `timeout - 1` and `timeout` tick periods.  Returns FALSE on timeout.
         """
         core = self.core
         clock = core.clock
@@ -139,7 +140,7 @@ class SemaphoreModule:
         semaphore.waiters.append(waiter)
 
     def Semaphore_post(self, semaphore: Semaphore) -> None:
-        """Give one: to the first waiter, or to the count."""
+        """Wake the first waiter, or add 1 to the count if there is none."""
         core = self.core
         clock = core.clock
         clock.now += self._cost_post
@@ -162,12 +163,12 @@ class SemaphoreModule:
             tasks.schedule()
 
     def Semaphore_getCount(self, semaphore: Semaphore) -> int:
-        """The count as the C's Int: negative above 32767."""
+        """The count as an Int of C: a count above 32767 is negative."""
         self.core.clock.charge(self.core.costs["semaphore_service"])
         return (semaphore.count + 0x8000 & 0xFFFF) - 0x8000
 
     def Semaphore_reset(self, semaphore: Semaphore, count: int) -> None:
-        """Store the count; waiters stay."""
+        """Store the count.  Tasks that wait go on waiting."""
         self.core.clock.charge(self.core.costs["semaphore_service"])
         semaphore.count = count & 0xFFFF
         if semaphore.event is not None:

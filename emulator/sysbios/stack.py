@@ -1,11 +1,11 @@
 """Task stacks in 16-bit words: their addresses, their fill, and how an overflow is detected.
 
 Modelled
-    Consecutive stacks below 0x10000; every word 0x00BE (0xBE stored through a 16-bit char), the initial frame on top
-    of it (arguments, zeroed registers); the check at each switch: top word of the old and of the new stack, and SP in
-    range. The system stack is filled with 0xBEBE.
+    Stacks follow each other below 0x10000.  Every word is 0x00BE (0xBE stored through a 16-bit char).  The initial
+    frame is written over it: arguments and registers that are 0.  At each switch, the kernel checks the top word of the
+    old and the new stack, and that SP is in range.  The system stack is filled with 0xBEBE.
 Not modelled
-    Saved registers and return addresses of suspended tasks.
+    The saved registers and return addresses of suspended tasks.
 Sources
     `family/c28/TaskSupport.c`, `TaskSupport_asm.s28`, `knl/Task.c` Task_checkStacks, `family/c28/Hwi.c`.
 """
@@ -38,7 +38,7 @@ CODE_ADDRESS_HIGH: Final = 0x0008
 
 
 class Stack:
-    """One task's stack: first word, size, the stack pointer while the task does not run."""
+    """The stack of a task: its first word, its size, and the stack pointer while the task does not run."""
 
     __slots__ = ("base", "limit", "overrun_sp", "own", "sp", "usable", "words")
 
@@ -69,9 +69,9 @@ class StackSpace:
         self.checked = check
 
     def allocate(self, words: int, at: int, error_block: Any, arguments: tuple[int, int] = (0, 0)) -> Stack | None:
-        """A filled stack of `words` (0: the default), at address `at` or (0) behind the last one.
+        """Allocate and fill a stack of `words` (0: the default) at address `at` (0: behind the last stack).
 
-        `Task_E_invalidStack` if it would not lie below 0x10000.
+        It raises `Task_E_invalidStack` if the stack would not lie below 0x10000.
         """
         words = words or DEFAULT_WORDS
         words = -(-words // ALIGNMENT) * ALIGNMENT if not at else words & ~(ALIGNMENT - 1)
@@ -143,7 +143,7 @@ class StackSpace:
         raise KernelError(identifier, message)
 
     def used(self, stack: Stack) -> int:
-        """Words used so far, as `Task_stat` counts them: up to the highest word that lost its fill."""
+        """The words used so far, as `Task_stat` counts them: up to the highest word that lost its fill."""
         if self._memory is None:
             return 0
         sp = stack.limit

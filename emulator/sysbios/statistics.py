@@ -17,7 +17,7 @@ IDLE: Final = "Idle"
 
 
 class CycleStatistics:
-    """Count, sum, least and greatest of a series of cycle counts."""
+    """The count, the sum, the least and the greatest value of a series of cycle counts."""
 
     __slots__ = ("count", "maximum", "minimum", "total")
 
@@ -28,7 +28,7 @@ class CycleStatistics:
         self.maximum = 0
 
     def add(self, value: int) -> None:
-        """One more value."""
+        """Add a value."""
         if not self.count or value < self.minimum:
             self.minimum = value
         if value > self.maximum:
@@ -38,11 +38,11 @@ class CycleStatistics:
 
     @property
     def mean(self) -> int:
-        """Mean, rounded down; 0 of nothing."""
+        """The mean, rounded down; 0 without values."""
         return self.total // self.count if self.count else 0
 
     def as_dict(self) -> dict[str, int]:
-        """Plain data."""
+        """The statistics as plain data."""
         return {
             "count": self.count,
             "min": self.minimum,
@@ -53,7 +53,7 @@ class CycleStatistics:
 
 
 class Activity:
-    """One task: `computation` and `response` by activation, `cpu` in total."""
+    """The statistics of one task: `computation` and `response` of its activations, and its CPU time `cpu` in total."""
 
     __slots__ = ("computation", "cpu", "name", "ready_at", "response", "used", "waits")
 
@@ -95,7 +95,7 @@ class TaskStatistics:
         }
 
     def __call__(self, cycles: int, kind: str, name: str) -> None:
-        """One trace event."""
+        """Take in a trace event."""
         if self._began is None:
             self._began = self._since = cycles
         handler = self._handlers.get(kind)

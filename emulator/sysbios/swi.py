@@ -1,14 +1,14 @@
 """Software interrupts: `ti.sysbios.knl.Swi`.
 
 Modelled
-    Priorities 0..15, FIFO within one, higher ones pre-empt; a Swi that is posted already is not posted again, and its
-    flag is cleared just before its function runs; triggers (`or`, `inc` always post; `andn`, `dec` post when the
-    trigger becomes 0); `Swi_disable` delays Swis and task switches; all Swis run on the system stack, with interrupts
-    enabled.
+    Swis have priorities 0 to 15.  A Swi pre-empts Swis of lower priority; those of one priority run in the order of
+    their posts.  A Swi that is posted already is not posted again; its flag is cleared just before its function runs.
+    `Swi_or` and `Swi_inc` always post; `Swi_andn` and `Swi_dec` post when the trigger becomes 0.  `Swi_disable` delays
+    Swis and task switches.  All Swis run on the system stack, with interrupts enabled.
 Not modelled
     Hooks, `Swi_raisePri`, `Swi_setAttrs`.
 Time
-    `swi_post` per call, `swi_run` per run (costs.py).
+    `swi_post` for each call, `swi_run` for each run (costs.py).
 Sources
     BIOS; `knl/Swi.c` 6.83 (Swi_post, Swi_run, Swi_schedule, Swi_restore).
 """
@@ -31,7 +31,7 @@ PRIORITIES: Final = 16
 
 
 class Swi(KernelObject):
-    """A software interrupt: what a `Swi_Handle` points to."""
+    """The object of a `Swi_Handle`."""
 
     __slots__ = ("arg0", "arg1", "function", "initial_trigger", "mask", "posted", "priority", "trigger", "who")
 
@@ -70,14 +70,17 @@ class SwiModule:
     # Scheduling
 
     def post(self, swi: Swi) -> None:
-        """Make a Swi ready: `Swi_post` without its time."""
+        """Make a Swi ready as `Swi_post` does, but charge no cycles."""
         if not swi.posted:
             swi.posted = True
             self._ready[swi.priority].append(swi)
             self.ready_set |= swi.mask
 
     def run_ready(self) -> None:
-        """Run every ready Swi above the current one, highest first.  Called with the Swi scheduler unlocked."""
+        """Run every ready Swi of higher priority than the running one, the highest first.
+
+        Call it only while the Swi scheduler is unlocked.
+        """
         floor = self._current_priority
         if self.ready_set.bit_length() - 1 <= floor:
             return
@@ -144,18 +147,18 @@ class SwiModule:
     # C functions
 
     def Swi_Params_init(self, params: Any) -> None:
-        """Defaults: priority highest, trigger 0."""
+        """Set the defaults: the highest priority, trigger 0."""
         self.core.clock.charge(self.core.costs["params_init"])
         struct_params.initialise("Swi_Params", params)
 
     def Swi_create(self, function: Function, params: Any, error_block: Any = None) -> Swi:
-        """A new Swi."""
+        """Create a Swi."""
         self.core.clock.charge(self.core.costs["swi_create"])
         p = struct_params.read(self.core, "Swi_Params", params)
         return self.create(function, p["priority"], arg0=p["arg0"], arg1=p["arg1"], trigger=p["trigger"])
 
     def Swi_delete(self, pointer: Any) -> None:
-        """Delete the Swi; one that is posted cannot be."""
+        """Delete the Swi.  It must not be posted."""
         self.core.clock.charge(self.core.costs["delete"])
         swi = pointer.load()
         self.core.check(not swi.posted, "Swi_delete", f"{swi.name} is posted: it cannot be deleted before it has run")
@@ -163,7 +166,7 @@ class SwiModule:
         pointer.store(NULL)
 
     def Swi_post(self, swi: Swi) -> None:
-        """Run the Swi as soon as priorities allow; at once if they do."""
+        """Run the Swi as soon as its priority allows it, which may be at once."""
         core = self.core
         clock = core.clock
         clock.now += self._cost_post
@@ -190,7 +193,7 @@ class SwiModule:
         self.Swi_post(swi)
 
     def Swi_andn(self, swi: Swi, mask: int) -> None:
-        """Clear bits of the trigger; post if that made it 0.  A trigger of 0 is left alone."""
+        """Clear bits of the trigger, and post if that made it 0.  If the trigger is 0 already, do nothing."""
         self.core.clock.charge(self.core.costs["swi_trigger"])
         if swi.trigger:
             swi.trigger &= ~mask & 0xFFFF
@@ -198,7 +201,7 @@ class SwiModule:
                 self.Swi_post(swi)
 
     def Swi_dec(self, swi: Swi) -> None:
-        """Take 1 from the trigger; post if that made it 0.  A trigger of 0 is left alone."""
+        """Subtract 1 from the trigger, and post if that made it 0.  If the trigger is 0 already, do nothing."""
         self.core.clock.charge(self.core.costs["swi_trigger"])
         if swi.trigger:
             swi.trigger -= 1
@@ -210,11 +213,11 @@ class SwiModule:
         return self._current_trigger
 
     def Swi_getPri(self, swi: Swi) -> int:
-        """Priority of a Swi."""
+        """The priority of a Swi."""
         return swi.priority
 
     def Swi_self(self) -> Swi | None:
-        """The running Swi; NULL outside."""
+        """The running Swi; NULL if none runs."""
         return self.current
 
     def Swi_disable(self) -> int:

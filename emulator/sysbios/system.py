@@ -1,16 +1,17 @@
 """`xdc.runtime.System`: formatted output with its exact format grammar, and the end of the program.
 
 Modelled
-    `% [-] [0] [width|*] [.prec|.*] [l|L] conv` in this order; d i u x o p c s, `$S` and `$F`.  Anything else is printed
-    unchanged and takes no argument; `%f` takes its double and prints `f`, or four digits, cut off, if `%f` is in
-    `extended_formats`.  Arguments are read by words (varargs.py).  SysMin's circular buffer, which becomes visible at a
-    flush.
+    A conversion is `% [-] [0] [width|*] [.prec|.*] [l|L] conv` in this order.  `conv` is one of d i u x o p c s, or
+    `$S` or `$F`.  Anything else is printed unchanged and takes no argument.  `%f` takes its double.  It prints `f`, or
+    four digits without rounding if `%f` is in `extended_formats`.  Arguments are read by words (varargs.py).  SysMin
+    has a circular buffer, which becomes visible at a flush.
 Not modelled
-    `$L` (labels), `System_aprintf`, `System_atexit`.  The 16-word conversion buffer on the stack: a zero padding above
-    16 passes its end, which is reported (`printf-outbuf`); CHOICE: the characters are printed as if there were room.
+    `$L` (labels), `System_aprintf`, `System_atexit`.  The conversion buffer of 16 words on the stack: a zero padding
+    above 16 writes beyond its end, which is reported (`printf-outbuf`).  CHOICE: the characters are printed as if
+    there were room.
 Time
-    `print_call`, and the time of each character, conversion and digit when it is produced: a print can be pre-empted
-    between two conversions.
+    `print_call`, and the time of each character, conversion and digit when it is produced.  So a print can be
+    pre-empted between two conversions.
 Sources
     XDCtools 3.24 `xdc/runtime/System.c` (System_doPrint, System_formatNum), `System.xdt` (printfExtend), `Text.c`
     (putSite).
@@ -66,7 +67,7 @@ class _Printer:
         self._core.clock.charge(self._cost_character * len(text))
 
     def number(self, value: int, padding: int, base: int, *, minus: bool = False) -> str:
-        """`System_formatNum`: the sign, zeros up to `padding` characters (the sign counts), the digits."""
+        """`System_formatNum`: the sign, zeros up to `padding` characters in all (sign included), and the digits."""
         digits = ""
         while True:
             digits = DIGITS[value % base] + digits
@@ -205,7 +206,10 @@ class _Printer:
             self._out(f"line {line}: ")
 
     def _fixed(self, value: float, padding: int) -> str:
-        """`%f` as the optional code prints it: float32 arithmetic, cut off after four digits, precision ignored."""
+        """`%f` as the optional code prints it: computed in float32, four digits without rounding.
+
+        The precision is ignored.
+        """
         minus = value < 0.0
         if minus:
             value = -value
@@ -257,19 +261,22 @@ class SystemModule:
     # C functions
 
     def System_sprintf(self, buf: Any, form: Any, *arguments: tuple[Any, Any]) -> int:
-        """Print into `buf`, however long; returns the characters before the NUL.  NULL `buf` prints to the output."""
+        """Print into `buf` without a limit.  Returns the number of characters before the NUL.
+
+        If `buf` is NULL, it prints to the output.
+        """
         return self.System_printf(form, *arguments) if buf is None else self._into(buf, None, form, arguments)
 
     def System_snprintf(self, buf: Any, n: int, form: Any, *arguments: tuple[Any, Any]) -> int:
-        """Print at most `n` words with the NUL; returns the length it would have had (newer XDCtools only)."""
+        """Print at most `n` words, NUL included.  Returns the length without that limit (newer XDCtools only)."""
         return self._into(buf, n, form, arguments)
 
     def System_printf(self, form: Any, *arguments: tuple[Any, Any]) -> int:
-        """Print into SysMin's buffer of 1024 characters: the oldest are lost, nothing shows before a flush."""
+        """Print into SysMin's buffer of 1024 characters.  The oldest are lost, and nothing is shown before a flush."""
         return self._print(self._keep, form, arguments)
 
     def System_flush(self) -> None:
-        """Show what SysMin holds."""
+        """Show the content of SysMin's buffer."""
         self.core.clock.charge(self.core.costs["system_service"])
         self.flushed += self._buffer
         self._buffer = ""

@@ -1,14 +1,16 @@
 """Tasks: `ti.sysbios.knl.Task`.
 
 Modelled
-    Sixteen priorities (0 is the idle task's), one FIFO ready queue each; a switch only to a strictly higher priority;
-    a pre-empted task stays at the head of its queue, one made ready goes to the tail; `Task_yield`, `Task_sleep`,
-    `Task_setPri` with its three cases, `Task_disable` with nested keys; return from the task function is `Task_exit`.
-    A task is a greenlet: it can be switched away from within any charge of CPU time.
+    There are sixteen priorities (0 is the idle task's), each with a FIFO ready queue.  The kernel switches only to a
+    task of a higher priority.  A pre-empted task stays at the head of its queue; a task that becomes ready goes to the
+    tail.  `Task_yield`, `Task_sleep`, `Task_setPri` with its three cases, and `Task_disable` with nested keys are
+    there.  The return from the task function is `Task_exit`.  A task is a greenlet, so it can be pre-empted at any
+    charge of CPU time.
 Not modelled
     Hooks, `Task_setEnv`, `Task.deleteTerminatedTasks`, the memory protection of later versions.
 Time
-    `task_switch` per switch, with interrupts off; an interrupt that is due meanwhile runs when the switch is complete.
+    `task_switch` for each switch, with interrupts disabled.  An interrupt that becomes due during a switch runs when
+    the switch is complete.
 Sources
     BIOS; `knl/Task.c` 6.83 (Task_schedule, Task_setPri, Task_yield, Task_sleep, Task_blockI, Task_unblockI).
 """
@@ -40,7 +42,7 @@ from emulator.sysbios.stack import StackSpace
 
 
 class TaskModule(Scheduler):
-    """`Task_*`.  The `clocks` end waits that time out.  `timeout_mask` is the width of a timeout."""
+    """`Task_*`.  The `clocks` end a wait when its timeout has passed.  `timeout_mask` is the width of a timeout."""
 
     def __init__(
         self, core: KernelCore, stacks: StackSpace, *, system_stack: tuple[int, int], object_base: int,
@@ -99,12 +101,12 @@ class TaskModule(Scheduler):
     # C functions
 
     def Task_Params_init(self, params: Any) -> None:
-        """Defaults: priority 1, stack of 256 words."""
+        """Set the defaults: priority 1, a stack of 256 words."""
         self.core.clock.charge(self.core.costs["params_init"])
         struct_params.initialise("Task_Params", params)
 
     def Task_create(self, function: Function, params: Any, error_block: Any = None) -> Task | None:
-        """A new task, from main or a task; pre-empts the creator if it is higher."""
+        """Create a task.  Main or a task calls it; a task of higher priority pre-empts its creator."""
         core = self.core
         core.clock.charge(core.costs["task_create"])
         p = struct_params.read(core, "Task_Params", params)
@@ -199,11 +201,11 @@ class TaskModule(Scheduler):
         return old
 
     def Task_getPri(self, task: Task) -> int:
-        """Priority of a task."""
+        """The priority of a task."""
         return task.priority
 
     def Task_getMode(self, task: Task) -> int:
-        """RUNNING 0, READY 1, BLOCKED 2, TERMINATED 3, INACTIVE 4."""
+        """The mode of a task: 0 RUNNING, 1 READY, 2 BLOCKED, 3 TERMINATED, 4 INACTIVE."""
         return RUNNING if task is self.current and task.mode == READY else task.mode
 
     def Task_self(self) -> Task | None:

@@ -1,11 +1,12 @@
 """The tick's timer: `ti.sysbios.family.c28.Timer` as the kernel itself uses it.
 
 Modelled
-    `Timer.ANY` takes the highest free CPU timer, that is CPU timer 2 with interrupt INT14; its period register is
-    floor(kHz * microseconds / 1000), without the usual -1, so that the period is one count longer.
+    `Timer.ANY` selects the highest free CPU timer, which is CPU timer 2 with interrupt INT14.  Its period register is
+    floor(kHz * microseconds / 1000), without the usual -1.  So the period is one count longer.
 Time
-    A tick that finds the CPU idle and no Clock function due takes the same cycles every time: core, dispatcher,
-    handler, Clock Swi.  If nothing else happens during them, such ticks are taken in one step (`pass_idle_ticks`).
+    A tick takes the same cycles every time if the CPU is idle and no Clock function is due: those of the core, the
+    dispatcher, the handler and the Clock Swi.  If nothing else happens, such ticks are computed in one step
+    (`pass_idle_ticks`).
 Not modelled
     `Timer_create` for firmware, prescaler, one-shot mode.
 Sources
@@ -38,13 +39,13 @@ StartTick = Callable[[int, Callable[[], None]], TickSource | None]
 
 
 class TickTimer:
-    """Binds the tick handler to CPU timer 2."""
+    """Connects the tick handler with CPU timer 2."""
 
     def __init__(
         self, hwis: HwiModule, clocks: ClockModule, tasks: TaskModule, *, cpu_frequency_hz: int, start_tick: StartTick,
         join_idle_ticks: bool = True,
     ) -> None:  # fmt: skip
-        """With `join_idle_ticks` False every tick is taken singly, with the same result."""
+        """With `join_idle_ticks` False every tick is computed by itself; the result is the same."""
         self._hwis = hwis
         self._clocks = clocks
         self._tasks = tasks
@@ -62,17 +63,17 @@ class TickTimer:
         self._hwi = hwis.create(TIMER_INTERRUPT, clocks.tick, name="Clock_tick")
 
     def start(self) -> None:
-        """`Timer_startup`, from BIOS_start: the tick begins to count."""
+        """Start the tick (`Timer_startup`).  BIOS_start calls it."""
         self._hwis.Hwi_enableInterrupt(TIMER_INTERRUPT)
         source = self._start_tick(self.period_register, self._hwis.handler(TIMER_INTERRUPT))
         if self._join:
             self._source = source
 
     def pass_idle_ticks(self) -> None:
-        """Take the next ticks in one step, as long as each would only be counted.
+        """Compute the next ticks in one step, as long as each tick would only be counted.
 
-        The idle task calls it between two events.  It takes ticks so only if no listener wants each tick, no interrupt,
-        Swi or task waits, and the interrupted stack has room for the dispatcher.
+        The idle task calls it between two events.  It does so only if no listener wants each tick, no interrupt, Swi or
+        task waits, and the interrupted stack has room for the dispatcher.
         """
         source, core, clocks, tasks = self._source, self._hwis.core, self._clocks, self._tasks
         quiet = clocks.quiet_ticks()
