@@ -123,6 +123,11 @@ class Linked:
         """What a compiled program is known by (`typed_text.py`)."""
         return identity(self.compiled_functions, self.first)
 
+    @property
+    def interpreted(self) -> bool:
+        """Whether its functions run as Python; else they are methods of a compiled program."""
+        return self._methods is None
+
     def watch_with(self, watcher: Callable[[Object, int, bool], None]) -> None:
         """From now on, call `watcher(object, word, write)` at every access.  Needs an image linked with `watch`."""
         self.namespace["_c_touch"] = watcher  # generated code calls it directly

@@ -147,7 +147,7 @@ def lines(summary: dict[str, Any], session: Session) -> list[str]:
     """The summary for people, without its findings."""
     lag, reached = summary["pace"]["lag"], summary["pace"]["reached"]
     time = f"virtual time {summary['virtual_s']:.3f} s in {summary['wall_s']:.3f} s"
-    told = [f"{time}: pace {reached:.3f}, {BUILDS[MODE]}"]
+    told = [f"{time}: pace {reached:.3f}, {which_build(session.machine)}"]
     if "status" in summary and summary["status"]["state"] == START_UP:
         told.append("start-up has not ended: main has not reached BIOS_start")
     if session.pacer.pace is not None:
@@ -166,6 +166,14 @@ def lines(summary: dict[str, Any], session: Session) -> list[str]:
     told += [f"fault {each.report()}" for each in getattr(session.machine, "faults", ())]
     told += [f"incomplete: {log}" for log in summary.get("incomplete", ())]
     return [*told, f"uart {summary['uart_sha256']}", f"trace {summary['trace_sha256']}"]
+
+
+def which_build(machine: Machine) -> str:
+    """Which build runs, and where it is the compiled one, how the firmware does."""
+    firmware = getattr(machine, "firmware", None)
+    if MODE != "compiled" or firmware is None:
+        return BUILDS[MODE]
+    return f"{BUILDS[MODE]}, {'interpreted' if firmware.linked.interpreted else 'compiled'} firmware"
 
 
 def _lines_of_board(summary: dict[str, Any]) -> list[str]:

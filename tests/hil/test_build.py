@@ -19,7 +19,7 @@ from emulator import compiled
 from firmware_model.image import link
 from hil import build
 from hil.bench import Bench
-from hil.cli import invoke
+from hil.cli import accounts, invoke
 from hil.robot.board import RobotBoard
 from tests.emulator.c28x import as_methods
 
@@ -271,8 +271,12 @@ def test_a_robot_whose_functions_are_methods_drives_alike(
         bench.feed("#MISN\r")
         bench.run_for(1.0)
         told = [(f.rule, f.place, f.message, f.count) for f in bench.findings]
+        with monkeypatch.context() as here:
+            here.setattr(accounts, "MODE", "compiled")
+            told_as.append(accounts.which_build(bench))
         return type(bench.firmware.linked.namespace), (bench.uart_sha256, bench.trace_sha256, told)
 
+    told_as: list[str] = []
     program = link(RobotBoard(), fixes=fixes).linked
     text = as_methods.module(program.compiled_functions, program.first)
     functions, one = driven(lambda _identity: None)
@@ -280,6 +284,7 @@ def test_a_robot_whose_functions_are_methods_drives_alike(
     assert functions is dict
     assert methods is not dict
     assert one == other
+    assert told_as == ["compiled build, interpreted firmware", "compiled build, compiled firmware"]
 
 
 def test_a_debugger_finds_the_firmware_interpreted(monkeypatch: pytest.MonkeyPatch) -> None:
