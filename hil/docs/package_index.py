@@ -1,9 +1,9 @@
 """README.md as a package index shows it: the build backend of pyproject.toml, which is setuptools with that text.
 
 An index shows the text alone.  A link to a file beside it would lead nowhere, so it becomes the name of the page that
-`hil docs` shows, or the words of the link; a picture is left out; what is installed from a checkout is installed from
-the index; a command or a row that needs files of a checkout is left out.  `[project.urls]` has no address yet: with
-one, links and pictures could go there.
+`hil docs` shows, or the words of the link; a picture becomes its words and the command that draws it, or is left out;
+what is installed from a checkout is installed from the index; a command or a row that needs files of a checkout is left
+out.  `[project.urls]` has no address yet: with one, links and pictures could go there.
 
 The backend is started by its path, without anything of this project installed.
 """
@@ -30,6 +30,7 @@ __all__ = [
 NAME = "c2000-hil"
 #: What pyproject.toml names as its readme; made anew by each build.
 TARGET = Path("build/package_index.md")
+_DRAWN = re.compile(r"<!-- made by: (?P<command>.*?) -->\n!\[(?P<words>[^\]]*)\]\([^)]*\)")
 _COMMENT = re.compile(r"<!--.*?-->\n?", re.DOTALL)
 _PICTURE = re.compile(r"!\[[^\]]*\]\([^)]*\)\n*")
 _LINK = re.compile(r"\[(?P<words>[^\]\n]*)\]\((?!https?:)(?P<to>[^)#\s]+)[^)]*\)")
@@ -40,6 +41,7 @@ _INSTALL = re.compile(r"pip install -e (?:\.|'\.(?P<extras>\[[^\]]*\])')")
 
 def described(text: str, pages: dict[str, str]) -> str:
     """README's text for an index; `pages` are the pages of `hil docs` by their path."""
+    text = _DRAWN.sub(r"\g<words>: `\g<command>` draws it.", text)
     text = _OF_CHECKOUT.sub("", _PICTURE.sub("", _COMMENT.sub("", text)))
     text = _LINK.sub(lambda to: f"`hil docs {pages[to['to']]}`" if to["to"] in pages else to["words"], text)
     return _INSTALL.sub(_installed, text)

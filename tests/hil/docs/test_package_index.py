@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import email
 import re
+import subprocess
+import sys
 import tomllib
 from importlib.resources import files
 from pathlib import Path
+
+import pytest
 
 from hil.docs import PAGES
 from hil.docs.package_index import TARGET, described
@@ -37,6 +42,35 @@ def test_no_command_needs_a_checkout() -> None:
         assert needs not in SHOWN
     assert "```sh\n```" not in SHOWN
     assert "hil tasks " in SHOWN
+
+
+def test_a_picture_is_its_words_and_the_command_that_draws_it() -> None:
+    drawn = "<!-- made by: hil demo -->\n![A robot](robot.gif)\n\n![Another](other.png)\n\nEnd\n"
+    assert described(drawn, {}) == "A robot: `hil demo` draws it.\n\nEnd\n"
+    assert "`hil run --no-port --pace max --for 60 --order mission --plot mission.gif` draws it." in SHOWN
+
+
+def test_what_the_build_writes_shows_no_broken_link_and_no_picture_on_an_index(tmp_path: Path) -> None:
+    markdown = pytest.importorskip("readme_renderer.markdown", reason="needs readme-renderer[md], of the extra test")
+    pytest.importorskip("setuptools", minversion="77", reason="needs setuptools 77, the build's backend")
+    for name in ("LICENSE", "README.md", "pyproject.toml", "emulator", "firmware_model", "hil"):
+        (tmp_path / name).symlink_to(REPOSITORY / name)
+    hook = "import sys; sys.path.insert(0, 'hil/docs'); from package_index import *; "
+    call = "print(prepare_metadata_for_build_wheel('metadata'), file=sys.stderr)"
+    (tmp_path / "metadata").mkdir()
+    built = subprocess.run(
+        [sys.executable, "-c", hook + call], cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        check=True,
+    )  # fmt: skip
+    folder = built.stderr.splitlines()[-1]
+    metadata = email.message_from_bytes((tmp_path / "metadata" / folder / "METADATA").read_bytes())
+    text = metadata.get_payload()
+    assert metadata["Description-Content-Type"] == "text/markdown"
+    page = markdown.render(text)
+    assert "<table>" in page
+    assert "mission in the corridor" in page
+    assert re.findall(r'(?:href|src)="(?!https?:|#)[^"]*', page) == []
+    assert "<img" not in page
 
 
 def test_text_between_stays() -> None:
