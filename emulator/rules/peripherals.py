@@ -145,6 +145,24 @@ clocks and the registers that produce them.
         "TRM SPI: baud rate; L3G, SPI slave timing values: tc(SPC)",
     ),
     _rule(
+        "timer-clock",
+        Severity.WARNING,
+        "A CPU timer is set up for another SYSCLK than the program's own.",
+        """
+Everything that the timer paces is too fast or too slow by one factor.
+
+`ConfigCpuTimer(&CpuTimer0, 100, 1000)` says that SYSCLK has 100 MHz and that the period is 1000 us, and loads 100000
+into PRD. At 200 MHz that is 500 us. Typical: a call copied from an example for another chip (90, 100, 150 MHz).
+
+The check is made in a program that calls `InitSysCtrl`, which makes 200 MHz, and does not set up the PLL itself. A
+frequency of 1 is not reported, because the period is then meant in cycles; nor is CPU timer 2 in a program that gives
+it a clock by TMR2CLKCTL.
+
+**Fix:** the frequency of SYSCLK in MHz: 200.
+""",
+        "HDR F2837xS_CpuTimers.c: ConfigCpuTimer",
+    ),
+    _rule(
         "serial-rate",
         Severity.ERROR,
         "The two ends of a serial line, or the nodes of a CAN, use different rates.",

@@ -51,7 +51,8 @@ than a comparison that reads a register, because you may want the read.
 The branch is always taken, and the program changes the object that it should test.
 
 `if (mode = FAST)` sets the mode. The condition is true because FAST is not 0. The assignment of a constant is reported
-in every condition. The assignment of another value is reported in an `if` whose branches do not use what was assigned.
+in every condition. The assignment of another value is reported in an `if` whose branches do not use what was assigned,
+or copy it back: `if (now = seen) seen = now;`.
 
 `while ((c = next()) != 0)`, `while (*to++ = *from++)`, `if ((p = find()))` and `if (p = find()) use(p);` are not
 reported.

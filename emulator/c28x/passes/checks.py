@@ -17,6 +17,7 @@ from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.stamps import Stamps
 from emulator.c28x.passes.states import States
 from emulator.c28x.passes.stores import check_stores
+from emulator.c28x.passes.timer_clock import check_timer_clocks
 from emulator.c28x.passes.values import ValueChecks, file_scope
 from emulator.c28x.passes.waiting import WriterAnalysis, check_waiting
 from emulator.c28x.sites import Place
@@ -72,4 +73,5 @@ def check(
         message = f"{text}: the end of the time wraps before the counter does, and the comparison is wrong then"
         owners[function].report(function, s.where, "stamp-compare", message, object=text)
     check_image(modules, mentions, reports, entered, entries=bool(entries))
+    check_timer_clocks(reports)
     return found

@@ -183,7 +183,8 @@ class CStatementReader:
         """Whether an assignment as a condition was meant as a comparison.
 
         An assignment of a constant always was.  One of another value was if it is in an `if`, has no parentheses of its
-        own, and no branch uses the target.  A local that gets the result of a function may be used later: it was not.
+        own, and a branch copies the target back (`if (now = seen) seen = now;`) or none uses it.  A local that gets the
+        result of a function may be used later: it was not.
         """
         effects, value = self.b.collect_effects(lambda: self.expressions.value(node.rvalue))
         if not effects and build.constant_value(value) is not None:
@@ -193,6 +194,8 @@ class CStatementReader:
         target = self.b.look_up(node.lvalue.name) if isinstance(node.lvalue, c_ast.ID) else None
         if isinstance(node.rvalue, c_ast.FuncCall) and isinstance(target, Variable) and target.kind != "global":
             return False
+        if any(_copies_back(node, branch) for branch in branches):
+            return True
         return not any(_contains_text(written(node.lvalue), branch) for branch in branches)
 
     # Loops
@@ -449,6 +452,16 @@ def _declares(node: c_ast.Node) -> bool:
             return True
         waiting.extend(child for _, child in inner.children())
     return False
+
+
+def _copies_back(assigned: c_ast.Assignment, branch: c_ast.Node | None) -> bool:
+    """Whether a branch assigns the target of an assignment to what it was assigned from."""
+    if branch is None:
+        return False
+    if isinstance(branch, c_ast.Assignment) and branch.op == "=":
+        to, what = written(branch.lvalue), written(branch.rvalue)
+        return (to, what) == (written(assigned.rvalue), written(assigned.lvalue))
+    return any(_copies_back(assigned, child) for _, child in branch.children())
 
 
 def _contains_text(text: str, node: c_ast.Node | None) -> bool:

@@ -46,6 +46,7 @@ def test_a_statement_that_acts_or_is_said_to_be_idle_is_not_told(statement: str)
         "while (a = 0) b++;",
         "do b++; while (a = 0);",
         "if (a = b) k = 1;",
+        "if (a = b) { b = a; k = a; }",
         "if (total = next()) k = 1;",
         "if (k == 1) b = 1; else if (mode = OFF) b = 2;",
     ],
@@ -60,6 +61,7 @@ def test_a_condition_that_assigns_is_told(statement: str) -> None:
         "if (mode == FAST) a = 1;",
         "if ((a = next())) k = 1;",
         "if (a = next()) k = a;",
+        "if (a = b) k = a;",
         "if (a = next()) k = 1;",  # it is looked at behind the branch
         "if (list = list->next) k = list->n;",
         "while (*to++ = *from++) ;",
