@@ -32,6 +32,7 @@ from emulator.cpu import Cpu
 from emulator.peripherals.i2c_checks import I2cChecks
 from emulator.peripherals.i2c_data import I2cData
 from emulator.peripherals.i2c_interrupts import ARBL, ARDY, NACK, SCD, I2cInterrupts
+from emulator.peripherals.i2c_vain import VainWaits
 from emulator.registers.cell import Cell
 from emulator.registers.i2c import I2cRegs
 from emulator.signals import I2cBus
@@ -108,6 +109,7 @@ class I2c:
             regs, cpu.findings, self._interrupts, fifo_interrupt, written=self._written, read=self._go_on
         )
         self._checks = I2cChecks(regs, cpu.findings, bus)
+        self._vain = VainWaits(clock, cpu.findings, regs)
         #: The state on the bus, and the event at its end.  HELD has an event only when it is about to go on.
         self._state = IDLE
         self._event: Event | None = None
@@ -162,6 +164,7 @@ class I2c:
         mode = mdr.value
         if not mode & IRS:
             if before & IRS:
+                self._vain.reset()
                 self._release()
             return
         if not before & IRS:
@@ -184,6 +187,7 @@ class I2c:
         else:
             if mode & STT and not before & STT:
                 self._checks.start(self._module_cycles, self.bit_cycles)
+                self._vain.started()
                 self._interrupts.clear(ARDY)
             if mode & STP and mode == before and self._unanswered and self._old_refusal:
                 self._checks.old_refusal()
@@ -266,7 +270,7 @@ class I2c:
         self._mdr.value = mode & ~STT
         self._interrupts.clear(ARDY)
         self._transmitter, self._repeat = bool(mode & TRX), bool(mode & RM)
-        self._left = self._cnt.value or LONGEST_COUNT
+        self._left = self._vain.wanted = self._cnt.value or LONGEST_COUNT
         self._finished = False
         if mode & DLB and not self._transmitter:
             self._checks.receiver_in_loopback()
@@ -343,6 +347,7 @@ class I2c:
             self._begin_stop()
         elif self._finished:
             self._hold()
+            self._vain.ended(held=True, receiver=False)
         elif self._transmitter:
             byte = self._data.load()
             if byte < 0:
@@ -412,6 +417,7 @@ class I2c:
             self._caused(self._bus.stop)
         self._str.value &= ~BB
         self._interrupts.set(SCD)
+        self._vain.ended(held=False, receiver=not self._transmitter and not self._unanswered and not self._left)
         self._event = self._clock.after(self._module_cycles, self._release_bus)
 
     def _release_bus(self) -> None:

@@ -742,7 +742,7 @@ the byte or the STOP that is under way; the chip may do something else.
     _rule(
         "i2c-left-busy",
         Severity.WARNING,
-        "The driver leaves the I2C bus busy after a NACK.",
+        "The driver leaves the I2C bus busy.",
         """
 After a NACK of an address or a byte, the controller holds SCL low and waits: the program must set STOP or a new START.
 Until then `BB` is 1. A driver that waits for `BB` to fall, or that sends nothing while it is 1, waits for itself.
@@ -751,9 +751,30 @@ The finding is made at the first read of `I2CSTR` that comes 100 ms (CHOICE) or 
 NACK, if neither `STT` nor `STP` was written between them (also if `STP` was set before: its effect then is a choice,
 `stops_when_refused`).
 
-**Fix:** set `STP` where `NACK` was seen, wait for `BB` to fall, and clear `NACK`.
+A message that was acknowledged and begins without `STP` holds the bus too. It is reported if the program then reads
+`I2CSTR` a thousand times, for half a millisecond or more, and resets the module (`IRS = 0`).
+
+**Fix:** `STP` in the command of the last part of a message; after a NACK, set `STP` where `NACK` was seen, wait for
+`BB` to fall, and clear `NACK`.
 """,
         "TRM I2C: NACK, bus activity by RM, STT and STP",
+    ),
+    _rule(
+        "i2c-count",
+        Severity.ERROR,
+        "A driver waits for more bytes than its I2C message has.",
+        """
+The driver times out at every message, although the part answers.
+
+In non-repeat mode `I2CCNT` bytes are received, and then the STOP follows. `RRDY` does not come again. Typical: the
+count of the part of the message that sent the register's address (1) is left for the part that receives.
+
+The finding is made if the program reads `I2CSTR` a thousand times after the end of a message that received bytes, for
+half a millisecond or more, and then resets the module (`IRS = 0`), and if there was no NACK.
+
+**Fix:** write `I2CCNT` before each command that sets `STT`.
+""",
+        "TRM I2C: I2CCNT",
     ),
     _rule(
         "spi-mode",

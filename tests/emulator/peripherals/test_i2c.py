@@ -904,3 +904,54 @@ def test_a_message_that_waits_for_its_next_byte_is_not_told(bench: Bench) -> Non
     bench.run()
     looks_on(bench, 300)
     assert bench.rules() == []
+
+
+def polls(bench: Bench, times: int = 2000) -> None:
+    """The program reads I2CSTR so often, each microsecond."""
+    for _ in range(times):
+        bench.has(BB)
+        bench.run(200)
+
+
+@pytest.mark.parametrize(("end", "told"), [(0, ["i2c-left-busy"]), (STP, []), (STT, [])])
+def test_a_message_that_nothing_ends_is_told_at_the_reset(bench: Bench, end: int, told: list[str]) -> None:
+    bench.send(0x12, stop=False)
+    if end:
+        bench.regs.I2CMDR.all |= end
+        bench.run()
+    polls(bench)
+    bench.regs.I2CMDR.all = 0
+    assert bench.rules() == told
+
+
+def test_a_reset_without_a_wait_is_not_told(bench: Bench) -> None:
+    bench.send(0x12, stop=False)
+    polls(bench, 900)
+    bench.regs.I2CMDR.all = 0
+    assert bench.rules() == []
+
+
+@pytest.mark.parametrize(("command", "reset", "told"), [
+    (RECEIVE | STP, True, ["i2c-count"]), (RECEIVE | STP, False, []), (SEND | STP, True, []),
+])  # fmt: skip
+def test_a_wait_for_more_bytes_than_the_message_has_is_told(
+    bench: Bench, command: int, reset: bool, told: list[str]
+) -> None:
+    bench.regs.I2CCNT = 1
+    bench.regs.I2CDXR.all = 0
+    bench.regs.I2CMDR.all = command
+    bench.until(RRDY if command & TRX == 0 else SCD)
+    assert bench.regs.I2CDRR.all >= 0
+    polls(bench)
+    if reset:
+        bench.regs.I2CMDR.all = 0
+    assert bench.rules() == told
+
+
+def test_a_wait_for_a_part_that_does_not_answer_is_not_told(bench: Bench) -> None:
+    bench.target.present = False
+    bench.regs.I2CCNT = 1
+    bench.regs.I2CMDR.all = RECEIVE | STP
+    polls(bench)
+    bench.regs.I2CMDR.all = 0
+    assert bench.rules() == []
