@@ -9,7 +9,9 @@ from __future__ import annotations
 import keyword
 import re
 import shutil
+import sys
 import tempfile
+from importlib.machinery import PathFinder
 from importlib.resources import as_file, files
 from pathlib import Path
 from types import MappingProxyType
@@ -43,6 +45,8 @@ def make(folder: Path, language: str = "c") -> list[Path]:
         raise ValueError(f"{folder.name!r}: expected a name of small letters, digits and - or _, as in pressure-sensor")
     if keyword.iskeyword(name) or name in KEYWORDS or name in _TAKEN or name.startswith("test_"):
         raise ValueError(f"{folder.name!r} means something already, to C, Python or the project: expected another name")
+    if language == "python" and _shadows(name):
+        raise ValueError(f"{folder.name!r} is a module of Python or of an installed package: expected another name")
     if language not in LANGUAGES:
         raise ValueError(f"no language {language!r}: {' or '.join(LANGUAGES)}")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
@@ -51,6 +55,12 @@ def make(folder: Path, language: str = "c") -> list[Path]:
         return _write(folder, name, language)
     except OSError as error:
         raise ValueError(f"{folder}: nothing was written: {error.strerror or error}") from error
+
+
+def _shadows(name: str) -> bool:
+    """Whether a module `name` of a test's folder would hide one that Python or a package imports by that name."""
+    installed = [entry for entry in sys.path if Path(entry).resolve() != Path.cwd()]
+    return name in sys.stdlib_module_names or PathFinder.find_spec(name, installed) is not None
 
 
 def _write(folder: Path, name: str, language: str) -> list[Path]:

@@ -1,4 +1,4 @@
-"""ranger.c: the distance to a wall, by an infrared sensor at input 3 of ADC-B."""
+"""The distance to a wall, by an infrared sensor at input 3 of ADC-B."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ FARTHEST_MM = 4000
 _Samples: array[uint16, SAMPLES]
 
 
-# ranger.c: Ranger_Init
 def Ranger_Init() -> void:
     EALLOW()
     CpuSysRegs.PCLKCR13.bit.ADC_B = 1
@@ -26,7 +25,6 @@ def Ranger_Init() -> void:
     EDIS()
 
 
-# ranger.c: Convert
 def _Convert() -> uint16:
     AdcbRegs.ADCINTFLGCLR.bit.ADCINT1 = 1
     AdcbRegs.ADCSOCFRC1.bit.SOC0 = 1
@@ -35,7 +33,7 @@ def _Convert() -> uint16:
     return AdcbResultRegs.ADCRESULT0
 
 
-# ranger.c: Ranger_Mean, the mean of the last conversions
+# The mean of the last conversions.
 def Ranger_Mean() -> uint16:
     i: uint16
     sum: uint32 = 0
@@ -47,7 +45,7 @@ def Ranger_Mean() -> uint16:
     return sum / SAMPLES
 
 
-# ranger.c: Ranger_Distance_Mm; the sensor gives 0.24 V at a metre, and less the farther the wall is; 3 V are 4096
+# The sensor gives 0.24 V at a metre, and less the farther the wall is; 3 V are 4096.
 def Ranger_Distance_Mm() -> uint16:
     code: uint16 = Ranger_Mean()
     if code <= 327680 / FARTHEST_MM:

@@ -45,7 +45,12 @@ def test_a_driver_under_pytest_with_the_configuration_of_a_new_project(language:
     assert json.loads((editor / "settings.json").read_text())["debug.allowBreakpointsEverywhere"] is True
     tests = folder / "test_lidar.py"
     launch = (editor / "launch.json").read_text().replace("${file}", tests.as_posix())
-    one = configurations(launch)["Tests of this file"]
+    both = configurations(launch)
+    assert both["All tests"] == {
+        key: value for key, value in both["Tests of this file"].items() if key not in ("args", "purpose")
+    } | {"name": "All tests"}
+    # One of them for each language.
+    one = both["All tests" if language == "python" else "Tests of this file"]
     adds = line_of(driver, r"sum \+= _?Samples")
     with Debugged(one, folder) as program:
         program.start({driver: [adds]})

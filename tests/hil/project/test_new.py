@@ -103,6 +103,13 @@ def test_a_name_that_a_driver_cannot_have(name: str, tmp_path: Path, capsys: pyt
     assert not list(tmp_path.iterdir())
 
 
+def test_a_python_driver_hides_no_module_that_python_or_pytest_imports(tmp_path: Path) -> None:
+    for name in ("json", "py"):
+        with pytest.raises(ValueError, match=f"'{name}' is a module of Python or of an installed package"):
+            make(tmp_path / name, "python")
+        make(tmp_path / name, "c")
+
+
 def test_what_is_there_is_left_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "sonar").mkdir()
     (tmp_path / "sonar" / "mine.txt").write_text("mine")
