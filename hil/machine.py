@@ -101,7 +101,7 @@ class Setup:
     def of(cls, setup: Setup | str | None = None, **settings: Any) -> Setup:
         """A setup, or a world by its name, with some of its fields said anew.  A text stands for a tuple of it alone.
 
-        Raises TypeError for a field that there is not, or a value of another type.
+        Raises TypeError for a field that there is not, or a value of another type, and ValueError for a negative seed.
         """
         if isinstance(setup, str):
             settings = {"world": setup, **settings}
@@ -111,8 +111,9 @@ class Setup:
         known = {field.name: field.default for field in fields(cls)}
         for name, value in settings.items():
             if name not in known:
-                alike = get_close_matches(name, known, n=1) or ["one of " + ", ".join(known)]
-                raise TypeError(f"a setup has no {name!r}: {alike[0]}")
+                alike = get_close_matches(name, known, n=1)
+                hint = f"did you mean {alike[0]}?" if alike else f"it has {', '.join(known)}"
+                raise TypeError(f"a setup has no {name!r}: {hint}")
             wanted = type(known[name])
             if wanted is tuple and isinstance(value, str):
                 settings[name] = (value,)
@@ -120,6 +121,8 @@ class Setup:
                 settings[name] = tuple(value)
             elif not isinstance(value, wanted) or (wanted is int and isinstance(value, bool)):
                 raise TypeError(f"{name}={value!r}: expected {_EXPECTED[wanted]}")
+        if settings.get("seed", 0) < 0:
+            raise ValueError(f"seed={settings['seed']}: expected 0 or more")
         return replace(setup or cls(), **settings)
 
     def as_dict(self) -> dict[str, Any]:

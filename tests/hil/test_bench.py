@@ -38,17 +38,18 @@ def test_a_world_and_settings_by_name_make_a_setup(driven: Bench) -> None:
 @pytest.mark.parametrize(
     ("settings", "told"),
     [
-        ({"sead": 3}, "a setup has no 'sead': seed"),
-        ({"xyzzy": 3}, "a setup has no 'xyzzy': one of world, seed"),
+        ({"sead": 3}, "a setup has no 'sead': did you mean seed?"),
+        ({"xyzzy": 3}, "a setup has no 'xyzzy': it has world, seed"),
         ({"seed": "3"}, "seed='3': expected a whole number"),
         ({"seed": True}, "seed=True: expected a whole number"),
+        ({"seed": -1}, "seed=-1: expected 0 or more"),
         ({"realistic": 1}, "realistic=1: expected True or False"),
         ({"fixes": 1}, "fixes=1: expected a text, or several"),
         ({"setup": 5}, "5: expected a Setup, or the name of a world"),
     ],
 )
 def test_a_setting_that_cannot_be_is_told_at_the_call(settings: dict[str, object], told: str) -> None:
-    with pytest.raises(TypeError, match=re.escape(told)):
+    with pytest.raises((TypeError, ValueError), match=re.escape(told)):
         Bench(**settings)  # type: ignore[arg-type]
 
 
