@@ -126,6 +126,7 @@ class Connections:
         self._loads()
         self._compares()
         self._compares_for_nobody()
+        self._outputs()
 
     # The source
 
@@ -835,7 +836,7 @@ class Connections:
                     self._chip.findings.report_at(
                         routine, "flag-not-cleared",
                         f"{flag} is set, and no statement sets ADCEVTCLR.{event}: its interrupt comes once only",
-                        object=flag, how="dynamic", task=f"Isr:{routine.function}",
+                        object=flag, how="dynamic", task=self._chip.cpu.routine_at(routine),
                     )  # fmt: skip
 
     def _never_starts(self, block: str, soc: int) -> bool:
@@ -991,6 +992,22 @@ class Connections:
     def _requests(self, command: str, *, writing: bool) -> bool:
         """Whether some CAN interface command sets TxRqst of an object (`writing`) or clears its NewDat (reading)."""
         return self._could(command, lambda word: bool(word & REQUEST) and bool(word & WRITE) == writing, "")
+
+    def _outputs(self) -> None:
+        """ePWMs with a pin and actions that are set to count, and do not count.
+
+        A level that the program forces needs no counter.  What a written compare value has shown is not told again.
+        """
+        shown = {finding.object for finding in self._chip.findings.of("not-configured")}
+        for n, epwm in self._chip.epwm.items():
+            name = f"EPwm{n}Regs"
+            place = self._wanting(f"{name}.TBCTL", "CTRMODE")
+            forced = any(self._writes(f"{name}.{register}") for register in ("AQSFRC", "AQCSFRC", "TZFRC"))
+            if place is None or forced or not epwm.acts_on_pin or self._value(f"{name}.TBCTL", "CTRMODE") == STOPPED:
+                continue
+            missing = self._no_count(n)
+            if missing and shown.isdisjoint((f"{missing.register}.{missing.field}", missing.register)):
+                self._report(place, f"the output of ePWM{n} never changes", missing, name)
 
     def _dacs(self) -> None:
         """A buffered DAC that gets codes and does not drive its pin."""

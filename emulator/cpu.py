@@ -45,8 +45,8 @@ class Cpu:
     """
 
     __slots__ = (
-        "_began", "_described", "_forced", "_handlers", "_left", "_row", "clock", "eallow", "findings", "ier", "ifr",
-        "in_interrupt", "intm", "isr", "position", "sp", "stack_limit",
+        "_began", "_described", "_forced", "_handlers", "_left", "_row", "clock", "dispatched", "eallow", "findings",
+        "ier", "ifr", "in_interrupt", "intm", "isr", "position", "sp", "stack_limit",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, findings: Findings) -> None:
@@ -65,6 +65,8 @@ class Cpu:
         #: Stack pointer in words, and the word that it must not pass in a function.
         self.sp = 0x0400
         self.stack_limit = 0x07F8
+        #: Where the routines begin that a kernel's dispatcher calls.
+        self.dispatched: set[Place] = set()
         self._handlers: dict[int, Callable[[], None]] = {}
         self._described: dict[int, Description] = {}
         #: Lines that firmware has latched itself.
@@ -83,6 +85,10 @@ class Cpu:
         self._handlers[line] = handler
         if described is not None:
             self._described[line] = described
+
+    def routine_at(self, begins: Place) -> str:
+        """The thread of the routine that begins there: `Hwi:name` under a kernel's dispatcher, else `Isr:name`."""
+        return f"{'Hwi' if begins in self.dispatched else 'Isr'}:{begins.function}"
 
     def raise_line(self, line: int) -> None:
         """Latch interrupt `line` in IFR, and request the CPU's attention."""
@@ -152,7 +158,7 @@ class Cpu:
         else:
             findings.report_at(
                 begins, "interrupt-storm", message, how="dynamic", object=vector, value=self._row, details=details,
-                task=f"Isr:{begins.function}",
+                task=self.routine_at(begins),
             )  # fmt: skip
         raise InterruptStorm(message)
 

@@ -140,16 +140,20 @@ class Findings:
 
     def report(
         self, rule: str, message: str, *, object: str = "", declaration: str = "", value: Any = None,
-        details: tuple[str, ...] = (), at: int = 0, cause: Cause | None = None,
+        details: tuple[str, ...] = (), at: int = 0, cause: Cause | None = None, otherwise: Cause | None = None,
     ) -> Finding:  # fmt: skip
         """Record an occurrence of `rule` at the statement that executes now; `at`: its number, if known.
 
-        `cause`: an earlier statement that it belongs to, if known.
+        `cause`: an earlier statement that it belongs to, if known.  `otherwise`: the one that it belongs to if no
+        statement executes now.
         """
         cause = cause or self.cause
+        path: tuple[Place, ...] = ()
+        task = ""
         if cause is None:
-            path, task = self.path(at or self.position.at, self.position.calls), ""
-        else:
+            path = self.path(at or self.position.at, self.position.calls)
+            cause = None if path else otherwise
+        if cause is not None:
             at, calls, task = cause
             path = self.path(at, calls)
         return self._record(path, task, rule, message, object, declaration, value, details, "dynamic")

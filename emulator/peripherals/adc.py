@@ -68,6 +68,7 @@ class Adc:
         "_code",
         "_collision",
         "_converter",
+        "_cpu",
         "_ctl1",
         "_ctl2",
         "_eoc_is_plain",
@@ -146,7 +147,7 @@ class Adc:
         """
         if len(interrupts) != 4:
             raise ValueError(f"{regs.name}: {len(interrupts)} interrupts: expected the 4 pulses ADCINT1..4")
-        self._clock, self._findings, self._position = clock, cpu.findings, cpu.position
+        self._clock, self._cpu, self._findings, self._position = clock, cpu, cpu.findings, cpu.position
         self._regs, self._result_regs = regs, results
         registers = regs.registers
         #: ADCINT1 to 4 and ADCxEVT, for listeners besides the PIE.
@@ -542,7 +543,7 @@ class Adc:
             self._findings.report("flag-not-cleared", message, object=path)
         else:
             self._findings.report_at(
-                routine, "flag-not-cleared", message, how="dynamic", object=path, task=f"Isr:{routine.function}"
+                routine, "flag-not-cleared", message, how="dynamic", object=path, task=self._cpu.routine_at(routine)
             )  # fmt: skip
 
     def _note(self, bit: int) -> None:

@@ -236,8 +236,9 @@ class Dma:
         if control.value & RUNSTS:
             path = f"{control.path}.OVRFLG"
             self._cpu.findings.report(
-                "data-lost", f"{path}: a trigger came while the one before it waited: one burst is lost", object=path
-            )
+                "data-lost", f"{path}: a trigger came while the one before it waited: one burst is lost", object=path,
+                otherwise=channel.cause,
+            )  # fmt: skip
 
     def _source(self, channel: _Channel) -> int:
         """The trigger that a channel waits for; 0: software only."""

@@ -284,6 +284,11 @@ class EPwm:
         return None
 
     @property
+    def acts_on_pin(self) -> bool:
+        """Whether an output that has actions has a pin."""
+        return any(output.control.active and not output.wire.missing for output in self._outputs.both)
+
+    @property
     def above(self) -> Mapping[str, CompareBeyondPeriod]:
         """Compare register -> its first value above the period."""
         return self._checks.above

@@ -18,6 +18,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Final
 
+from emulator.c28x.findings import Cause
 from emulator.c28x.sites import Place
 from emulator.clock import CYCLES_PER_MS, Clock
 from emulator.cpu import Cpu
@@ -69,6 +70,8 @@ class Pie:
         self._acknowledged = [0] * GROUPS
         #: The flags of each group that the firmware has set by writing PIEIFR.
         self._forced = [0] * GROUPS
+        #: Vector -> the statement that has enabled its line last.
+        self._enabled_by: dict[int, Cause | None] = {}
         #: Vector -> when its routine ended, if there has been no pulse since.
         self._served: dict[int, int] = {}
         #: (group, number) -> the flag that has kept a further event back, and the routine that left the flag.
@@ -134,7 +137,7 @@ class Pie:
             begins, "flag-not-cleared",
             f"{flag} is still set after the routine of interrupt {group}.{n}: no further interrupt is generated until "
             "it is cleared",
-            how="dynamic", object=flag, task=f"Isr:{begins.function}",
+            how="dynamic", object=flag, task=self._cpu.routine_at(begins),
         )  # fmt: skip
 
     def enabled(self, group: int, n: int) -> bool:
@@ -208,7 +211,7 @@ class Pie:
             cpu.findings.report("flag-not-cleared", message, object=name)
         else:
             cpu.findings.report_at(
-                begins, "flag-not-cleared", message, how="dynamic", object=name, task=f"Isr:{begins.function}"
+                begins, "flag-not-cleared", message, how="dynamic", object=name, task=cpu.routine_at(begins)
             )  # fmt: skip
         return True
 
@@ -259,7 +262,7 @@ class Pie:
                 "interrupt-without-handler",
                 f"{_name(vector)} (vector id {vector:#04x}) was taken but has no handler: nothing was written to its "
                 "entry of PieVectTable",
-                object=f"vector {vector:#04x}",
+                object=f"vector {vector:#04x}", cause=self._enabled_by.get(vector),
             )  # fmt: skip
 
     # --- register handlers -------------------------------------------------------------------------------------------
@@ -278,6 +281,10 @@ class Pie:
             self._deliver(bit.bit_length() - 1)
 
     def _write_PIEIERx(self, x: int, word: int, lanes: int = ALL) -> None:
+        added = word & lanes & ~self._ier[x].value
+        for n in range(1, LINES + 1) if added else ():
+            if added & 1 << n - 1:
+                self._enabled_by[vector_id(x + 1, n)] = self._cpu.findings.mark()
         self._ier[x].store(word, lanes)
         self._deliver(x)
 

@@ -355,4 +355,4 @@ class SciReceiver:
             self._lost_unread = self._lost_unread or what
             return
         path = self._rxbuf.path
-        self._cpu.findings.report("data-lost", f"{path}: {what}", object=path)
+        self._cpu.findings.report("data-lost", f"{path}: {what}", object=path, otherwise=self.rate_set_by)

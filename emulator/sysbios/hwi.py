@@ -173,8 +173,11 @@ class HwiModule:
         self.table[number] = hwi
         handler = partial(self._dispatch, hwi)
         if hwi.group or number in DIRECT:
-            begins = self.core.findings.beginnings
-            self._set_vector(number, handler, begins.get(function) or begins.get(unwrap(function)))
+            beginnings = self.core.findings.beginnings
+            begins = beginnings.get(function) or beginnings.get(unwrap(function))
+            if begins is not None:
+                self.core.cpu.dispatched.add(begins)
+            self._set_vector(number, handler, begins)
         else:
             self.core.cpu.connect(number, handler)
         return hwi

@@ -184,6 +184,48 @@ def test_a_right_program_is_told_nothing(tmp_path: Path, later: str) -> None:
     assert not told(tmp_path, text)
 
 
+#: ePWM2 blinks at GPIO2 by itself.
+BLINKS = """#include "F28x_Project.h"
+void main(void)
+{
+""" + START_UP + """    GPIO_SetupPinMux(2, GPIO_MUX_CPU1, 1);
+    EALLOW;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 0;
+    EDIS;
+    EPwm2Regs.TBPRD = 20000;
+    EPwm2Regs.CMPA.bit.CMPA = 5000;
+    EPwm2Regs.AQCTLA.bit.ZRO = 2;
+    EPwm2Regs.AQCTLA.bit.CAU = 1;
+    EPwm2Regs.TBCTL.bit.CTRMODE = 0;
+    EALLOW;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 1;
+    EDIS;
+    for (;;) ;
+}
+"""
+
+
+@pytest.mark.parametrize(("was", "now", "at"), [
+    ("", "", ""),
+    ("TBCLKSYNC = 1", "TBCLKSYNC = 0", "TBCLKSYNC = 0"),
+    ("EPwm2Regs.TBPRD = 20000;", "", "CTRMODE = 0"),
+    # TI's start-up has set TBCLKSYNC.
+    ("    EALLOW;\n    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 0;\n    EDIS;\n", "", ""),
+    # The counter is meant to stand still, or the program forces the level.
+    ("CTRMODE = 0", "CTRMODE = 3", ""),
+    ("TBCLKSYNC = 1", "TBCLKSYNC = 0; EPwm2Regs.AQCSFRC.bit.CSFA = 2", ""),
+    # No pin has the output.
+    ("GPIO_SetupPinMux(2, GPIO_MUX_CPU1, 1);\n    EALLOW;\n    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 0",
+     "EALLOW;\n    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 0", ""),
+])  # fmt: skip
+def test_an_output_that_no_counter_switches(tmp_path: Path, was: str, now: str, at: str) -> None:
+    assert not was or BLINKS.count(was) == 1
+    text = BLINKS.replace(was, now) if was else BLINKS
+    places = [finding.place for finding in told(tmp_path, text)]
+    lines = text.splitlines()
+    assert [at in lines[place.line - 1] for place in places if place is not None] == [True] * bool(at)
+
+
 TAKEN_AWAY = "CpuTimer0Regs.TCR.all = 0x4020;\n    CpuTimer0Regs.TCR.bit.TIE = 0;"
 
 

@@ -58,3 +58,17 @@ def test_a_finding_about_a_hwi_is_at_its_function(body: str, rules: list[str], t
     for finding in findings:
         assert finding.place is not None
         assert finding.place.function == "On_Period"
+        assert finding.task == "Hwi:On_Period"
+
+
+def test_an_interrupt_without_a_function_is_told_where_its_line_is_enabled(tmp_path: Path) -> None:
+    text = PROGRAM.replace("BODY", ";").replace(
+        "Hwi_create(48, ", "PieCtrlRegs.PIEIER3.bit.INTx1 = 1;\n    Hwi_create(49, "
+    )
+    file = tmp_path / "periods.c"
+    file.write_text(text, encoding="utf-8")
+    (finding,) = (
+        f for f in check_files(DriverFiles([file], seconds=0.1)).findings if f.rule == "interrupt-without-handler"
+    )
+    assert finding.place is not None
+    assert "PIEIER3.bit.INTx1" in text.splitlines()[finding.place.line - 1]
