@@ -39,8 +39,9 @@ class Rts(Printing):
         return self._number(characters)
 
     def atoi(self, text: Pointer | None) -> int:
-        """A decimal int; wraps at 16 bits."""
-        value = self.atol(text) & 0xFFFF
+        """A decimal int; wraps at 16 bits.  A check of a wider use asks for the whole number."""
+        whole = self._runtime.parsed_number = self.atol(text)
+        value = whole & 0xFFFF
         return value - 0x10000 if value > 0x7FFF else value
 
     def atol(self, text: Pointer | None) -> int:

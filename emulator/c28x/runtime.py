@@ -199,6 +199,8 @@ class Runtime:
         self.signatures: dict[Any, FunctionType] = {}
         self.called_as: dict[tuple[Any, int], Any] = {}
         self._register_at, self._blames_unmodelled, self._driven = register_at, blames_unmodelled, driven
+        #: The number in the text that `atoi` has read last.
+        self.parsed_number = 0
         #: Checks of library functions that read or write through a pointer.
         self.readers: dict[Any, RuntimeSite] = {}
         #: The users of null pointers so far, their call paths, and the findings about them.
@@ -903,6 +905,19 @@ class Runtime:
             self.hit(site, "stamp-compare", f"{message} between the two, which are {apart} counts apart", a)
         return bool(outcome)
 
+    def extended(self, left: int, right: int, op: str, number: int) -> bool:
+        """Compare a 32-bit number with one that is cut to an `int` first; report it if that makes it negative."""
+        site = self.sites[number]
+        ctype = site.ctype
+        assert isinstance(ctype, IntType)
+        whole, other = (left, right) if site.kind == "left" else (right, left)
+        cut = ctype.wrap(whole)
+        outcome = bool(COMPARE[op](cut, other))
+        if cut != whole == other:
+            taken = f"is {str(outcome).lower()} for {whole}, which as an {ctype} is {cut}"
+            self.hit(site, "sign-extended", f"{site.name} {taken}: the other side is {other}", whole)
+        return outcome
+
     def past(self, value: int, number: int) -> int:
         """The signed time since a stamp is below 0: more than half of the counter's range has passed."""
         site = self.sites[number]
@@ -922,6 +937,15 @@ class Runtime:
         message = f"{site.name} is {value}, which does not fit a {ctype.bits}-bit {ctype}: it becomes {kept}"
         self.hit(site, "narrowed", message, value)
         return kept
+
+    def parsed(self, value: int, number: int) -> int:
+        """The result of an `atoi` that is widened: the text may hold a larger number."""
+        whole = self.parsed_number
+        if whole != value:
+            site = self.sites[number]
+            message = f"{site.name} has read {whole}, which does not fit an int: it becomes {value}, and then"
+            self.hit(site, "widened-late", f"{message} a {site.widened}", whole)
+        return value
 
     def quantity(self, value: int, number: int) -> int:
         """A number that does not fit the register field to which it is written."""

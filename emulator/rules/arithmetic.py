@@ -40,11 +40,13 @@ an overflow: `(adc - 2048) * 0.001` computes the difference in `unsigned int`, s
 -48. If one operand is `int` and the other `unsigned int`, C computes in `unsigned int`. On a PC the operation has 32
 bits and is right.
 
+The same happens to a number in a text: `long value = atoi(text)` reads 70000 as 4464, because `atoi` returns an `int`.
+
 Two cases are not reported: a difference of two unsigned variables that wraps to a small number, because programs
 compute elapsed counts in that way; and a result that is cast to its own type, because the cast says that the wrap is
 intended.
 
-**Fix:** cast one operand first: `(long) a * b`, `((int) adc - 2048) * 0.001`.
+**Fix:** cast one operand first: `(long) a * b`, `((int) adc - 2048) * 0.001`; `atol` for `atoi`.
 """,
         "ISO C 6.3.1.8 with the widths of CC table 6-1",
     ),
@@ -168,6 +170,24 @@ These are not reported: additions and subtractions, which give the right result;
 **Fix:** limit to 0 first, and compute in a signed type that is wide enough.
 """,
         "ISO C 6.3.1.3 p2",
+    ),
+    _rule(
+        "sign-extended",
+        Severity.ERROR,
+        "A number above 32767 became an int, and was then compared with the same number in 32 bits.",
+        """
+A checksum is right for half of the messages.
+
+`int Crc(...)` returns 0xBEEF as -16657. Where this is compared with a `long`, it is widened with its sign, and
+-16657 is not 48879: the test says that the two differ, although all 16 bits are the same. `(int) strtol(...)` in front
+of such a comparison does the same.
+
+The finding is made while the program runs, if both sides are the same number before the `int`. A negative number that
+was meant (a temperature, an offset) is not reported.
+
+**Fix:** `Uint16` for words that have no sign, on both sides.
+""",
+        "ISO C 6.3.1.3 p3; CC table 6-1",
     ),
     _rule(
         "octet",

@@ -27,6 +27,7 @@ from emulator.c28x.emit.names import FunctionNames, escaped, local_name, object_
 from emulator.c28x.emit.written import FIRST_NUMBER, EmittedFunction
 from emulator.c28x.passes.costs import CALL, TURN, Costs
 from emulator.c28x.passes.guards import (
+    cut_to_int,
     mathematical_bounds,
     mathematical_constant,
     octet_range,
@@ -819,6 +820,10 @@ class PythonWriter:
         match e:
             case Compare(op=op, left=left, right=right, guard=Guard(kind="stamps") as guard):
                 return f"_c_stamps({self.value(left)}, {op!r}, {self.value(right)}, {self.number(guard)})"
+            case Compare(op=op, left=left, right=right, guard=Guard(kind="extended", site=Site(kind=kind)) as guard):
+                sides = [self.uncut(left) if kind == "left" else self.value(left)]
+                sides += [self.uncut(right) if kind == "right" else self.value(right)]
+                return f"_c_extended({', '.join(sides)}, {op!r}, {self.number(guard)})"
             case Compare(op=op, left=left, right=right):
                 pointers = isinstance(left.ctype, PointerType | HandleType | FunctionType)
                 if pointers and op not in ("==", "!=") and not isinstance(left.ctype, PointerType):
@@ -831,6 +836,12 @@ class PythonWriter:
             case Not(operand=operand):
                 return f"(not {self.condition(operand)})"
         return self.value(e)
+
+    def uncut(self, e: Expr) -> str:
+        """The text of a number before it became an `int`."""
+        cut = cut_to_int(e)
+        assert cut is not None
+        return self.value(cut.operand) if isinstance(cut, Convert) else f"({self.value(cut)} & 65535)"
 
     def literal(self, value: int | float) -> str:
         if isinstance(value, float):
@@ -926,6 +937,8 @@ class PythonWriter:
         text = self.value(operand)
         if e.sign is not None:
             text = f"(_t if (_t := {text}) <= 127 else _c_octet(_t, {self.number(e.sign)}))"
+        if e.guard is not None and e.guard.kind == "parsed":
+            text = f"_c_parsed({text}, {self.number(e.guard)})"
         match target, source:
             case FloatType(), IntType(bits=bits):
                 return f"({text} + 0.0)" if bits <= 16 else f"_c_f32({text} + 0.0)"
@@ -953,7 +966,7 @@ class PythonWriter:
     def convert_int(self, text: str, e: Convert, target: IntType) -> str:
         if e.guard is not None and e.guard.kind == "past":
             return f"(_t if (_t := {self.masked(text, target)}) >= 0 else _c_past(_t, {self.number(e.guard)}))"
-        if e.guard is not None:
+        if e.guard is not None and e.guard.kind != "parsed":
             octet = e.guard.kind == "octet"
             low, high = octet_range(target) if octet else (target.low, target.high)
             helper = "_c_octet" if octet else "_c_narrowed"

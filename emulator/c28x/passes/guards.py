@@ -20,6 +20,8 @@ Kinds of guards:
 | `unwritten` | loads | the object was written before |
 | `index`, `deep`, `pointer`, `member` | accesses to an object | they stay inside |
 | `poll`, `endless` | loops | they end |
+| `parsed` | results of `atoi` that are widened | the text holds no larger number |
+| `extended` | comparisons for equality of a 32-bit number with one that was cut to an `int` | the cut lost no sign |
 | `stamps`, `past` | comparisons of stamps (pass `stamps`), the time since one | the counter has not wrapped between |
 | `case` | switches over an enumeration | a value has a case |
 | `float-out` | floats that others will see | they are finite |
@@ -352,6 +354,7 @@ class Guards:
                 if pointers or op in ("==", "!="):
                     self.value(left)
                     self.value(right)
+                    self.extended(e)
                     return
                 self.ordered(left, right)
                 self.ordered(right, left)
@@ -374,6 +377,13 @@ class Guards:
             self.value(e)  # a deliberate test whether a difference is negative
         else:
             self.unwrapped(e, "sign-compare" if isinstance(e, Convert) else "unsigned-wrap", "is compared")
+
+    def extended(self, e: Compare) -> None:
+        """Check a comparison with a 32-bit number: a number that became an `int` before may have become negative."""
+        for side, other, kind in ((e.left, e.right, "left"), (e.right, e.left, "right")):
+            cut = cut_to_int(side)
+            if cut is not None and cut.guard is None and e.guard is None and not isinstance(other, Const):
+                e.guard = Guard("extended", self.site(cut.ctype, source_text(e), at=e.where, kind=kind))
 
     def asked_for_sign(self, e: Expr) -> None:
         """A plain `char` is compared with 0, as if it had the sign of an octet: check it."""
@@ -519,6 +529,12 @@ class Guards:
             self.unwrapped(operand, "widened-late", target.name)
         else:
             self.value(operand)
+        if isinstance(operand, Call) and operand.function.extern and operand.function.name == "atoi" and (
+            isinstance(target, FloatType) or (isinstance(target, IntType) and target.bits == 32)
+        ):  # fmt: skip
+            text = source_text(operand)
+            e.guard = Guard("parsed", self.site(operand.ctype, text, at=e.where, widened=target.name))
+            return
         if isinstance(target, FloatType) and isinstance(operand, Convert) and operand.explicit:
             self.not_negative(operand, "becomes a float")
         match target, source:
@@ -744,6 +760,32 @@ def as_unsigned(e: Expr) -> Expr | None:
         case Convert(ctype=IntType(signed=False, bits=bits), operand=Expr(ctype=IntType(signed=True)) as operand):
             return operand if isinstance(operand.ctype, IntType) and operand.ctype.bits == bits else None
     return None
+
+
+def cut_to_int(e: Expr) -> Convert | Call | None:
+    """The `int` that `e` widens, if it was a wider or an unsigned number before.
+
+    It is a cast, or a call of a function that returns only unsigned numbers, as an `int`.
+    """
+    match e:
+        case Convert(
+            ctype=IntType(bits=32), operand=Convert(ctype=IntType(signed=True, bits=16), operand=before) as cut
+        ) if _larger(before, cut.ctype):
+            return cut
+        case Convert(ctype=IntType(bits=32), operand=Call(ctype=IntType(signed=True, bits=16)) as call):
+            results = [s.value for s in statements(call.function.body) if isinstance(s, Return)]
+            if results and all(isinstance(r, Convert) and _larger(r.operand, call.ctype, bits=16) for r in results):
+                return call
+    return None
+
+
+def _larger(e: Expr, target: CType, *, bits: int = 32) -> bool:
+    """Whether `e` is an integer of at most `bits` bits that may be above the range of `target`; no characters."""
+    of = e.ctype
+    return (
+        isinstance(of, IntType) and isinstance(target, IntType) and of.bits <= bits and bounds_of(e)[1] > target.high
+        and not is_character(of) and not is_character(target)
+    )  # fmt: skip
 
 
 def _rounded(e: Expr) -> bool:

@@ -196,6 +196,73 @@ def Accept(n: int16, size: uint16) -> int16:
 """,
     ),
     Pair(
+        "widened-late",
+        "a number in a text that is larger than an int",
+        (("Sum", ()),),
+        """
+from emulator.c28x.rts import atoi
+def Number(text: ptr[char]) -> int32:
+    return atoi(text)  # <-
+def Sum() -> int32:
+    return Number("450") + Number("70000")
+""",
+        """
+from emulator.c28x.rts import atoi, atol
+def Number(text: ptr[char]) -> int32:
+    return atol(text)
+def Small(text: ptr[char]) -> int16:
+    return atoi(text)
+def Sum() -> int32:
+    whole: int32 = atoi("-32768")
+    Small("70000")
+    return Number("450") + Number("70000") + whole
+""",
+    ),
+    Pair(
+        "sign-extended",
+        "a check sum is returned as an int",
+        (("Right", (0xBEEF, 0xBEEF)), ("Right", (0x1234, 0x1234))),
+        """
+def Sum(word: uint16) -> int16:
+    return word
+def Right(word: uint16, sent: int32) -> int16:
+    if sent != Sum(word):  # <-
+        return 0
+    return 1
+""",
+        """
+def Sum(word: uint16) -> uint16:
+    return word
+def Right(word: uint16, sent: int32) -> int16:
+    if sent != Sum(word):
+        return 0
+    return 1
+""",
+    ),
+    Pair(
+        "sign-extended",
+        "a cast in front of a comparison",
+        (("Right", (0xBEEF, 0xBEEF)),),
+        """
+def Right(sent: int32, own: uint16) -> int16:
+    if int16(sent) == int32(own):  # <-
+        return 1
+    return 0
+""",
+        """
+def Same(sent: int32, angle: int16) -> int16:
+    if int16(sent) == int32(angle):
+        return 1
+    return 0
+def Right(sent: int32, own: uint16) -> int16:
+    Same(-100, -100)
+    Same(65436, -100)
+    if uint16(sent) == own:
+        return 1
+    return 0
+""",
+    ),
+    Pair(
         "sign-lost",
         "a negative output is limited as an unsigned one",
         (("Duty", (-3,)),),
