@@ -196,7 +196,8 @@ gate. Then the place is the pend.
         "never-posted", Severity.ERROR, "A task or a Swi waits for ever: no statement posts it.", """
 The task waits without a time-out on a semaphore, an event or a mailbox, and no function of the program posts it (or
 takes a message out of the full mailbox). The task never runs again. Often the post names another object, or it was in a
-routine that was removed. A Swi that is created but never posted is reported too.
+routine that was removed. A Swi that is created but never posted is reported too. So is a Clock without a period whose
+function alone posts: it runs once, and the task waits again.
 
 The check is made at the end of a run. Nothing is reported if the program passes the handle on, keeps it in a structure,
 or takes the address of the posting function: then anything could post it.

@@ -7,7 +7,7 @@ from typing import Any
 
 from emulator.c28x.link import Linked
 from emulator.c28x.tree import Call, Const, Convert, Function, FunctionRef, Load, LValue, Stmt, Variable
-from emulator.c28x.tree_queries import bare, within
+from emulator.c28x.tree_queries import bare, different, parts, within
 
 #: Paths of file-scope objects.  None stands for objects that the source does not name.
 Paths = set[str | None]
@@ -61,6 +61,24 @@ class HandleNames:
         passed, objects = self.passed(function), self.objects(handle)
         # If no file-scope object holds the handle now, any of them may have held it before.
         return None in passed or bool(passed & objects) or bool(passed and not objects)
+
+    def callers(self, function: str, handle: Any) -> list[str]:
+        """The paths of the functions that can call `function` for `handle`, also where the source does not tell."""
+        objects: Paths = {None, *self.objects(handle)}
+        return [f.path for f in self.functions if objects & set(first_arguments(f.body, function))]
+
+    def only_given_to(self, path: str, function: str) -> bool:
+        """Whether the source mentions the function `path` only in calls of `function`, and never calls it."""
+        modules = self._linked.program.modules.values()
+        starts = (e for module in modules for variable in module.variables for e in different(variable.initial or ()))
+        mentions = [p for e in starts for p in parts(e)] + [p for f in self.functions for p in within(f.body)]
+        given = [
+            id(p) for call in mentions if isinstance(call, Call) and call.function.name == function
+            for argument in call.arguments for p in parts(argument)
+        ]  # fmt: skip
+        return all(
+            id(p) in given for p in mentions if isinstance(p, FunctionRef | Call) and p.function.path == path
+        )  # fmt: skip
 
     def bits(self, function: str, handle: Any) -> int:
         """The bits that statements can pass to `function` as second argument, after `handle`.

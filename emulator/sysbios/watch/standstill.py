@@ -10,6 +10,7 @@ such a wait.  Part of a program, without its `main`, gets no such finding: the r
 from __future__ import annotations
 
 from functools import partial
+from inspect import unwrap
 from typing import Any, Final
 
 from emulator.c28x.findings import Findings
@@ -55,7 +56,8 @@ class Standstill:
         self._waits: dict[Thread, tuple[str, Any, StatementNumber]] = {}
         #: Waits for events: the bits that must all be posted, and the bits of which one must be posted.
         self._wanted: dict[Thread, tuple[int, int]] = {}
-        #: Clocks that `Clock_create` did not start.
+        #: The Clocks that were created, and those of them that `Clock_create` did not start.
+        self._clocks: dict[ClockObject, StatementNumber] = {}
         self._idle: dict[ClockObject, StatementNumber] = {}
         calls.before("Semaphore_pend", callback=self._pending)
         calls.after("Semaphore_pend", callback=self._pended)
@@ -95,8 +97,11 @@ class Standstill:
         self._waits.pop(self._threads.current, None)
 
     def _created(self, clock: ClockObject | None, *_arguments: Any) -> None:
-        if clock is not None and not clock.active:
-            self._idle[clock] = self._locator.here()
+        if clock is None:
+            return
+        self._clocks[clock] = self._locator.here()
+        if not clock.active:
+            self._idle[clock] = self._clocks[clock]
 
     def _swi_created(self, swi: Swi | None, *_arguments: Any) -> None:
         if swi is not None:
@@ -113,6 +118,8 @@ class Standstill:
             name = self._names.of(what)
             if place is not None and not brought and isinstance(what, Event) and self._names.could(end, what):
                 self._never(thread, what, name, place)
+            if place is not None and not brought:
+                self._once(thread, what, name, place)
             if place is None or brought or self._names.could(end, what):
                 continue
             self._findings.report_at(
@@ -153,6 +160,27 @@ class Standstill:
                 place, "never-posted", f"{thread} waits in Event_pend for bits {missing:#x} of {name} without a "
                 "timeout, and no statement posts them", object=name, how="dynamic", task=thread.name,
             )  # fmt: skip
+
+    def _once(self, thread: Thread, what: Any, name: str, place: Place) -> None:
+        """Report a wait that only the functions of Clocks end, which run once and have run."""
+        ended: list[Place] = []
+        for path in self._names.callers(ENDS[self._function(thread)], what):
+            of = [clock for clock in self._clocks if path == getattr(unwrap(clock.function), "__qualname__", "")]
+            if not of or not self._names.only_given_to(path, "Clock_create"):
+                return
+            if any(clock.active or clock.period or self._names.could("Clock_start", clock) for clock in of):
+                return
+            ended += filter(None, (self._locator.place(self._clocks[clock]) for clock in of))
+        if ended:
+            self._findings.report_at(
+                ended[0], "never-posted", f"this Clock has no period, so its function runs once; {thread} waits again "
+                f"for {name} without a timeout, which nothing else posts", object=name, how="dynamic", task=thread.name,
+                details=(f"it waits at {place}",),
+            )  # fmt: skip
+
+    def _function(self, thread: Thread) -> str:
+        """The function in which a thread waits."""
+        return self._waits[thread][0] if thread in self._waits else "Semaphore_pend"
 
     def _report_deadlocks(self) -> None:
         """Report tasks that never run again.

@@ -114,6 +114,8 @@ def told(tmp_path: Path, text: str) -> list[tuple[str, str]]:
     # A trigger of two bits, of which one stays.
     ("soon = Swi_create(beat, NULL, NULL);", TRIGGERED.format(1), "never-posted", "soon = Swi_create(beat, &s, NULL);"),
     ("c.startFlag = TRUE;", "", "clock-not-started", "timer = Clock_create(tick, 10, &c, NULL);"),
+    # It runs once, and the worker waits again.
+    ("c.period = 10;", "", "never-posted", "timer = Clock_create(tick, 10, &c, NULL);"),
     # Nobody keeps its handle.
     ("c.startFlag = TRUE;\n    timer = ", "", "clock-not-started", "Clock_create(tick, 10, &c, NULL);"),
 ])  # fmt: skip
@@ -132,6 +134,10 @@ def test_what_no_statement_brings_is_told_where_it_is_waited_for(
     ("Semaphore_post(ready);", "Semaphore_Handle copy = ready; if (Done == 7) Semaphore_post(copy);"),
     ("Clock_create(tick, 10,", "Clock_create((Clock_FuncPtr)Semaphore_post, 10,"),
     ("c.startFlag = TRUE;", "if (Done == 7) Clock_start(timer);"),
+    # A Clock that runs once is started again, its function is called, or the worker waits only once.
+    ("c.period = 10;", "if (Done == 7) Clock_start(timer);"),
+    ("c.period = 10;", "if (Done == 7) tick(0);"),
+    ("c.period = 10;\n", "c.period = 0; Flag = 2;\n"),
     ("Event_post(event, Event_Id_00);", "if (Done == 7) Event_post(event, Event_Id_00);"),
     ("Event_post(event, Event_Id_00);", "Event_post(event, Event_Id_03 + Event_Id_00);"),
     ("Event_post(event, Event_Id_00);", "Event_post(event, Done);"),
@@ -147,6 +153,10 @@ def test_what_may_come_still_is_not(tmp_path: Path, was: str, now: str) -> None:
     text = RIGHT.replace(was, now) if was else RIGHT
     if not now:
         text = text.replace("Mailbox_pend(box, &m, BIOS_WAIT_FOREVER)", "Mailbox_pend(box, &m, 5)")
+    if "Flag = 2" in now:
+        text = text.replace("Semaphore_pend(ready,", "if (Flag == 2) Semaphore_pend(ready,").replace(
+            "Flag = 0;", "Flag = 0; Task_sleep(1);"
+        )
     assert not told(tmp_path, text)
 
 
