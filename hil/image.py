@@ -134,6 +134,10 @@ class Image:
         """How long a loop may compute without calling anything, from now on."""
         self.linked.allow_loops(cycles)
 
+    def skip_turns(self) -> None:
+        """From now on, time skips the turns of loops that change nothing, up to the next event."""
+        self.linked.skip_turns()
+
     @property
     def findings(self) -> list[Finding]:
         """What has been found so far, in order."""

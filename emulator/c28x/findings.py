@@ -95,6 +95,8 @@ class Findings:
     muted: bool = False
     #: Increases with every `clear`, so that a detector knows that the finding it remembers is gone.
     generation: int = 0
+    #: How often anything was reported or counted.
+    occurrences: int = 0
     _by_key: dict[tuple[str, str, int, str], Finding] = field(default_factory=dict)
     #: (finding): at each first occurrence.
     found: Signal[Finding] = field(default_factory=Signal)
@@ -176,9 +178,10 @@ class Findings:
         key = (rule, place.file if place else "", place.line if place else 0, object)
         known = self._by_key.get(key)
         if known is not None:
-            known.count += 1
+            self.count(known)
             return known
         task = task or (self.context() if how == "dynamic" else "")
+        self.occurrences += 1
         finding = Finding(
             rule, message, object, declaration, place, path, task, self.clock.now, value, details=details, how=how
         )
@@ -187,6 +190,11 @@ class Findings:
         self._by_key[key] = finding
         self.found.emit(finding)
         return finding
+
+    def count(self, finding: Finding) -> None:
+        """A finding has occurred again."""
+        finding.count += 1
+        self.occurrences += 1
 
     def mark(self) -> Cause | None:
         """The statement that executes now, as the cause of what it starts; None if none executes."""

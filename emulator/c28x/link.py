@@ -137,6 +137,10 @@ class Linked:
         """Set how long a loop may compute without a call, in cycles."""
         self.runtime.loop_limit = self.namespace["_c_loop_limit"] = cycles
 
+    def skip_turns(self) -> None:
+        """From now on, time skips the turns of loops that change nothing.  Needs an image linked with `watch`."""
+        self.runtime.skips_turns = True
+
     # Objects
 
     def _place(self, variable: Variable) -> None:
@@ -239,7 +243,7 @@ class Linked:
             "_c_quantity": runtime.quantity, "_c_sign_lost": runtime.sign_lost,
             "_c_overflow": runtime.overflow, "_c_float_to_int": runtime.float_to_int,
             "_c_float_argument": runtime.float_argument, "_c_stamps": runtime.stamps, "_c_past": runtime.past,
-            "_c_extended": runtime.extended, "_c_parsed": runtime.parsed,
+            "_c_turn": runtime.turn, "_c_extended": runtime.extended, "_c_parsed": runtime.parsed,
             "_c_divide_floats": runtime.divide_floats, "_c_divide_ints": runtime.divide_ints,
             "_c_modulo_ints": runtime.modulo_ints, "_c_shift": runtime.shift,
             "_c_endless": runtime.endless, "_c_loop_limit": runtime.loop_limit,

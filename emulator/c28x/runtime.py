@@ -213,6 +213,10 @@ class Runtime:
         self.not_finite_generation = -1
         #: Switches with a finding that a value has no case -> the generation of that finding.
         self.caseless: dict[Where, int] = {}
+        #: Whether time skips the turns of a loop that change nothing.
+        self.skips_turns = False
+        #: After the last such turn: the time, the time of the next event, and the occurrences of findings.
+        self._idle_turn = (-1, -1, -1)
         memory.take_policy_from(self)
 
     # Reports
@@ -222,7 +226,7 @@ class Runtime:
         seen = site.seen
         if seen is None or site.generation != self.findings.generation or (rule and seen.rule != rule):
             return False
-        seen.count += 1
+        self.findings.count(seen)
         return True
 
     def hit(self, site: RuntimeSite, rule: str, message: str, value: Any = None, details: tuple[str, ...] = ()) -> None:
@@ -284,7 +288,7 @@ class Runtime:
         known = seen is not None and site.generation == self.findings.generation
         if known and self.fill == "zero" and not self.fill_of:
             assert seen is not None
-            seen.count += 1
+            self.findings.count(seen)
             return site.initial.get("value", site.zero)
         declaration = site.declaration
         part = ""
@@ -1110,6 +1114,19 @@ class Runtime:
         limit_s = self.poll_limit / CYCLES_PER_US / 1e6
         self.hit(site, "endless-poll", f"{site.name} has been polled for {limit_s:g} s without an end")
         return clock.now + self.poll_limit
+
+    def turn(self, began: int, until: int) -> None:
+        """A turn of a loop that began at `began` has changed nothing (pass `idle_turns`).
+
+        If no event came in it and the turn before it was such a one too, the next ones are the same.  Time skips those
+        that end before the next event, and before `until`.
+        """
+        if not self.skips_turns:
+            return
+        clock, findings = self.clock, self.findings
+        if self._idle_turn == (began, clock.next, findings.occurrences):
+            clock.skip_turns(clock.now - began, until)
+        self._idle_turn = (clock.now, clock.next, findings.occurrences)
 
     def idle(self, number: int) -> None:
         """An endless loop without a body has no more events to wait for: raises Idling."""

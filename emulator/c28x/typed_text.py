@@ -50,7 +50,7 @@ _ACCESSES: Final = {
     "write": "Callable[[int, int], None]", "modify": "Callable[[int, int, int], None]",
 }  # fmt: skip
 #: The types of the names that the writer makes up within a function; those of objects of the emulator are inferred.
-_WITHIN: Final = dict.fromkeys(("_e", "_fp", "_i", "_n", "_since", "_t", "_w"), "int")
+_WITHIN: Final = dict.fromkeys(("_e", "_fp", "_i", "_n", "_q", "_since", "_t", "_w"), "int")
 _INFERRED: Final = ("_k", "_p", "_up")
 
 

@@ -1,8 +1,8 @@
 """How much a check may compute.  It is counted in work of the chip, so that every machine finds the same.
 
-The unit is the executed cycle, about 10 ns of an ordinary machine's time.  Cycles of polls and delays are skipped and
-not counted.  An event of the chip, and the creation of a chip, count as the number of cycles that take as long.  Only
-if all this fails, the time of this machine ends the check, and the report says so.
+The unit is the executed cycle, about 50 ns of an ordinary machine's time.  Cycles of polls, of delays and of turns that
+change nothing are skipped and not counted.  An event of the chip, and the creation of a chip, count as the number of
+cycles that take as long.  Only if all this fails, the time of this machine ends the check, and the report says so.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _CALL: Final = (20_000_000, 5_000_000)
 CALLS: Final = 600_000_000
 RUN: Final = 200_000_000
 #: The cycles that an event of the chip and a fresh image count for.
-_EVENT: Final = 500
+_EVENT: Final = 50
 _IMAGE: Final = 2_000_000
 #: The limit in seconds of this machine for all calls, and for a run.  The budgets usually take a tenth of it.
 _LAST_RESORT_S: Final = 120.0

@@ -133,7 +133,9 @@ def _begin(build: Build, roles: Roles) -> Image:
     """A fresh image for the program."""
     bare = roles.main is not None and not roles.begins_kernel
     # A `main` without a kernel need not return: `_bare` ends it.
-    return build.image(driven=(lambda: True) if bare else None)
+    image = build.image(driven=(lambda: True) if bare else None)
+    image.skip_turns()
+    return image
 
 
 def _go(

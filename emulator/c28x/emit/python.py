@@ -33,6 +33,7 @@ from emulator.c28x.passes.guards import (
     octet_range,
     wraps,
 )  # fmt: skip
+from emulator.c28x.passes.idle_turns import idle_turns
 from emulator.c28x.passes.intervals import bounds_of
 from emulator.c28x.sites import Place, Site
 from emulator.c28x.tree import (
@@ -146,6 +147,11 @@ class PythonWriter:
         self.stored_place = 0
         self.fresh = 0
         self.around: list[_Breakable] = []
+        #: The loops with turns that time may skip, and what ends the idleness of a turn.  Nobody counts or stops there.
+        self.idle_loops, self.busy = idle_turns(function) if watch and not (coverage or steps) else (set(), {})
+        #: Identity of a loop -> the variable with the beginning of its turn, and the text of its time limit.
+        self.turn_of: dict[int, str] = {}
+        self.limits: dict[int, str] = {}
 
     def write(self) -> EmittedFunction:
         """The whole function."""
@@ -291,6 +297,9 @@ class PythonWriter:
         for s in body:
             self.where = s.where
             self.passing = not self.watch and passing(s)
+            for loop in self.busy.get(id(s), ()):
+                if loop in self.turn_of:
+                    self.put(f"{self.turn_of[loop]} = -1")
             if executes(s):
                 self.begin(s, s.where)
             self.statement(s)
@@ -493,6 +502,9 @@ class PythonWriter:
             self.where = loop.where
         self.cost += loop.cycles
         self.flush()
+        if id(loop) in self.idle_loops:
+            began = self.turn_of[id(loop)]
+            self.put(f"if {began} >= 0: _c_turn({began}, {self.limits.get(id(loop), '_c_NEVER')})")
         self.where = where
         if isinstance(loop, For):
             self.step(loop)
@@ -524,6 +536,7 @@ class PythonWriter:
         if loop.endless is not None:
             self.uses_clock = True
             self.put(f"_e{self.depth}_ = _k.now + _c_loop_limit")
+            self.limits[id(loop)] = f"_e{self.depth}_"
 
     def turns(self, loop: While | For, body: list[Stmt]) -> None:
         """Write the body of a loop; the caller writes the end of its turn."""
@@ -532,6 +545,10 @@ class PythonWriter:
         self.stored_place = 0
         if loop.endless is not None:
             self.put(f"if _k.now > _e{self.depth - 1}_: _c_endless({self.number(loop.endless)})")
+        if id(loop) in self.idle_loops:
+            self.uses_clock = True
+            self.turn_of[id(loop)] = f"_q{len(self.turn_of)}_"
+            self.put(f"{self.turn_of[id(loop)]} = _k.now")
         self.block(body)
 
     def poll(self, s: While) -> None:

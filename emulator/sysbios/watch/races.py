@@ -393,7 +393,7 @@ class Races:
         """The same race of an object has occurred again: count it, and keep the place if it is new."""
         for rule, finding in shared.findings.items():
             if _RANK.get(rule) == shared.rank:
-                finding.count += 1
+                self._findings.count(finding)
                 for access in accesses:
                     told = self._access_text(access, timed=False)
                     if len(finding.details) < _DETAILS and not any(d.startswith(told) for d in finding.details):
@@ -443,7 +443,7 @@ class Races:
     def _add_detail(self, shared: SharedObject, how: str, detail: str, statement: StatementNumber) -> None:
         known = shared.findings.get("wrong-gate")
         if known is not None:
-            known.count += 1
+            self._findings.count(known)
             return
         obj = shared.object
         message = f"{obj.declaration.path} is used {how}: neither gate keeps the other's users off"

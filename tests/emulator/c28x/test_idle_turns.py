@@ -1,0 +1,129 @@
+"""Turns of a loop that change nothing are skipped: the same cycle, the same objects and findings as one by one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.emulator.c28x.workshop import Workshop
+
+#: Each function ends after eight changes of Ticks.
+SOURCE = """
+Ticks: volatile[uint16] = 0
+Done: uint16 = 0
+Out: uint16 = 0
+Turns: uint32 = 0
+# drv.c: cost
+def cost(n: uint16) -> uint16:
+    return n * 3 + 1
+# drv.c: tested
+def tested() -> uint16:
+    before: uint16 = 0
+    while 1:
+        now: uint16 = Ticks
+        if uint16(now - before) >= 2:
+            before += 2
+            Done += cost(now)
+        if before == 8:
+            return now
+# drv.c: continued
+def continued() -> uint16:
+    last: uint16 = 0
+    now: uint16
+    while 1:
+        now = Ticks
+        if now == last:
+            continue
+        last = now
+        Done += cost(last)
+        if last == 8:
+            return Done
+# drv.c: waited
+def waited() -> uint16:
+    seen: uint16 = 0
+    now: uint16
+    while seen < 8:
+        while 1:
+            now = Ticks
+            if now != seen:
+                break
+        seen = now
+        Done += cost(seen)
+    return Done
+# drv.c: emptied
+def emptied() -> uint16:
+    while 1:
+        while Out != Ticks:
+            Out += 1
+            Done += cost(Out)
+        if Out == 8:
+            return Done
+# drv.c: chosen
+def chosen() -> uint16:
+    level: uint16 = 0
+    while Ticks < 8:
+        if Ticks < 4:
+            level = 1
+        else:
+            level = 2
+    return level
+# drv.c: counted
+def counted() -> uint32:
+    turns: uint32 = 0
+    while Ticks < 8:
+        turns += 1
+    return turns
+# drv.c: told
+def told() -> uint16:
+    unset: array[uint16, 2]
+    while Ticks < 8:
+        if unset[1] == 5:
+            Turns += 1
+    return Done
+"""
+SKIPPED = ("tested", "continued", "waited", "emptied", "chosen")
+#: A loop that counts its turns, and one with a finding in each turn.
+EXECUTED = ("counted", "told")
+
+
+def run(name: str, gaps: list[int], *, skips: bool) -> tuple[Any, int]:
+    """What a function gives and leaves while Ticks changes after each of `gaps`; the cycles that were executed."""
+    firmware = Workshop(SOURCE, watch=True)
+    if skips:
+        firmware.linked.skip_turns()
+    ticks = firmware.linked.objects["drv.Ticks"].data
+
+    def tick() -> None:
+        ticks[0] += 1
+
+    at = 0
+    for gap in gaps:
+        at += gap
+        firmware.clock.schedule(at, tick)
+    result = getattr(firmware, name)()
+    clock = firmware.clock
+    found = [(finding.rule, finding.count, finding.time_us) for finding in firmware.findings]
+    left = {path: list(obj.data) for path, obj in firmware.linked.objects.items()}
+    return (result, clock.now, found, left), clock.now - clock.waited
+
+
+@pytest.mark.parametrize("name", [*SKIPPED, *EXECUTED])
+@given(gaps=st.lists(st.integers(0, 700), min_size=8, max_size=8))
+def test_a_run_that_skips_is_the_run_that_does_not(name: str, gaps: list[int]) -> None:
+    assert run(name, gaps, skips=True)[0] == run(name, gaps, skips=False)[0]
+
+
+@pytest.mark.parametrize("name", SKIPPED)
+def test_idle_turns_are_not_executed(name: str) -> None:
+    outcome, executed = run(name, [10_000] * 8, skips=True)
+    assert outcome[1] >= 80_000
+    assert executed < 5_000
+
+
+@pytest.mark.parametrize("name", EXECUTED)
+def test_a_turn_that_changes_or_tells_something_is_executed(name: str) -> None:
+    outcome, executed = run(name, [1_000] * 8, skips=True)
+    assert executed == outcome[1]
