@@ -206,6 +206,19 @@ or takes the address of the posting function: then anything could post it.
 """, "BIOS, Semaphore_pend, Event_pend, Mailbox_pend: BIOS_WAIT_FOREVER",
     ),
     _rule(
+        "message-cut", Severity.ERROR, "A mailbox is smaller than the structure that it carries.", """
+The last members of a received message have values that nobody sent.
+
+`Mailbox_create(sizeof(SAMPLE), 4, ...)` makes messages of that size. `Mailbox_post(box, &summary, ...)` copies so many
+words of a larger structure and leaves the rest, and `Mailbox_pend` fills as many of the receiver's.
+
+It is reported at `Mailbox_create`, if both sides use the same structure, and members with a value other than 0 did not
+arrive, twice. A part of a structure that the sender leaves 0 is not missed.
+
+**Fix:** `sizeof` the structure that is posted.
+""", "BIOS, Mailbox_create: msgSize; Mailbox_post copies msgSize words",
+    ),
+    _rule(
         "post-lost", Severity.WARNING, "A binary semaphore was posted again before it was taken: posts were lost.", """
 A task handles one sample, frame or byte, and the others wait for ever.
 

@@ -17,7 +17,8 @@ from __future__ import annotations
 from collections import deque
 from typing import Any, Final
 
-from emulator.c28x.ctypes import CType
+from emulator.c28x.ctypes import CType, StructType
+from emulator.c28x.findings import Cause
 from emulator.c28x.memory import NULL, Pointer, to_words
 from emulator.signal import Signal
 from emulator.sysbios import params as struct_params
@@ -35,7 +36,7 @@ Piece = tuple[int, "CType | None", Any]
 class Mailbox(KernelObject):
     """The object of a `Mailbox_Handle`."""
 
-    __slots__ = ("count", "free", "full", "messages", "places", "size")
+    __slots__ = ("beyond", "count", "created", "cut", "free", "full", "messages", "places", "size")
 
     def __init__(self, name: str, size: int, count: int) -> None:
         super().__init__(name)
@@ -44,6 +45,11 @@ class Mailbox(KernelObject):
         #: The number of free places, as `Mailbox_getNumFreeMsgs` returns it.
         self.places = count
         self.messages: deque[list[Piece]] = deque()
+        #: For each message, the structure that was posted, and its scalars behind the message.
+        self.beyond: deque[tuple[CType | None, list[Any]]] = deque()
+        #: The statement that has created it, and how many messages have lost members of their structure.
+        self.created: Cause | None = None
+        self.cut = 0
         self.full = Semaphore(f"{name}.messages", 0, COUNTING)
         self.free = Semaphore(f"{name}.places", count, COUNTING)
 
@@ -81,6 +87,7 @@ class MailboxModule:
             f"a buffer for {count} messages of {size} words takes {wanted} words, not {p['bufSize']}",
         )  # fmt: skip
         mailbox = Mailbox(self._names.unique("Mailbox"), size, count)
+        mailbox.created = core.findings.mark()
         for semaphore, who in ((mailbox.full, "reader"), (mailbox.free, "writer")):
             event = self.events.given(p[f"{who}Event"], "Mailbox_create")
             self.semaphores.register(semaphore, event, p[f"{who}EventId"])
@@ -105,6 +112,7 @@ class MailboxModule:
         taken = lift(self._buffer(mailbox, message, "Mailbox_post", "reads"), mailbox.size)
         key = self.tasks.lock()
         mailbox.messages.append(taken)
+        mailbox.beyond.append(beyond(message, mailbox.size))
         self.semaphores.Semaphore_post(mailbox.full)
         self.tasks.restore(key)
         return 1
@@ -114,6 +122,7 @@ class MailboxModule:
         if not self.semaphores.Semaphore_pend(mailbox.full, timeout):
             return 0
         taken = mailbox.messages.popleft()
+        self._check_cut(mailbox, mailbox.beyond.popleft(), message)
         self._charge(mailbox)
         lay(self._buffer(mailbox, message, "Mailbox_pend", "writes"), taken)
         self.taken.emit(mailbox, message)
@@ -124,6 +133,19 @@ class MailboxModule:
     def _charge(self, mailbox: Mailbox) -> None:
         costs = self.core.costs
         self.core.clock.charge(costs["mailbox_copy"] + costs["mailbox_word"] * mailbox.size)
+
+    def _check_cut(self, mailbox: Mailbox, posted: tuple[CType | None, list[Any]], message: Pointer | None) -> None:
+        """Report members of a posted structure that the receiver's structure of the same type does not get, twice."""
+        structure, lost = beyond(message, mailbox.size)
+        if structure is None or structure != posted[0]:
+            return
+        if any(value and value != other for value, other in zip(posted[1], lost, strict=True)):
+            mailbox.cut += 1
+        if mailbox.cut == 2:
+            self.core.findings.report(
+                "message-cut", f"a message has {mailbox.size} words, and {structure} has {structure.words}: what was "
+                "posted behind them does not arrive", object=mailbox.name, value=mailbox.size, cause=mailbox.created,
+            )  # fmt: skip
 
     def _buffer(self, mailbox: Mailbox, message: Any, function: str, verb: str) -> Any:
         """The buffer that a message is copied from or to.  NULL, and a buffer that is too small, are findings."""
@@ -155,6 +177,18 @@ class MailboxModule:
         """The number of messages that no pend has taken."""
         self.core.clock.charge(self.core.costs["mailbox_service"])
         return mailbox.count - mailbox.places
+
+
+def beyond(message: Pointer | None, words: int) -> tuple[CType | None, list[Any]]:
+    """The structure that a pointer points to, and its scalars behind the first `words` words; None: there is none."""
+    obj = message.obj if message is not None else None
+    if message is None or obj is None or message.offset or obj.words <= words:
+        return None, []
+    structure = obj.declaration.ctype
+    if not isinstance(structure, StructType):
+        return None, []
+    leaves = (obj.leaf(word) for word in range(words, obj.words))
+    return structure, [obj.data[leaf[0]] for leaf in leaves if leaf is not None]
 
 
 def lift(source: Pointer | None, words: int) -> list[Piece]:

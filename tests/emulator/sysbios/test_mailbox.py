@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.emulator.sysbios.c_program import CProgram, seen
 
 MESSAGE = """
@@ -153,6 +155,35 @@ int main(void)
         ("memcpy-outside", "Mailbox_post(box, &single, BIOS_NO_WAIT);"),
         ("null-dereference", "Mailbox_post(box, NULL, BIOS_NO_WAIT);"),
     ]
+
+
+@pytest.mark.parametrize(("size", "sent", "rules"), [
+    ("sizeof(TRIPLE)", 7, []),
+    ("1", 7, [("message-cut", "box = Mailbox_create(1, 2, NULL, NULL);")]),
+    # Nobody sends the rest.
+    ("1", 0, []),
+])  # fmt: skip
+def test_a_message_that_is_smaller_than_its_structure_is_told(
+    size: str, sent: int, rules: list[tuple[str, str]]
+) -> None:
+    program = CProgram(MESSAGE + """
+typedef struct { int first, second, third; } TRIPLE;
+int main(void)
+{
+    TRIPLE out, in;
+    int n;
+    box = Mailbox_create(SIZE, 2, NULL, NULL);
+    for (n = 1; n <= 3; n++) {
+        out.first = n;
+        out.second = out.third = SENT * n;
+        in.second = in.third = 0;
+        Mailbox_post(box, &out, BIOS_NO_WAIT);
+        Mailbox_pend(box, &in, BIOS_NO_WAIT);
+    }
+    return in.first;
+}
+""".replace("SIZE", size).replace("SENT", str(sent))).run()
+    assert program.rules() == rules
 
 
 def test_a_buffer_that_is_too_small_asserts() -> None:
