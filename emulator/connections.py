@@ -393,9 +393,14 @@ class Connections:
         for number, line in XINT_PIE.items():
             if (group, n) == line:
                 return self._no_edge(number)
-        for letter, (receive, _) in SCI_PIE.items():
-            if (group, n) == receive:
-                return self._no_level(letter)
+        for letter, lines in SCI_PIE.items():
+            if (group, n) in lines:
+                receive = (group, n) == lines[0]
+                return self._no_character(letter, receive=receive) or (self._no_level(letter) if receive else None)
+        for letter, lines in I2C_PIE.items():
+            if (group, n) == lines[0] and self._stuck(f"I2c{letter.lower()}Regs.I2CIER", "", bool):
+                register = f"I2c{letter.lower()}Regs.I2CIER"
+                return MissingLink(f"{register} = 0", register)
         for letter, lines in SPI_PIE.items():
             if (group, n) in lines:
                 return self._no_word(letter, receive=(group, n) == lines[0])
@@ -409,7 +414,9 @@ class Connections:
         if group == 5 and n <= EQEP_COUNT:
             return self._no_unit(n)
         if group == 7 and n <= DMA_CHANNELS:
-            return self._no_transfer(n)
+            mode = f"DmaRegs.CH{n}.MODE"
+            silent = self._stuck(mode, "CHINTE", bool)
+            return MissingLink(f"{mode}.CHINTE = 0", mode, "CHINTE") if silent else self._no_transfer(n)
         return self._no_event(n, "INT") if group == 3 and n <= EPWM_COUNT else None
 
     def _no_conversion(self, letter: str, k: int) -> MissingLink | None:
@@ -425,6 +432,18 @@ class Connections:
         for register, field in ((f"{block}.CAN_CTL", f"IE{line}"), (f"{block}.CAN_GLB_INT_EN", f"GLBINT{line}_EN")):
             if self._stuck(register, field, bool):
                 return MissingLink(f"{register}.{field} = 0", register, field)
+        return None
+
+    def _no_character(self, letter: str, *, receive: bool) -> MissingLink | None:
+        """Why a SCI never gives the interrupt of one direction; None if it can."""
+        block, way = f"Sci{letter.lower()}Regs", "RX" if receive else "TX"
+        if self._stuck(f"{block}.SCIFFTX", "SCIFFENA", bool):
+            enable = "RXBKINTENA" if receive else "TXINTENA"
+            errors = receive and not self._stuck(f"{block}.SCICTL1", "RXERRINTENA", bool)
+            if not errors and self._stuck(f"{block}.SCICTL2", enable, bool):
+                return MissingLink(f"{block}.SCICTL2.{enable} = 0", f"{block}.SCICTL2", enable)
+        elif self._value(f"{block}.SCIFFTX", "SCIFFENA") and self._stuck(f"{block}.SCIFF{way}", f"{way}FFIENA", bool):
+            return MissingLink(f"{block}.SCIFF{way}.{way}FFIENA = 0", f"{block}.SCIFF{way}", f"{way}FFIENA")
         return None
 
     def _no_level(self, letter: str) -> MissingLink | None:

@@ -201,7 +201,8 @@ connections are checked:
 * Interrupts: `PIEIER` enables an interrupt whose source is not enabled, or an external interrupt whose pin was never
   selected (`INPUTxSELECT`). Or it enables a line without a routine, while another line of the group has a routine and
   is not enabled. Or `IER` or `ENPIE` does not pass the interrupt on.
-* DMA: a channel was never started, has no trigger, or uses an ADC interrupt that is not enabled.
+* DMA: a channel was never started, has no trigger, does not interrupt (`CHINTE`), or uses an ADC interrupt that is not
+  enabled.
 * ADC post-processing: an event interrupts, and nothing starts the SOC of its block.
 * eCAP: it has no input, or the program selected the input of another eCAP; its counter is stopped, no edge loads it
   (`CAPLDEN`), or its sequence ends before the event that is enabled (`STOP_WRAP`).
@@ -213,7 +214,8 @@ connections are checked:
   register is never loaded from its shadow (`LOADAMODE = 3`), or its values change nothing, because its output
   switches at the other compare. A trip that the program forces changes no output (`TZA = 3`).
 * DAC: it gets codes and drives no pin.
-* I2C and SCI: the module stays in reset, or an interrupt needs more characters than the FIFO holds.
+* I2C and SCI: the module stays in reset, no interrupt of a direction is enabled, or one needs more characters than the
+  FIFO holds.
 * SPI: the interrupt of a direction is not enabled.
 * CAN: an interrupt line is not enabled, the controller stays in Init, a message object that is set up is never valid,
   nothing requests its transmission, or in loopback its filter passes none of the controller's own frames. An identifier

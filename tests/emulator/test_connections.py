@@ -563,6 +563,29 @@ def test_an_interrupt_of_the_spi_is_enabled_there_too(tmp_path: Path, line: int,
     assert [why in finding.message for finding in told(tmp_path, text)] == [True] * bool(why)
 
 
+@pytest.mark.parametrize(("vector", "setting", "why"), [
+    ("SCIB_RX_INT", "ScibRegs.SCICTL2.all = 2;", ""),
+    ("SCIB_RX_INT", "ScibRegs.SCICTL2.all = 1;", "SCICTL2.RXBKINTENA = 0"),
+    ("SCIB_RX_INT", "ScibRegs.SCICTL1.bit.RXERRINTENA = 1;", ""),
+    ("SCIB_RX_INT", "ScibRegs.SCIFFTX.all = 0xE040; ScibRegs.SCIFFRX.all = 0x2061;", ""),
+    ("SCIB_RX_INT", "ScibRegs.SCIFFTX.all = 0xE040; ScibRegs.SCIFFRX.all = 0x2041;", "SCIFFRX.RXFFIENA = 0"),
+    ("SCIB_TX_INT", "if (Order) ScibRegs.SCICTL2.bit.TXINTENA = 1;", ""),
+    ("SCIB_TX_INT", "ScibRegs.SCICTL2.all = 2;", "SCICTL2.TXINTENA = 0"),
+    ("SCIB_TX_INT", "ScibRegs.SCIFFTX.all = 0xE040;", "SCIFFTX.TXFFIENA = 0"),
+    ("I2CA_INT", "I2caRegs.I2CIER.all = 0x20;", ""),
+    ("I2CA_INT", "I2caRegs.I2CMDR.all = 0x20;", "I2CIER = 0"),
+    ("DMA_CH2_INT", "EALLOW; DmaRegs.CH2.MODE.bit.CHINTE = 0; EDIS;", "MODE.CHINTE = 0"),
+])  # fmt: skip
+def test_an_interrupt_of_a_serial_module_or_the_dma_is_enabled_there_too(
+    tmp_path: Path, vector: str, setting: str, why: str
+) -> None:
+    group, line = {"SCIB_RX_INT": (9, 3), "SCIB_TX_INT": (9, 4), "I2CA_INT": (8, 1), "DMA_CH2_INT": (7, 2)}[vector]
+    text = RIGHT.replace("    EALLOW;\n", f"    EALLOW;\n    PieVectTable.{vector} = &edge;\n", 1)
+    setting = f"{setting}\n    PieCtrlRegs.PIEIER{group}.bit.INTx{line} = 1;"
+    text = text.replace("    IER |=", f"    {setting}\n    IER |= M_INT{group} |")
+    assert [why in finding.message for finding in told(tmp_path, text)] == [True] * bool(why)
+
+
 #: A module is set up through a pointer; its trip comes from comparator 1 by TRIP4 of the X-BAR.
 POINTED = TRIPPED.replace("void main(void)", """static void Set_Up(volatile struct EPWM_REGS *pwm)
 {
