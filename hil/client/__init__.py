@@ -1,4 +1,4 @@
-"""The PC's side of the line: build orders, decode frames, plot a drive.
+"""The PC's side of the line: it builds orders, decodes frames and plots a drive.
 
-Works with the emulated robot and with the real one; knows nothing of the bench.
+It works with the emulated robot and with the real one, and does not use the bench.
 """

@@ -1,8 +1,8 @@
-"""Frames of the robot out of any stream of bytes.
+"""Decodes the robot's frames from any stream of bytes.
 
-``#ODO X,Y,theta,dF,dR,dL\\n\\r``: six integers of 16 bits; X, Y and the distances (front, *right, left*) in mm, theta
-in whole radians.  The decoder never raises on input: what is not such a frame is skipped and counted, a ``#`` begins
-anew, memory is bounded.
+A frame is ``#ODO X,Y,theta,dF,dR,dL\\n\\r``: six integers of 16 bits.  X, Y and the distances (front, *right, left*)
+are in mm, theta is in whole radians.  The decoder never raises on input.  It skips and counts bytes that are no frame,
+starts a new frame at each ``#``, and uses a bounded amount of memory.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
-#: "#ODO ", six times "-32768", five commas, "\n\r".
+#: Bytes of the longest frame: "#ODO ", six times "-32768", five commas, "\n\r".
 LONGEST_FRAME: Final = 5 + 6 * 6 + 5 + 2
 
 #: The six numbers in the frame's order: name and unit.
@@ -22,7 +22,7 @@ _BODY = re.compile(rb"#ODO (-?\d{1,5}),(-?\d{1,5}),(-?\d{1,5}),(-?\d{1,5}),(-?\d
 
 @dataclass(frozen=True, slots=True)
 class OdometryFrame:
-    """One odometry frame, in the line's own units."""
+    """One odometry frame, in the units of the frame."""
 
     x_mm: int
     y_mm: int
@@ -33,7 +33,7 @@ class OdometryFrame:
 
     @property
     def line(self) -> str:
-        """The six numbers as the console's file writes them."""
+        """The six numbers as a line of the console's file."""
         return ",".join(str(value) for value in self.values)
 
     @property
@@ -43,27 +43,27 @@ class OdometryFrame:
 
     @property
     def distances_mm(self) -> dict[str, int]:
-        """What was measured around the robot, by name."""
+        """The three measured distances in mm, by name."""
         return {name: value for (name, _), value in zip(QUANTITIES[3:], self.values[3:], strict=True)}
 
     def encode(self) -> bytes:
-        """The frame as the robot sends it."""
+        """The bytes that the robot sends for this frame."""
         return f"#ODO {self.line}\n\r".encode("ascii")
 
 
 class FrameDecoder:
-    """Feed it bytes as they come, cut anywhere."""
+    """Decodes frames.  The bytes may come in pieces of any size."""
 
     def __init__(self) -> None:
-        #: Finished frames that were not six 16-bit integers, and beginnings that were cut off.
+        #: The number of frames without six 16-bit integers, and of frames without an end.
         self.malformed = 0
-        #: Bytes that belonged to no frame.
+        #: The number of bytes that belonged to no frame.
         self.skipped = 0
         self.frames = 0
         self._buffer = bytearray()
 
     def feed(self, data: bytes) -> list[OdometryFrame]:
-        """The frames that `data` completes."""
+        """Take in `data`, and return the frames that it completes."""
         frames: list[OdometryFrame] = []
         for byte in data:
             if byte == 0x23:

@@ -9,11 +9,11 @@ from typing import Final, NamedTuple
 
 
 class KeyBinding(NamedTuple):
-    """A key and what it does."""
+    """A key and its meaning."""
 
-    #: As people read it.
+    #: The name of the key in help texts.
     shown: str
-    #: As a terminal names it (textual), and a browser (`KeyboardEvent.key`).
+    #: The name of the key in a terminal (textual), and in a browser (`KeyboardEvent.key`).
     terminal: str
     browser: str
     text: str
@@ -27,13 +27,13 @@ LEAVE: Final = KeyBinding("Esc", "escape", "Escape", "leave a field; end teleman
 SET: Final = KeyBinding("v", "v", "v", "set V and W")
 CALIBRATE: Final = KeyBinding("c", "c", "c", "calibrate")
 INIT: Final = KeyBinding("i", "i", "i", "initialise")
-#: In the order of every help; each is a key of both consoles.
+#: All keys, in the order of the help texts.  Each key works in both consoles.
 KEYS: Final = (STOP, MISSION, TELE, REST, LEAVE, SET, CALIBRATE, INIT)
-#: What an arrow changes (reference: annex 2).
+#: The change of speed for each press of an arrow key (reference: annex 2).
 V_STEP_M_S: Final = 0.01
 W_STEP_RAD_S: Final = 0.03
 
 
 def listed() -> tuple[tuple[str, str], ...]:
-    """What to press, and what it does."""
+    """Each key and its meaning, for help texts."""
     return (*((key.shown, key.text) for key in KEYS), ("arrows", "drive, in telemanipulation"))

@@ -12,7 +12,7 @@ from functools import reduce
 from operator import xor
 from typing import Final
 
-#: Words of the shell -> the order's four letters.
+#: Words of the command line -> the four letters of the order.
 KEYWORDS: Final = {
     "stop": "STOP",
     "mission": "MISN",
@@ -20,7 +20,7 @@ KEYWORDS: Final = {
     "calibrate": "CALB",
     "init": "INIT",
 }
-#: The firmware's frame buffer; a longer order would overrun it on the real robot as well.
+#: The size of the firmware's frame buffer in bytes.  On the real robot, too, a longer order would overrun it.
 LONGEST_ORDER: Final = 80
 
 _TIMED = re.compile(r"(?P<time>\d+(?:\.\d*)?|\.\d+):(?P<order>.+)", re.DOTALL)
@@ -29,14 +29,14 @@ _SETR = re.compile(r"(?:setr|set)\s*(?P<v>[^\s,]+)[\s,]+(?P<w>[^\s,]+)", re.IGNO
 
 @dataclass(frozen=True, slots=True)
 class TimedOrder:
-    """An order at a time, in seconds since the robot was ready."""
+    """An order and its time, in seconds since the robot was ready."""
 
     time_s: float
     data: bytes
 
 
 def order(keyword: str) -> bytes:
-    """The order of a word of `KEYWORDS`.  Raises ValueError for another word."""
+    """The bytes of the order for a word of `KEYWORDS`.  Raises ValueError for another word."""
     letters = KEYWORDS.get(keyword.lower())
     if letters is None:
         raise ValueError(f"no order {keyword!r}: there are {', '.join(KEYWORDS)} and set V W")
@@ -44,26 +44,27 @@ def order(keyword: str) -> bytes:
 
 
 def set_reference(v_m_s: float, w_rad_s: float) -> bytes:
-    """``#SETRv,w\\r``: linear speed in m/s, angular in rad/s; effective in telemanipulation.
+    """The order ``#SETRv,w\\r``: linear speed in m/s, angular speed in rad/s.  It takes effect in telemanipulation.
 
-    Never with an exponent, because no console sends one.  Raises ValueError for what is not a finite speed.
+    The numbers have no exponent, because no console sends one.  Raises ValueError for a speed that is not finite.
     """
     return f"#SETR{_decimal(v_m_s)},{_decimal(w_rad_s)}\r".encode("ascii")
 
 
 def checked(data: bytes) -> bytes:
-    """An order with a check: `*` and the exclusive or of the characters after `#`, two hexadecimal digits.
+    """An order with a checksum: `*`, and the exclusive or of the characters after `#` as two hexadecimal digits.
 
-    Of the corrected firmware (`PROTO-damage-unseen`): after one such order it refuses all others but STOP.
+    Only the corrected firmware knows it (`PROTO-damage-unseen`).  After one such order, the firmware refuses all orders
+    without a checksum but STOP.
     """
     body = data.removeprefix(b"#").removesuffix(b"\r")
     return b"#" + body + f"*{reduce(xor, body, 0):02X}\r".encode("ascii")
 
 
 def parse_order(text: str) -> bytes:
-    """An order as a person writes it: ``mission``, ``MISN``, ``set 0.2 0``, ``SETR0.2,0``, or raw ``#....``.
+    """The bytes of an order as a user writes it: ``mission``, ``MISN``, ``set 0.2 0``, ``SETR0.2,0``, or raw ``#....``.
 
-    Raises ValueError for anything else.
+    Raises ValueError for any other text.
     """
     text = text.strip()
     if text.startswith("#"):
@@ -82,7 +83,7 @@ def parse_order(text: str) -> bytes:
 
 
 def parse_timed_order(text: str) -> TimedOrder:
-    """``TIME:ORDER``, or ``ORDER`` alone for time 0.  Raises ValueError."""
+    """Parse ``TIME:ORDER``, or ``ORDER`` alone for time 0.  Raises ValueError."""
     timed = _TIMED.fullmatch(text.strip())
     if timed is None:
         return TimedOrder(0.0, parse_order(text))
@@ -90,7 +91,7 @@ def parse_timed_order(text: str) -> TimedOrder:
 
 
 def parse_words(words: list[str]) -> list[bytes]:
-    """A row of orders from the shell: ``tele set 0.2 0.0``.  Raises ValueError."""
+    """Parse several orders from the command line: ``tele set 0.2 0.0``.  Raises ValueError."""
     orders: list[bytes] = []
     rest = list(words)
     while rest:
@@ -105,7 +106,7 @@ def parse_words(words: list[str]) -> list[bytes]:
 
 
 def number(text: str, name: str) -> float:
-    """A finite decimal number.  Raises ValueError naming `name`."""
+    """Parse a finite decimal number.  Raises ValueError, which names `name`."""
     try:
         value = float(text)
     except ValueError:

@@ -18,18 +18,19 @@ if TYPE_CHECKING:
 
 Point = tuple[float, float]
 
-#: The firmware's sonars report this or more when nothing returned (255 inches are 6.48 m); not drawn.
+#: If no echo returned, the firmware reports this distance or more (255 inches are 6.48 m).  It is not drawn.
 NO_ECHO_M: Final = 6.0
-#: Suffixes that Matplotlib's file back ends write.
+#: The suffixes of files that Matplotlib writes.
 SUFFIXES: Final = (".png", ".svg", ".pdf")
 #: The suffix of a moving picture.
 MOVING: Final = ".gif"
 
 
 def sonar_points(frame: OdometryFrame, heading_rad: float | None = None) -> list[Point]:
-    """Where three sonars at the robot's centre put what they saw: ahead, at -90 and at +90 degrees (thesis 3.3).
+    """The points that the three sonars saw, in metres: ahead, at -90 and at +90 degrees from the robot's centre.
 
-    In metres.  The frame's own heading is in whole radians; `heading_rad` is a better one, for who has it.
+    The heading in the frame is in whole radians; pass a more exact one as `heading_rad` if you have it.  Source: thesis
+    3.3.
     """
     heading = float(frame.theta_rad) if heading_rad is None else heading_rad
     points = []
@@ -45,14 +46,16 @@ def sonar_points(frame: OdometryFrame, heading_rad: float | None = None) -> list
 
 
 def place(points: Iterable[Point], x_m: float, y_m: float, heading_rad: float) -> list[Point]:
-    """Points of a frame whose origin lies at the given pose, in the frame of that pose."""
+    """Transform points from a coordinate frame whose origin is at the given pose to the frame of that pose."""
     cosine, sine = math.cos(heading_rad), math.sin(heading_rad)
     return [(x_m + cosine * x - sine * y, y_m + sine * x + cosine * y) for x, y in points]
 
 
 def check_plot_file(path: Path, suffixes: Sequence[str] = SUFFIXES) -> None:
-    """Raise ValueError, before anything runs, if a picture could not be written there; ModuleNotFoundError without
-    Matplotlib.  It is imported here: after Ctrl-C there is a second for the picture, and half of it would go.
+    """Check before the run that a picture can be written there.
+
+    Raises ValueError if it cannot, and ModuleNotFoundError without Matplotlib.  Matplotlib is imported here, because
+    after Ctrl-C there is only a second for the picture, and the import takes half of it.
     """
     require("matplotlib")
     import hil.client.figure  # noqa: F401
@@ -71,7 +74,7 @@ def plot_drive(
     posts: Iterable[tuple[float, float, float]] = (),
     title: str = "Drive",
 ) -> None:
-    """Draw a drive to `path` (PNG, SVG or PDF by its suffix), as `drive_figure` does."""
+    """Draw a drive, as `drive_figure` does, and write it to `path` (PNG, SVG or PDF by its suffix)."""
     save(drive_figure(
         odometry=odometry, cloud=cloud, true_path=true_path, walls=walls, posts=posts, title=title
     ), path)  # fmt: skip
@@ -94,7 +97,7 @@ def drive_figure(
     posts: Iterable[tuple[float, float, float]] = (),
     title: str = "Drive",
 ) -> Figure:
-    """A drive as a figure.  All points in metres, in one frame; `posts` are (x, y, radius)."""
+    """A drive as a figure.  All points are in metres and in one coordinate frame; `posts` are (x, y, radius)."""
     require("matplotlib")
     from hil.client.figure import ShownFigure
 
@@ -114,7 +117,7 @@ def draw_drive(
     walls: Iterable[tuple[Point, Point]] = (),
     posts: Iterable[tuple[float, float, float]] = (),
 ) -> None:
-    """The same into axes of a figure that exists."""
+    """Draw a drive into the axes of an existing figure."""
     from matplotlib.patches import Circle
 
     label = "walls"

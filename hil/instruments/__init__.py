@@ -1,1 +1,1 @@
-"""What a run did, in one trace file, and as files for other tools."""
+"""Traces: a run is recorded in one trace file, which can be converted to files for other tools."""

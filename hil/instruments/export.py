@@ -1,4 +1,4 @@
-"""A trace file as a file for another tool, by its suffix."""
+"""Converts a trace file to a file for another tool.  The suffix selects the format."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hil.instruments import mcap, perfetto, tables, vcd
 from hil.instruments.trace_file import RecordedTrace
 from hil.page.page import write_page
 
-#: Suffix -> what writes it, and what opens it.
+#: Suffix -> the function that writes the format, and the tools that open it.
 FORMATS: Final[Mapping[str, tuple[Callable[[str | Path, RecordedTrace], None], str]]] = MappingProxyType({
     ".vcd": (vcd.write_vcd, "GTKWave, PulseView: pins, words, registers, tasks"),
     ".pftrace": (perfetto.write_perfetto, "ui.perfetto.dev: tasks, interrupts, gates, findings"),
@@ -26,7 +26,7 @@ FORMATS: Final[Mapping[str, tuple[Callable[[str | Path, RecordedTrace], None], s
 
 
 def export(trace: RecordedTrace, target: str | Path) -> None:
-    """Write a trace as the suffix of `target` says.  Raises ValueError for another suffix."""
+    """Write a trace in the format of the suffix of `target`.  Raises ValueError for an unknown suffix."""
     suffix = Path(target).suffix.lower()
     known = FORMATS.get(suffix)
     if known is None:

@@ -1,7 +1,7 @@
-"""Words on wires as levels: what a logic analyser sees of a serial character, or of a word on an SPI bus.
+"""Converts words to levels on wires, as a logic analyser shows a serial character or a word on an SPI bus.
 
-The emulator carries characters and words whole, at the end of their last bit.  When each bit was on the wire follows
-from the length of a bit.
+The emulator transfers whole characters and words, at the end of their last bit.  The time of each bit is computed from
+the length of a bit.
 """
 
 from __future__ import annotations
@@ -11,12 +11,15 @@ from typing import TypeAlias
 
 from emulator.signals import SerialFrame
 
-#: Cycle and level, in the order of time: each level from its cycle on.
+#: Cycles and levels in the order of time.  Each level holds from its cycle on.
 Levels: TypeAlias = list[tuple[int, int]]
 
 
 def frame_levels(frame: SerialFrame) -> Levels:
-    """A character: start bit low, data from the lowest bit on, parity, stop bits high.  The line rests high before."""
+    """The levels of a character: a low start bit, the data with the lowest bit first, the parity, high stop bits.
+
+    Before the character, the line is high.
+    """
     bits = [0, *(frame.data >> n & 1 for n in range(frame.data_bits))]
     if frame.parity is not None:
         bits.append(sum(bits) % 2 ^ (frame.parity == "odd"))
@@ -29,10 +32,10 @@ def frame_levels(frame: SerialFrame) -> Levels:
 def spi_levels(
     begin: int, bits: int, bit_cycles: int, cpol: int, cpha: int, simo: int, somi: int
 ) -> tuple[Levels, Levels, Levels]:
-    """CLK, SIMO and SOMI during a word of `bits` bits, the highest first.
+    """The levels of CLK, SIMO and SOMI during a word of `bits` bits, the highest bit first.
 
-    Data changes where a bit begins and is taken half a bit later; CPHA says whether CLK leaves its resting level there
-    (0) or where the bit begins (1).
+    Data changes at the start of a bit and is sampled half a bit later.  CLK leaves its idle level when data is sampled
+    (CPHA 0), or at the start of the bit (CPHA 1).
     """
     clock = [(begin - bit_cycles, cpol)]
     out: Levels = []
@@ -47,7 +50,7 @@ def spi_levels(
 
 
 def _changes(levels: Levels) -> Iterator[tuple[int, int]]:
-    """Without those that say what the one before said."""
+    """Drop each level that is the same as the one before."""
     last: int | None = None
     for cycles, level in levels:
         if level != last:

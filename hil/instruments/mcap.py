@@ -1,16 +1,16 @@
-"""A trace as MCAP, for robotics viewers (Foxglove, Lichtblick): poses, sensors, frames, findings.
+"""Writes a trace as MCAP, for robotics viewers (Foxglove, Lichtblick): poses, sensors, frames, findings.
 
 Messages are JSON with their JSON schema.  Poses and findings have the published schemas `foxglove.PoseInFrame` and
-`foxglove.Log`, which viewers draw in their 3D and log panels; the others are plain numbers and texts with their time.
+`foxglove.Log`, which viewers show in their 3D and log panels.  The others are plain numbers and texts with their time.
 
-    /pose/true, /pose/odometry      where the robot is, and where it believes to be, in the frame `floor`
+    /pose/true, /pose/odometry      the true pose of the robot, and its odometry, in the frame `floor`
     /sensors/PIN_PART_SIGNAL        volts of a conversion
-    /faces/PART_FACE                what a part sees or does
+    /faces/PART_FACE                the value of a face of a part
     /spi/BUS                        words on an SPI bus
     /frames/PIN                     a line of bytes on a serial pin; its time is that of its last byte
-    /findings                       what the detectors found
+    /findings                       the findings of the detectors
 
-Kernel events, pins and registers are for the other formats: viewers of robots have no panel for them.
+Kernel events, pins and registers are not written, because robotics viewers have no panel for them.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ def _object(**properties: Any) -> dict[str, Any]:
 _TIME: Final = _object(sec=_INTEGER, nsec=_INTEGER) | {"title": "time"}
 #: The level of a finding in `foxglove.Log`.
 _WARNING: Final = 3
-#: File and line in a place as a finding names it: `TaskUS (Sonar.c:139:9)`.
+#: Matches file and line in the text of a place: `TaskUS (Sonar.c:139:9)`.
 _PLACE: Final = re.compile(r"\(([^()]+?):(\d+)")
 
-#: Name of a schema -> its fields.
+#: The name of a schema -> its fields.
 SCHEMAS: Final[Mapping[str, dict[str, Any]]] = {
     "foxglove.PoseInFrame": _object(
         timestamp=_TIME,
@@ -62,7 +62,7 @@ _Message = tuple[int, str, str, dict[str, Any]]
 
 
 def write_mcap(path: str | Path, trace: RecordedTrace) -> None:
-    """Write to `path`."""
+    """Write a trace to `path`."""
     from mcap.writer import Writer
 
     with open(path, "wb") as file:
@@ -84,7 +84,7 @@ def write_mcap(path: str | Path, trace: RecordedTrace) -> None:
 
 
 def _topic(channel: str, name: str) -> str:
-    """A topic without what viewers would take apart."""
+    """A topic, in which characters that viewers would split at are replaced."""
     return f"/{channel}/{re.sub(r'[^A-Za-z0-9_]+', '_', name)}"
 
 
@@ -110,7 +110,7 @@ def _messages(trace: RecordedTrace) -> Iterator[_Message]:
 
 
 def _pose(x_m: float, y_m: float, heading_rad: float) -> dict[str, Any]:
-    """A pose on the floor: the heading is a turn about the axis that points up."""
+    """A pose on the floor.  The heading is a rotation about the vertical axis."""
     return {
         "frame_id": "floor",
         "pose": {

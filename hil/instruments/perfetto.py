@@ -1,7 +1,8 @@
-"""A trace for Perfetto (ui.perfetto.dev): tasks, interrupts and Swis as tracks, priorities as counters, gates as flows.
+"""Writes a trace for Perfetto (ui.perfetto.dev).
 
-A flow goes from a task that waits at a gate to the one that holds it; bytes and findings are instants; orders and
-frames have a track for each pin; volts, sensors and variables are counters.
+Tasks, interrupts and Swis are tracks, and priorities are counters.  A flow leads from a task that waits at a gate to
+the task that holds it.  Bytes and findings are instants.  Orders and frames have a track for each pin.  Volts, sensors
+and variables are counters.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ _PROCESS: Final = 1
 
 
 def write_perfetto(path: str | Path, trace: RecordedTrace) -> None:
-    """Write to `path`."""
+    """Write a trace to `path`."""
     with open(path, "wb") as file:
         file.write(_PerfettoBuilder(trace).serialized())
 
@@ -34,7 +35,7 @@ class _PerfettoBuilder:
         self._kinds: Any = TrackEvent
         self._builder = TraceProtoBuilder()
         self._tracks: dict[str, int] = {}
-        #: Time, order among equal times, then what to write.
+        #: The time, the order at equal times, and the packet.
         self._packets: list[tuple[int, int, dict[str, Any]]] = []
         process = self._builder.add_packet()
         process.track_descriptor.uuid = _PROCESS
@@ -42,7 +43,7 @@ class _PerfettoBuilder:
         process.track_descriptor.process.process_name = "F28377S"
 
     def serialized(self) -> bytes:
-        """The file."""
+        """The bytes of the file."""
         kernel = [(c, name, value) for c, channel, name, value in self._trace.events if channel == "kernel"]
         self._tasks(kernel)
         self._priorities(kernel)
@@ -68,7 +69,7 @@ class _PerfettoBuilder:
         return serialized
 
     def _track(self, name: str, *, counter: bool = False) -> int:
-        """The track called `name`, described when it is first wanted."""
+        """The track called `name`.  Its first use writes its description."""
         known = self._tracks.get(name)
         if known is None:
             known = self._tracks[name] = _PROCESS + 1 + len(self._tracks)
@@ -82,7 +83,7 @@ class _PerfettoBuilder:
         self._packets.append((cycles, order, {"type": getattr(self._kinds, f"TYPE_{kind}"), "track": track, **fields}))
 
     def _slice(self, track: int, begin: int, end: int, name: str, **fields: Any) -> None:
-        # What ends at a cycle ends before what begins there.
+        # At one cycle, ends come before beginnings.
         self._add(begin, 1, "SLICE_BEGIN", track, name=name, **fields)
         self._add(end, 0, "SLICE_END", track)
 
@@ -126,7 +127,7 @@ class _PerfettoBuilder:
                 annotations: Mapping[str, str] = {key: str(text) for key, text in value.items()}
                 self._add(cycles, 3, "INSTANT", self._track("findings"), name=name, annotations=annotations)
             elif channel in ("adc", "sensors", "variables", "faces"):
-                # A sensor's input and the face of its part have one name.
+                # The input of a sensor and the face of its part have the same name.
                 track = self._track(f"face {name}" if channel == "faces" else name, counter=True)
                 self._add(cycles, 2, "COUNTER", track, number=float(value))
             elif channel == "serial":

@@ -1,4 +1,4 @@
-"""Writes what a running board does into a trace file.  What is not recorded costs nothing: nobody listens to it."""
+"""Records the events of a running board in a trace file.  Channels that are not recorded cost nothing."""
 
 from __future__ import annotations
 
@@ -25,19 +25,19 @@ from hil.reports.excerpt import excerpt
 from hil.running import RunningBoard
 from hil.view.stage import stage_of
 
-#: Between two looks at variables.
+#: The time between two samples of variables.
 VARIABLE_CYCLES: Final = CYCLES_PER_MS
 
 
 class EventSink(Protocol):
-    """What takes events: a `hil.instruments.trace_file.TraceWriter`, or a `hil.page.replay.Replay`."""
+    """A receiver of events: a `hil.instruments.trace_file.TraceWriter`, or a `hil.page.replay.Replay`."""
 
     def event(self, cycles: int, channel: str, name: str, value: Any) -> None:
-        """One event.  Those of one channel come in the order of time."""
+        """Take in an event.  The events of one channel come in the order of time."""
 
 
 def about_of(machine: RunningBoard, about: Mapping[str, str]) -> dict[str, str]:
-    """What stands at the head of a trace: what ran, and which pins lead to a PC."""
+    """The head of a trace: what ran, and which pins lead to a PC."""
     pc = machine.board.pc
     pins = {} if pc is None else {TO_PC: f"GPIO{pc.tx_gpio}", FROM_PC: f"GPIO{pc.rx_gpio}"}
     return {**about, **pins}
@@ -47,9 +47,9 @@ def about_of(machine: RunningBoard, about: Mapping[str, str]) -> dict[str, str]:
 def recorded(
     path: str | Path, machine: RunningBoard, channels: tuple[str, ...], about: Mapping[str, str] | None = None
 ) -> Iterator[GrowingFile]:
-    """Record into a file while this lasts; `about` says what ran.
+    """Record into a file while the context lasts; `about` says what ran.
 
-    What the file cannot take is an OSError at the end: the run goes on.
+    If the file cannot be written, the run goes on, and OSError is raised at the end.
     """
     with growing(path, "utf-8") as file:
         recorder = Recorder(machine, TraceWriter(file, channels, about_of(machine, about or {})), channels)
@@ -71,7 +71,7 @@ class Recorder:
             getattr(self, f"_begin_{channel}")()
 
     def close(self) -> None:
-        """Listen no more."""
+        """Stop listening."""
         for stop in self._stops:
             stop()
         self._stops.clear()
@@ -113,7 +113,7 @@ class Recorder:
     def _clock_rests(
         self, letter: str, names: dict[int, str], _register: Cell, access: str, word: int, _mask: int
     ) -> None:
-        """SPICCR was written: CLK rests at CLKPOLARITY, which a device sees before it is selected."""
+        """Record the idle level of CLK when SPICCR is written.  A device sees it before it is selected."""
         if access == "write":
             for pin in PIN_FUNCTIONS[f"SPICLK{letter}"]:
                 if pin in names:
@@ -188,7 +188,7 @@ class Recorder:
         self._regularly(SAMPLE_CYCLES, "scene", look)
 
     def _regularly(self, cycles: int, channel: str, look: Callable[[], Iterable[tuple[str, Any]]]) -> None:
-        """Tell names and values, once time passes and each so many cycles, when they have changed."""
+        """Record the values that `look` gives, each `cycles` cycles, if they have changed."""
         known: dict[str, Any] = {}
         due: Event | None = None
 
@@ -240,13 +240,13 @@ class Recorder:
         if len(finding.call_path) > 1:
             value["called_from"] = [str(place) for place in finding.call_path[1:]]
         if finding.place is not None and (lines := excerpt(finding.place.file, finding.place.line)):
-            # As it is now: where the trace is read, the file may be another one.
+            # The source as it is now: when the trace is read, the file may have changed.
             texts = [line.text for line in lines]
             value["source"] = {"first": lines[0].number, "marked": finding.place.line, "lines": texts}
         self._event(finding.time_cycles, "findings", finding.rule, value)
 
     def _soldered(self, kind: str) -> Iterator[tuple[str, Any]]:
-        """Pins that parts are soldered to: what they are called, and their wire."""
+        """The pins that are connected to parts: their names and wires."""
         board = self._machine.board
         for part in board.parts.values():
             for signal, pin in part.pins.items():

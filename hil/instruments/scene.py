@@ -1,15 +1,15 @@
-"""What the channel `scene` tells of a robot in its world: names, and what the value of each is, in metres and radians.
+"""The events of the channel `scene`, about a robot in its world: their names and values, in metres and radians.
 
     walls             [[ax, ay, bx, by], ...]
     posts             [[name, x, y, radius], ...]: everything round
-    start             [x, y, heading]: where the robot was put down, so where its own frame lies
-    robot, believed   [x, y, heading]: where it is, and where its firmware believes to be, both in the world's frame
-    state             what its firmware calls its state
-    bumper            1: something pushes it, 0
-    happened          what is worth a mark: "bump"
-    mount NAME        [x, y, bearing]: where a sonar sits on the robot, and looks
-    sonar NAME        [measured, ray, echo]: by the firmware; the first thing straight ahead; what the sound comes back
-                      from first.  null: not told, nothing there
+    start             [x, y, heading]: the pose at the start, which is the origin of the robot's own frame
+    robot, believed   [x, y, heading]: the true pose, and the odometry of the firmware, both in the world's frame
+    state             the name of the state in the firmware
+    bumper            1 while something presses the bumper, else 0
+    happened          an event that gets a mark: "bump"
+    mount NAME        [x, y, bearing]: the place and direction of a sonar on the robot
+    sonar NAME        [measured, ray, echo]: the distance that the firmware measured; the distance to the first object
+                      straight ahead; the distance to the object that returns the first echo.  null: there is none
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def _text(value: Any) -> bool:
     return isinstance(value, str)
 
 
-#: First word of a name -> whether a value is one.
+#: The first word of a name -> a function that checks its value.
 _SHAPES: Final[Mapping[str, Callable[[Any], bool]]] = {
     "walls": _walls, "posts": _posts, "start": _pose, "robot": _pose, "believed": _pose, "state": _text,
     "bumper": lambda value: value in (0, 1), "happened": _text, "mount": _pose, "sonar": _ranges,
@@ -58,6 +58,6 @@ _SHAPES: Final[Mapping[str, Callable[[Any], bool]]] = {
 
 
 def fits(name: str, value: Any) -> bool:
-    """Whether a value is what the channel tells under that name."""
+    """Whether a value is valid for that name of the channel."""
     shape = _SHAPES.get(name.partition(" ")[0])
     return shape is not None and shape(value)

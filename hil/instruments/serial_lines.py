@@ -1,4 +1,4 @@
-"""Bytes on serial pins as lines: what follows each other on a pin up to a carriage return."""
+"""Gathers the bytes on serial pins to lines.  A line ends with a carriage return."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Final
 from hil.instruments.trace_file import RecordedTrace
 
 _END: Final = 0x0D
-#: What has no end is cut here.
+#: The most bytes of a line.  A longer one is cut.
 _LONGEST: Final = 80
 
 
@@ -24,13 +24,13 @@ class ReceivedLine:
 
 
 class Lines:
-    """Bytes of all pins as they come, in the order of time."""
+    """Gathers the bytes of all pins, which come in the order of time."""
 
     def __init__(self) -> None:
         self._held: dict[str, tuple[int, int, bytearray]] = {}
 
     def take(self, cycles: int, pin: str, byte: int) -> ReceivedLine | None:
-        """A byte; the line, if it ends one."""
+        """Take in a byte.  Returns the line that it ends, or None."""
         begin, _, content = self._held.pop(pin, (cycles, cycles, bytearray()))
         content.append(byte & 0xFF)
         if byte == _END or len(content) >= _LONGEST:
@@ -39,13 +39,13 @@ class Lines:
         return None
 
     def rest(self) -> Iterator[ReceivedLine]:
-        """What has no end."""
+        """The lines without an end."""
         for pin, (begin, end, content) in self._held.items():
             yield ReceivedLine(begin, end, pin, bytes(content))
 
 
 def serial_lines(trace: RecordedTrace) -> Iterator[ReceivedLine]:
-    """The lines of all serial pins, in the order in which they end; what has no end comes last."""
+    """The lines of all serial pins, in the order of their ends.  Lines without an end come last."""
     lines = Lines()
     for cycles, _, pin, byte in trace.of("serial"):
         line = lines.take(cycles, pin, byte)

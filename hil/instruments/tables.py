@@ -1,4 +1,4 @@
-"""A trace as tables: CSV, NumPy, Parquet, and as text that one can read."""
+"""Writes a trace as a table (CSV, NumPy, Parquet) or as readable text."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hil.instruments.trace_file import NS_PER_CYCLE, PARTS, RecordedTrace
 
 
 def write_csv(path: str | Path, trace: RecordedTrace) -> None:
-    """A row an event: time in s, channel, name, value (JSON where it is more than a number or a word)."""
+    """Write a row for each event: time in s, channel, name, value (JSON if it is more than a number or a word)."""
     with open(path, "w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(("time_s", "channel", "name", "value"))
@@ -23,7 +23,7 @@ def write_csv(path: str | Path, trace: RecordedTrace) -> None:
 
 
 def write_npz(path: str | Path, trace: RecordedTrace) -> None:
-    """Two arrays for each name of a channel with numbers: `CHANNEL/NAME/time_s` and `CHANNEL/NAME/value`."""
+    """Write two arrays for each name of a channel with numbers: `CHANNEL/NAME/time_s` and `CHANNEL/NAME/value`."""
     import numpy as np
 
     columns: dict[str, tuple[list[float], list[object]]] = {}
@@ -41,9 +41,10 @@ def write_npz(path: str | Path, trace: RecordedTrace) -> None:
 
 
 def write_parquet(path: str | Path, trace: RecordedTrace) -> None:
-    """A row a number or word: time in ns, channel, name, and `number` or `text`, the other one is null.
+    """Write a row for each number or word: time in ns, channel, name, and `number` or `text`; the other one is null.
 
-    Values of several numbers are as many rows, `GYRO.sent` or `true.x_m`; a finding is the row of its message.
+    A value of several numbers becomes several rows, such as `GYRO.sent` or `true.x_m`.  A finding becomes a row with
+    its message.
     """
     import pyarrow as pa
     import pyarrow.parquet as pq
@@ -71,7 +72,7 @@ def _numbers_and_words(
 
 
 def write_text(path: str | Path, trace: RecordedTrace) -> None:
-    """A line an event, in the order of time; bytes of a serial pin that follow each other are one line."""
+    """Write a line for each event, in the order of time.  Consecutive bytes of a serial pin become one line."""
     told: list[tuple[int, str, str]] = []
     for line in serial_lines(trace):
         told.append((line.begin, "serial", f"{line.pin}: {line.content!r}"))

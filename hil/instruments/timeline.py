@@ -1,4 +1,4 @@
-"""Tasks against time, from the kernel's events: who runs, was pre-empted, waits, has inherited a priority."""
+"""The states of tasks against time, from the events of the kernel: running, ready (pre-empted) or waiting."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from enum import Enum
 
 
 class TaskState(Enum):
-    """What a task does.  Blocked is not drawn."""
+    """The state of a task.  A blocked task has no span."""
 
     RUNNING = "running"
     READY = "ready, the CPU is somebody else's"
@@ -17,7 +17,7 @@ class TaskState(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """A task in one state from one time to another, in cycles; `raised` while its priority was inherited."""
+    """A task in one state from `begin` to `end`, in cycles; `raised`: it had an inherited priority."""
 
     lane: str
     begin: int
@@ -30,7 +30,7 @@ Event = tuple[int, str, str]
 
 
 class TaskTimeline:
-    """States while the events go by.  `spans` are those that have ended; a reader may remove them."""
+    """Follows the events, and keeps the states.  `spans` are the spans that have ended; a reader may remove them."""
 
     def __init__(self, base: Mapping[str, int]) -> None:
         self._base = base
@@ -42,26 +42,26 @@ class TaskTimeline:
         self.current = ""
 
     def close(self, name: str, now: int) -> None:
-        """The state of a task ends."""
+        """End the state of a task."""
         known = self._state.pop(name, None)
         if known is not None and now > known[1]:
             self.spans.append(Span(name, known[1], now, known[0], name in self._raised))
 
     def end(self, now: int) -> None:
-        """All states end."""
+        """End all states."""
         for name in list(self._state):
             self.close(name, now)
 
     def open(self, name: str, state: TaskState, now: int) -> None:
-        """Another state begins."""
+        """Begin another state of a task."""
         self.close(name, now)
         self._state[name] = (state, now)
 
     def take(self, now: int, kind: str, name: str) -> None:
-        """One event."""
+        """Take in an event."""
         match kind:
             case "switch":
-                # Whoever ran and has not blocked meanwhile was pre-empted.
+                # A task that ran and has not blocked was pre-empted.
                 before = self._state.get(self.current)
                 if before is not None and self.current != name and before[0] is TaskState.RUNNING:
                     self.open(self.current, TaskState.READY, now)
@@ -93,7 +93,7 @@ class TaskTimeline:
 
 
 def spans(events: Iterable[Event], base_priorities: Mapping[str, int], now: int) -> list[Span]:
-    """What each task (and interrupt, and Swi) did, by the events given, up to `now`."""
+    """The spans of each task, interrupt and Swi up to `now`, from the given events."""
     tasks = TaskTimeline(base_priorities)
     for cycles, kind, name in events:
         tasks.take(cycles, kind, name)

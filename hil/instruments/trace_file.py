@@ -1,12 +1,12 @@
-"""The trace file: what a run did, an event a line.
+"""The trace file: the events of a run, one in each line.
 
     {"hil_trace": 1, "cycles_per_second": 200000000, "channels": ["kernel", "pins"], "about": {"world": "room"}}
     [200001234, "kernel", "switch", "TaskUS"]
     [200001300, "pins", "GPIO69 sonars.start", 1]
 
-JSON Lines: the first line says what the file is, each other one is an event: its cycle, its channel, its name, its
-value.  Events of ticks that found the CPU idle are told afterwards, so the order of lines is not that of time: `read`
-sorts.  A run that was killed leaves a file whose last line may be cut off; it is left out.
+The format is JSON Lines.  The first line is the head of the file.  Each other line is an event: its cycle, its channel,
+its name, its value.  Events of ticks during which the CPU was idle are written later, so the lines are not in the order
+of time; `read` sorts them.  If a run was killed, the last line may be cut off; `read` skips it.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ from hil.instruments import scene
 
 VERSION: Final = 1
 NS_PER_CYCLE: Final = 10**9 // SYSCLK_HZ
-#: Longest line that is read.
+#: The longest line that is read, in characters.
 _LONGEST: Final = 1_000_000
 
 #: Cycle, channel, name, value.
 Event = tuple[int, str, str, Any]
 
-#: Between two looks at what does not tell by itself that it has changed.
+#: The time between two samples of a value that has no signal for its changes.
 SAMPLE_CYCLES: Final = 50 * CYCLES_PER_MS
-#: Names of `RecordedTrace.about`: the pins of a line to a PC.
+#: The keys of `RecordedTrace.about` for the pins of a line to a PC.
 TO_PC: Final = "pin to the PC"
 FROM_PC: Final = "pin from the PC"
 
-#: Channel -> what it holds: the name of its events, and their value.
+#: Channel -> its content: the names of its events, and their values.
 CHANNELS: Final = {
     "kernel": "task switches, ready, block, gates, Hwis, Swis, priorities (kind; name)",
     "pins": "levels of the pins that parts are soldered to (pin and part; 0 or 1)",
@@ -50,19 +50,19 @@ CHANNELS: Final = {
     "scene": "the robot in its world and what its sonars say, looked at every 50 ms (name; hil/instruments/scene.py)",
     "faces": "what the parts of the board see and do, looked at every 50 ms and at the end (part.face; its number)",
 }
-#: Channels whose values are several numbers: what each of them is.
+#: The channels whose values are several numbers, with the name of each number.
 PARTS: Final = {"spi": ("sent", "received"), "pose": ("x_m", "y_m", "heading_rad")}
-#: What is written if nobody says which: what costs little.  Pins have every edge of a motor's PWM.
+#: The channels that are recorded by default, because they cost little.  The channel of pins has every edge of a PWM.
 DEFAULT: Final = ("kernel", "serial", "findings", "pose", "scene", "faces")
 
 
 @dataclass(frozen=True, slots=True)
 class RecordedTrace:
-    """A trace that was read: its channels, and its events in the order of time."""
+    """A trace that was read: its channels, and its events in order of time."""
 
     channels: tuple[str, ...]
     events: list[Event]
-    #: What ran, in words: `world`, `seed`, ...; of a line to a PC its pins (`TO_PC`, `FROM_PC`).
+    #: What ran, as text: `world`, `seed`, ...; and the pins of a line to a PC (`TO_PC`, `FROM_PC`).
     about: Mapping[str, str] = field(default_factory=dict)
 
     @property
@@ -75,7 +75,7 @@ class RecordedTrace:
         return (event for event in self.events if event[1] in channels)
 
     def only(self, channels: Iterable[str]) -> RecordedTrace:
-        """The same with some of its channels.  Raises ValueError for one that it does not have."""
+        """This trace with only some of its channels.  Raises ValueError for a channel that it does not have."""
         wanted = checked(channels)
         missing = set(wanted) - set(self.channels)
         if missing:
@@ -84,7 +84,7 @@ class RecordedTrace:
 
 
 class TraceWriter:
-    """Writes a trace: each event at once."""
+    """Writes a trace.  Each event is written at once."""
 
     def __init__(
         self, file: TextIO | GrowingFile, channels: Iterable[str], about: Mapping[str, str] | None = None
@@ -96,12 +96,12 @@ class TraceWriter:
         file.write(json.dumps(header) + "\n")
 
     def event(self, cycles: int, channel: str, name: str, value: Any) -> None:
-        """One line."""
+        """Write an event as a line."""
         self._file.write(json.dumps((cycles, channel, name, value), separators=(",", ":")) + "\n")
 
 
 def checked(channels: Iterable[str]) -> tuple[str, ...]:
-    """Names of channels, in their order; `all` means all.  Raises ValueError for one that there is not."""
+    """The names of channels, in the order of `CHANNELS`; `all` means all.  Raises ValueError for an unknown one."""
     wanted = list(channels)
     for name in wanted:
         if name not in CHANNELS and name != "all":
@@ -110,7 +110,7 @@ def checked(channels: Iterable[str]) -> tuple[str, ...]:
 
 
 def read(path: str | Path) -> RecordedTrace:
-    """A trace file.  Raises ValueError, with the line, for what is none; OSError."""
+    """Read a trace file.  Raises ValueError, with the line, if it is none, and OSError if it cannot be read."""
     with opened(path) as file:
         header = _parsed(file.readline(_LONGEST), f"{path}:1")
         if not isinstance(header, dict) or header.get("hil_trace") != VERSION:

@@ -1,4 +1,4 @@
-"""Variables of the firmware at file scope, looked at in a way that no detector takes for an access."""
+"""Reads variables of the firmware at file scope.  No detector counts this as an access of the firmware."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from typing import Any
 from emulator.c28x.ctypes import part_name, scalars
 from emulator.c28x.link import Linked
 
-#: A value now; None: never written, or no number.
+#: A function that reads the present value.  None: never written, or no number.
 VariableReader = Callable[[], float | None]
 
 
 def variables(linked: Linked) -> Iterator[tuple[str, VariableReader]]:
-    """Every scalar by its name, `module.object`, `module.object.member`, `module.object[3]`."""
+    """All scalars by their names: `module.object`, `module.object.member`, `module.object[3]`."""
     for path, obj in linked.objects.items():
         for index, (offset, _) in enumerate(scalars(obj.declaration.ctype)):
             yield path + part_name(obj.declaration.ctype, offset), _reader(obj.data, index)
 
 
 def variable(linked: Linked, name: str) -> VariableReader | None:
-    """The one of this name, if there is one."""
+    """The reader of the scalar of this name; None if there is none."""
     for path, obj in linked.objects.items():
         if name == path or name.startswith((f"{path}.", f"{path}[")):
             for index, (offset, _) in enumerate(scalars(obj.declaration.ctype)):

@@ -1,7 +1,7 @@
-"""A trace as VCD (IEEE 1364, four-state value change dump), for GTKWave and PulseView: time base 1 ns.
+"""Writes a trace as VCD (IEEE 1364, four-state value change dump), for GTKWave and PulseView.  The time base is 1 ns.
 
-Pins are bits, bytes and words vectors, registers vectors, volts and poses reals; a task is a vector: 0 blocked, 1
-ready, 2 running, 3 waits at a gate.
+Pins are bits; bytes, words and registers are vectors; volts and poses are reals.  A task is a vector: 0 is blocked, 1
+ready, 2 running, 3 waiting at a gate.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _Change = tuple[int, str, str, str, int | None, Any]
 
 
 def write_vcd(path: str | Path, trace: RecordedTrace) -> None:
-    """Write to `path`."""
+    """Write a trace to `path`."""
     from vcd import VCDWriter
 
     changes = sorted((change for change in _changes(trace)), key=lambda change: change[0])
@@ -38,7 +38,7 @@ def write_vcd(path: str | Path, trace: RecordedTrace) -> None:
 
 
 def _identifier(name: str) -> str:
-    """A name without what VCD's readers stumble over."""
+    """A name, in which characters that readers of VCD do not accept are replaced."""
     return re.sub(r"[^A-Za-z0-9_.]+", "_", name)
 
 

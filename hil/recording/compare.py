@@ -1,9 +1,9 @@
-"""Two runs beside each other: aligned in time, frame by frame, and how far they are apart.
+"""Compares two runs: aligns them in time, pairs their frames, and measures the differences.
 
-Time zero of each run is the first order that both have in common and that is not ``#STOP`` (a console sends that at its
-start), or else the first frame.  Then a frame of one run is paired with the nearest of the other, each at most once, in
-order, if they are not further apart than `tolerance_s`.  Runs without times (the console's file of points) are paired
-by what stands in the frames.
+Time zero of each run is the first order that both runs have and that is not ``#STOP`` (a console sends that at its
+start); without such an order, it is the first frame.  Then each frame of one run is paired with the nearest frame of
+the other, in order and at most once, if their times differ by at most `tolerance_s`.  Runs without times (the console's
+file of points) are paired by the content of their frames.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from hil.files import read_bytes
 from hil.recording.log import Direction, Recording, parse_log
 from hil.recording.trajectory import is_trajectory, parse_trajectory
 
-#: Half of the robot's frame period (TaskODO: 250 ms): further apart, another frame is meant.
+#: Half of the robot's frame period (TaskODO: 250 ms).  Frames with a greater difference in time do not belong together.
 TOLERANCE_S: Final = 0.125
 _STOP: Final = b"#STOP\r"
 
@@ -31,7 +31,7 @@ def _number(index: int, frame: OdometryFrame) -> int:
     return frame.values[index]
 
 
-#: Columns of a comparison: name, unit, value of a frame.
+#: The columns of a comparison: name, unit, and the function that gives the value of a frame.
 QUANTITIES: Final[tuple[tuple[str, str, Callable[[OdometryFrame], int]], ...]] = tuple(
     (name, unit, partial(_number, index)) for index, (name, unit) in enumerate(NUMBERS)
 )
@@ -39,14 +39,14 @@ QUANTITIES: Final[tuple[tuple[str, str, Callable[[OdometryFrame], int]], ...]] =
 
 @dataclass(slots=True)
 class RecordedRun:
-    """Frames and orders of a file, with seconds since its beginning (or without)."""
+    """The frames and orders of a file, with their times in seconds since its start if the file has times."""
 
     name: str
     frames: list[OdometryFrame]
     #: When each frame was complete; empty if the file has no times.
     times_s: list[float] = field(default_factory=list)
     orders: list[tuple[float, bytes]] = field(default_factory=list)
-    #: What a user must know before believing the rest, one line each.
+    #: What a user must know before trusting the comparison, one line each.
     statements: list[str] = field(default_factory=list)
 
     @property
@@ -57,43 +57,43 @@ class RecordedRun:
 
 @dataclass(frozen=True, slots=True)
 class QuantityDifference:
-    """How one quantity of the second run differs from the first, over all pairs."""
+    """The difference of one quantity between the second and the first run, over all pairs."""
 
     name: str
     unit: str
     mean: float
     rms: float
     largest: float
-    #: Index of the pair where it is largest.
+    #: The index of the pair with the largest difference.
     at: int
 
 
 @dataclass(frozen=True, slots=True)
 class PairedRuns:
-    """Two runs, paired."""
+    """Two runs with their pairs of frames."""
 
     first: RecordedRun
     second: RecordedRun
-    #: Seconds to take from the times of each run so that both begin together, and what they were aligned by.
+    #: The seconds to subtract from the times of each run so that both start together, and what aligned them.
     zero_s: tuple[float, float]
     aligned_by: str
-    #: Indices of frames that belong together.
+    #: The indices of frames that belong together.
     pairs: list[tuple[int, int]]
     differences: list[QuantityDifference]
 
     @property
     def only_first(self) -> int:
-        """Frames of the first run without a partner."""
+        """The number of frames of the first run without a pair."""
         return len(self.first.frames) - len(self.pairs)
 
     @property
     def only_second(self) -> int:
-        """Frames of the second run without a partner."""
+        """The number of frames of the second run without a pair."""
         return len(self.second.frames) - len(self.pairs)
 
 
 def read_run(path: Path) -> RecordedRun:
-    """A wire log or the console's file of points.  Raises ValueError and OSError."""
+    """Read a wire log or the console's file of points.  Raises ValueError and OSError."""
     data = read_bytes(path)
     if is_trajectory(data):
         trajectory = parse_trajectory(data)
@@ -103,7 +103,7 @@ def read_run(path: Path) -> RecordedRun:
 
 
 def run_of(recording: Recording) -> RecordedRun:
-    """Frames and whole orders of a wire log."""
+    """The frames and the complete orders of a wire log."""
     run = RecordedRun(recording.name, [], statements=recording.statements())
     decoder = FrameDecoder()
     order = b""
@@ -122,7 +122,7 @@ def run_of(recording: Recording) -> RecordedRun:
 
 
 def compare(first: RecordedRun, second: RecordedRun, *, tolerance_s: float = TOLERANCE_S) -> PairedRuns:
-    """Pair two runs and measure.  Raises ValueError if there is nothing to compare."""
+    """Pair two runs and measure their differences.  Raises ValueError if there is nothing to compare."""
     for run in (first, second):
         if not run.frames:
             raise ValueError(f"{run.name}: has no frames")
@@ -155,7 +155,7 @@ def _zero(first: RecordedRun, second: RecordedRun) -> tuple[tuple[float, float],
 
 
 def _pair_by_time(first: Sequence[float], second: Sequence[float], tolerance_s: float) -> list[tuple[int, int]]:
-    """Nearest neighbours, in order, each at most once."""
+    """Pair frames that are nearest in time, in order, each at most once."""
     pairs: list[tuple[int, int]] = []
     b = 0
     for a, time in enumerate(first):
@@ -172,7 +172,7 @@ def _pair_by_time(first: Sequence[float], second: Sequence[float], tolerance_s: 
 
 
 def _pair_by_content(first: Sequence[OdometryFrame], second: Sequence[OdometryFrame]) -> list[tuple[int, int]]:
-    """Equal frames in order; between them, frames that stand at the same place."""
+    """Pair equal frames in order; between them, pair frames by their position."""
     matcher = SequenceMatcher(None, [frame.values for frame in first], [frame.values for frame in second])
     pairs = []
     for tag, a0, a1, b0, b1 in matcher.get_opcodes():

@@ -1,4 +1,4 @@
-"""The wire log: both directions of a serial line with time, as lines of ASCII.
+"""The wire log: both directions of a serial line with their times, as lines of ASCII.
 
 ::
 
@@ -9,17 +9,17 @@
     < 1228612.4 #ODO 0,0,0,1922,300,301\\n\\r
     end 60000000 9f2c01aa
 
-* The first line names the format and its version.  Then come lines of a key and a text, which need not be there:
-  ``clock`` (``virtual``: the emulated robot's own time, exact; ``real``: this computer's), ``setup`` (JSON: what
-  determines an emulated run), ``began`` (date and time), ``port``.
-* ``>`` went to the robot, ``<`` came from it.  The time is in microseconds since the log began, with up to three
-  decimals, because a cycle is 5 ns; it is that of the last byte.  After one space: the bytes, printable ASCII as it is,
-  the others (and the backslash, and a space at the end) as ``\\r \\n \\t \\\\ \\xNN``.
-* Lines are in the order in which they were finished; a frame that was begun before an order may follow it.
-* ``end`` carries the time at which recording ended and the CRC-32 of everything before it.  Without it the log was cut.
-* Empty lines and lines that begin with ``;`` are for people.
+* The first line names the format and its version.  Then come optional lines of a key and a text: ``clock`` (``virtual``
+  is the exact time of the emulated robot, ``real`` the time of this computer), ``setup`` (JSON that determines an
+  emulated run), ``began`` (date and time), ``port``.
+* ``>`` marks bytes to the robot, ``<`` bytes from it.  The time is that of the last byte, in microseconds since the log
+  began, with up to three decimals, because a cycle is 5 ns.  After one space the bytes follow.  Printable ASCII is
+  written as it is; other bytes, the backslash, and a space at the end are written as ``\\r \\n \\t \\\\ \\xNN``.
+* Lines are in the order in which they were complete.  So a frame that began before an order may follow it.
+* ``end`` has the time at which recording ended, and the CRC-32 of everything before it.  A log without it was cut.
+* Empty lines and lines that begin with ``;`` are comments.
 
-A reader takes what is readable and says what is not: `Recording.problems`.
+A reader takes every line that it can read, and lists the others in `Recording.problems`.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ _HEADER = re.compile(r"(?P<key>[a-z][a-z_]*) (?P<text>[ -~]*)")
 
 
 class Direction(Enum):
-    """Which way bytes went."""
+    """The direction of bytes."""
 
     TO_ROBOT = ">"
     FROM_ROBOT = "<"
@@ -57,7 +57,7 @@ class Direction(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """Bytes that passed; the time is that of the last of them, in nanoseconds since the log began."""
+    """Bytes of one direction.  The time is that of the last byte, in nanoseconds since the log began."""
 
     time_ns: int
     direction: Direction
@@ -66,19 +66,19 @@ class Record:
 
 @dataclass(slots=True)
 class Recording:
-    """A log as far as it could be read."""
+    """The readable part of a log."""
 
     name: str = ""
     header: dict[str, str] = field(default_factory=dict)
     records: list[Record] = field(default_factory=list)
-    #: When recording ended; None if the log does not tell.
+    #: When recording ended, in nanoseconds; None if the log does not say.
     end_ns: int | None = None
-    #: What could not be read or does not fit, one sentence each.
+    #: Lines that could not be read or are inconsistent, one sentence each.
     problems: list[str] = field(default_factory=list)
 
     @property
     def duration_ns(self) -> int:
-        """How long it is, as far as known."""
+        """The length of the recording in nanoseconds: up to its end, or else up to its last record."""
         last = self.records[-1].time_ns if self.records else 0
         return last if self.end_ns is None else max(last, self.end_ns)
 
@@ -87,7 +87,7 @@ class Recording:
         return b"".join(record.data for record in self.records if record.direction is direction)
 
     def statements(self) -> list[str]:
-        """What a user must know before believing the rest, one line each; none for a sound log."""
+        """What a user must know before trusting the log, one line each; empty for an intact log."""
         return [f"{self.name}: {problem}" for problem in self.problems]
 
 
@@ -98,7 +98,7 @@ def escape(data: bytes) -> str:
 
 
 def unescape(text: str) -> bytes:
-    """The bytes of `escape`.  Raises ValueError for an escape that is none."""
+    """The bytes of a text that `escape` has made.  Raises ValueError for an invalid escape."""
 
     def byte(match: re.Match[str]) -> str:
         code = match[1]
@@ -118,7 +118,7 @@ def format_time(time_ns: int) -> str:
 
 
 class LogWriter:
-    """Writes a log line by line, so that what was recorded before a crash is there."""
+    """Writes a log line by line.  So the log has everything up to a crash."""
 
     def __init__(self, file: IO[str] | GrowingFile, header: Mapping[str, str]) -> None:
         self._file = file
@@ -132,7 +132,7 @@ class LogWriter:
         self._line(f"{record.direction.value} {format_time(record.time_ns)} {escape(record.data)}")
 
     def end(self, time_ns: int) -> None:
-        """Recording ends."""
+        """Write the end of the log."""
         self._line(f"end {format_time(time_ns)} {self._crc:08x}")
 
     def _line(self, text: str) -> None:
@@ -143,12 +143,12 @@ class LogWriter:
 
 
 def read_log(path: Path) -> Recording:
-    """Read a wire log.  Raises ValueError if it is none, OSError if it cannot be read."""
+    """Read a wire log.  Raises ValueError if the file is no wire log, OSError if it cannot be read."""
     return parse_log(read_bytes(path), str(path))
 
 
 def parse_log(data: bytes, name: str) -> Recording:
-    """A recording out of the bytes of a log.  Raises ValueError if it is no log of this version."""
+    """Parse the bytes of a log.  Raises ValueError if they are no log of this version."""
     lines = data.split(b"\n")
     _check_first(lines[0], name)
     recording = Recording(name)
@@ -182,7 +182,7 @@ def _check_first(line: bytes, name: str) -> None:
 
 
 def _take(raw: bytes, recording: Recording, crc: int) -> str:
-    """Add what a line says to `recording`; what is wrong with it, or ""."""
+    """Add the content of a line to `recording`.  Returns what is wrong with the line, or ""."""
     if len(raw) > LONGEST_LINE:
         return "is too long"
     line = raw.removesuffix(b"\r").decode("latin-1")

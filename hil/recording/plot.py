@@ -1,4 +1,4 @@
-"""A comparison as a picture: both paths, and each quantity of both runs against time."""
+"""A picture of a comparison: both paths, and each quantity of both runs against time."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from hil.recording.compare import QUANTITIES, PairedRuns, RecordedRun
 
 
 def plot_comparison(path: Path, comparison: PairedRuns) -> None:
-    """Draw to `path` (PNG, SVG or PDF by its suffix).  Runs without times are drawn over the number of the frame."""
+    """Draw a comparison and write it to `path` (PNG, SVG or PDF by its suffix).
+
+    Runs without times are drawn against the number of the frame.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

@@ -1,7 +1,7 @@
-"""A recording played again: its orders to an emulated robot, or its frames to a console.
+"""Plays a recording again: its orders to an emulated robot, or its frames to a console.
 
-Orders are given to the line at their times, to the cycle.  A log of the emulated robot carries the setup of its run, so
-the same robot runs again and must send the same bytes; whether it did, and where not, is a `Verdict`.
+Orders reach the line at their times, exact to the cycle.  A log of the emulated robot contains the setup of its run, so
+the same robot runs again and must send the same bytes.  A `Verdict` says whether it did, and where not.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from hil.serial_port import SerialPort
 from hil.session import NS_PER_CYCLE, Session
 
 _NS_PER_S: Final = 1_000_000_000
-#: While nothing is due, a console is still listened to this often.
+#: The longest time between two reads of the console's bytes.
 LISTEN_NS: Final = 50_000_000
 
 
 def setup_of(recording: Recording) -> Setup | None:
-    """What determined the recorded run, if the log says.  Raises ValueError for what is no setup of this version."""
+    """The setup of the recorded run; None if the log has none.  Raises ValueError if this version cannot read it."""
     text = recording.header.get("setup")
     if text is None:
         return None
@@ -48,7 +48,7 @@ def setup_of(recording: Recording) -> Setup | None:
 
 
 def orders_of(recording: Recording) -> list[TimedOrder]:
-    """What went to the robot."""
+    """The bytes that went to the robot, with their times."""
     return [
         TimedOrder(record.time_ns / _NS_PER_S, record.data)
         for record in recording.records
@@ -58,14 +58,14 @@ def orders_of(recording: Recording) -> list[TimedOrder]:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """How the bytes of the robot, recorded and played again, compare."""
+    """The comparison of the robot's bytes, recorded and played again."""
 
     equal: bool
     recorded_bytes: int
     replayed_bytes: int
     recorded_frames: int
     replayed_frames: int
-    #: Index of the first frame that differs, or that only one of the two has; None if they are equal.
+    #: The index of the first frame that differs, or that only one of them has; None if they are equal.
     first_difference: int | None
     recorded: bytes
     replayed: bytes
@@ -86,7 +86,7 @@ def judge(recorded: bytes, replayed: bytes) -> Verdict:
 
 
 class _Received:
-    """What the robot sends in a replay."""
+    """Collects the bytes that the robot sends in a replay."""
 
     def __init__(self, then: WireListener | None) -> None:
         self.data = bytearray()
@@ -110,9 +110,9 @@ def replay_orders(
     on_session: Callable[[Session], None] = lambda _session: None,
     progress: Callable[[float], None] = lambda _part: None,
 ) -> Verdict:
-    """Give a booted robot the recorded orders and compare what it sends; `progress` is told the part that is played.
+    """Give a booted robot the recorded orders, and compare the bytes that it sends.
 
-    Raises FirmwareStopped.
+    `progress` gets the part that was played, 0 to 1.  Raises FirmwareStopped.
     """
     received = _Received(wire)
     seconds = recording.duration_ns / _NS_PER_S
@@ -123,15 +123,15 @@ def replay_orders(
     on_session(session)
     session.run(seconds)
     recorded = recording.stream(Direction.FROM_ROBOT)
-    # A log that was cut lacks the frame that was on its way.
+    # A log that was cut lacks the frame that was being sent.
     replayed = received.data[: len(recorded)] if recording.end_ns is None else received.data
     return judge(recorded, bytes(replayed))
 
 
 class Player:
-    """Plays the robot's side of a recording on a port: each frame appears when its last byte ended.
+    """Plays the robot's side of a recording on a port.  Each frame appears at the end of its last byte.
 
-    What the console sends is taken in, given to `wire`, and changes nothing.
+    Bytes of the console go to `wire`, and have no other effect.
     """
 
     def __init__(
@@ -139,7 +139,7 @@ class Player:
     ) -> None:
         self.port = port
         self.bytes_from_console = 0
-        #: How far it has come.
+        #: The time up to which it has played, in nanoseconds.
         self.played_ns = 0
         self._records = [record for record in recording.records if record.direction is Direction.FROM_ROBOT]
         self._end_ns = recording.duration_ns
@@ -152,13 +152,13 @@ class Player:
         self._stop = True
 
     def wait_for_console(self) -> None:
-        """Until the console has sent a byte."""
+        """Wait until the console has sent a byte."""
         while not self._stop and not self._listen(0):
             self._pacer.start(0)
             self._wait(LISTEN_NS)
 
     def run(self) -> None:
-        """Play to the end, or until `stop`."""
+        """Play to the end, or until `stop` is called."""
         self._pacer.start(0)
         for record in self._records:
             self._play_until(record.time_ns)

@@ -1,13 +1,13 @@
-"""A tap between a robot's port and the port of a PC program: carries every byte both ways and tells a `WireListener`.
+"""A tap between a robot's port and the port of a PC program.  It passes every byte on, and tells a `WireListener`.
 
     robot  <->  DevicePort  <->  Tap  <->  SerialPort  <->  PC program
 
-Towards the PC program it does what the robot's own port does: frames are handed over whole, and when nobody reads, the
-oldest give way (`hil.serial_port.frames`).  Towards the robot nothing gives way: the program is read only as fast as
-the robot's device takes bytes.
+Towards the PC program it does what the robot's own port does: it delivers whole frames, and drops the oldest if nobody
+reads (`hil.serial_port.frames`).  Towards the robot nothing is dropped: the program is read only as fast as the robot's
+device accepts bytes.
 
-Times are this computer's, when the bytes were read; an adapter may have had them for a while (an FTDI's latency timer:
-16 ms).
+Times are those of this computer when the bytes were read.  An adapter may have had them for some time (the latency
+timer of an FTDI: 16 ms).
 """
 
 from __future__ import annotations
@@ -22,22 +22,22 @@ from hil.serial_port import Delivery, SerialPort
 from hil.serial_port.device_port import DevicePort
 from hil.session import NS_PER_CYCLE
 
-#: How long nothing is looked at when nothing comes.
+#: The longest wait for bytes, in seconds.
 TURN_S: Final = 0.005
-#: The same while a port that the system cannot wait for must be asked: two byte times of the line.
+#: The wait if a port has to be polled, because the system cannot wait for it: two byte times of the line.
 POLL_S: Final = 0.002
-#: A robot that takes orders never lets more wait than this.
+#: The most bytes that wait for the robot.  A robot that accepts orders never lets more wait.
 _ROOM: Final = 64
 _CHUNK: Final = 4096
 
 
 def open_robot(device: str) -> DevicePort:
-    """The robot's port, for a tap: what is written leaves byte by byte.  Raises PortError."""
+    """Open the robot's port for a tap.  Written bytes leave one by one.  Raises PortError."""
     return DevicePort(device, keep=_ROOM, deliver=Delivery.BYTES)
 
 
 class Tap:
-    """Two ports joined."""
+    """Connects two ports."""
 
     def __init__(
         self,
@@ -61,12 +61,12 @@ class Tap:
 
     @property
     def elapsed_ns(self) -> int:
-        """Time since the tap was made."""
+        """The time since the tap was created, in nanoseconds."""
         return self._monotonic_ns() - self._began_ns
 
     @property
     def elapsed_s(self) -> float:
-        """The same in seconds."""
+        """The time since the tap was created, in seconds."""
         return self.elapsed_ns / 1e9
 
     def stop(self) -> None:
@@ -74,7 +74,7 @@ class Tap:
         self._stop = True
 
     def run(self, duration_s: float | None = None) -> None:
-        """Carry bytes for a time, or until `stop`.  Raises PortError when a device goes away."""
+        """Pass bytes on for a time, or until `stop` is called.  Raises PortError when a device is removed."""
         while not self._stop and (duration_s is None or self.elapsed_s < duration_s):
             self._wait()
             self.turn()
@@ -82,7 +82,7 @@ class Tap:
                 self._tick(self)
 
     def turn(self) -> None:
-        """Carry what lies there."""
+        """Pass on the bytes that have arrived."""
         data = self.robot.receive(_CHUNK)
         now_ns = self.elapsed_ns
         cycles = now_ns // NS_PER_CYCLE
@@ -109,9 +109,9 @@ class Tap:
             self.robot.robot_sent(byte, now_ns // NS_PER_CYCLE)
 
     def _wait(self) -> None:
-        # A robot that takes nothing leaves its program unread: that is no reason to turn at once.
+        # While the robot accepts nothing, its program is not read; its bytes are no reason to look again at once.
         held_back = self.robot.outbound.has_piece
         robot, console = self.robot.wait_fds(), self.console.wait_fds()
-        # A port without a descriptor (Windows, rfc2217://) must be asked, and so must one that takes nothing.
+        # A port without a descriptor (Windows, rfc2217://) must be polled, and so must one that accepts nothing.
         must_ask = held_back or not robot or not console
         wait_readable([*robot, *(() if held_back else console)], POLL_S if must_ask else TURN_S)

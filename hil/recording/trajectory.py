@@ -1,8 +1,8 @@
 """The console's own file of points, ``trayectoria.txt``: a line of headings, then six numbers a line, no times.
 
-The console draws the newest frame it has read, again and again until there is a newer one, and writes it each time.
-So a point may stand there several times and frames are left out; repetitions are taken for one.  Where the console has
-cut a frame wrongly, a line is broken: it is left out and said.
+The console draws the newest frame that it has read, again and again until there is a newer one, and writes it each
+time.  So the file can have a point several times, and lack frames.  Repeated points are read as one.  If the console
+has cut a frame at the wrong place, a line is broken; the reader skips it and says so.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ class Trajectory:
 
 
 def is_trajectory(data: bytes) -> bool:
-    """Whether a file begins as the console's does."""
+    """Whether a file begins like the console's file."""
     return data.lstrip(b"\xef\xbb\xbf").startswith(HEADINGS.encode())
 
 
 def parse_trajectory(data: bytes) -> Trajectory:
-    """The points that can be read."""
+    """Read all points that can be read."""
     result = Trajectory()
     broken: list[int] = []
     for number, line in enumerate(data.decode("utf-8", "replace").splitlines()[1:], 2):

@@ -1,7 +1,7 @@
-"""Writing a wire log while a line is in use.
+"""Writes a wire log while a line is in use.
 
-What goes to the robot is one record a piece, at the time it was given to the line: played again at these times, an
-emulated robot does the same.  What comes from it is gathered to frames (``...\\r``), as a person reads them.
+Each piece of bytes to the robot is a record with the time at which the line got it.  Played again at these times, an
+emulated robot does the same.  Bytes from the robot are gathered to frames (``...\\r``), so that a person can read them.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from hil.files import GrowingFile, growing
 from hil.machine import Setup
 from hil.recording.log import Direction, LogWriter, Record
 
-#: Longer stretches without the end of a frame are written as they are.
+#: The most bytes of a record.  More bytes without the end of a frame become several records.
 LONGEST_STRETCH: Final = 256
 #: CHOICE: the silence that ends a record.  It is longer than the 16 ms after which USB adapters pass on their bytes.
 PAUSE_NS: Final = 40_000_000
 
 
 class WireListener(Protocol):
-    """A listener of both directions of a line.  Times in nanoseconds since recording began."""
+    """A listener to both directions of a line.  Times are in nanoseconds since recording began."""
 
     def to_robot(self, data: bytes, time_ns: int) -> None:
         """Bytes were given to the line towards the robot."""
@@ -78,12 +78,12 @@ class WireLog:
 
 
 def header_of(setup: Setup) -> dict[str, str]:
-    """Header of a log of the emulated robot: what determines the run, so that it can be run again."""
+    """The header of a log of the emulated robot.  It determines the run, so that it can run again."""
     return {"clock": "virtual", "setup": json.dumps(setup.as_dict(), sort_keys=True), "began": _now()}
 
 
 def header_at(port: str) -> dict[str, str]:
-    """Header of a log of a robot behind a port."""
+    """The header of a log of a robot behind a port."""
     return {"clock": "real", "port": port, "began": _now()}
 
 
@@ -93,6 +93,6 @@ def _now() -> str:
 
 @contextmanager
 def record(path: Path, header: Mapping[str, str]) -> Iterator[WireLog]:
-    """A new log.  Raises OSError at once if it cannot be opened, and at the end if it did not take everything."""
+    """Create a log.  Raises OSError at once if it cannot be opened, and at the end if not everything was written."""
     with growing(path, "ascii") as file:
         yield WireLog(file, header)

@@ -1,6 +1,6 @@
-"""Where PC programs meet the robot's serial line.
+"""The ports through which PC programs use the robot's serial line.
 
-base.py      what a port is            frames.py        gathering frames, dropping the oldest whole ones
+base.py      a port                    frames.py        gathers frames, and drops the oldest whole ones
 pty_port.py  pseudo-terminal           link.py          its stable name
 tcp_port.py  pyserial's socket://      rfc2217_port.py  pyserial's rfc2217://
 device_port.py  an existing device
@@ -30,7 +30,7 @@ _LISTEN = re.compile(r"(?P<scheme>tcp|socket|rfc2217)://(?P<host>\[[^\]]*\]|[^:/
 
 
 def check_choice(*, link: str | None = None, listen: str | None = None, device: str | None = None) -> None:
-    """Raise PortError for a wish that no system could fulfil, without opening anything."""
+    """Raise PortError for options that no system can fulfil.  Nothing is opened."""
     if sum(choice is not None for choice in (link, listen, device)) > 1:
         raise PortError("choose one of --link, --listen and --port")
     if link == "" or device == "":
@@ -49,7 +49,7 @@ def open_port(
     keep: int = DEFAULT_KEEP,
     deliver: Delivery = Delivery.FRAMES,
 ) -> SerialPort:
-    """Open the port that a command line asked for; a pseudo-terminal if it asked for none.
+    """Open the port that the command line selects.  Without a selection, it is a pseudo-terminal.
 
     `link` names a pseudo-terminal, `listen` is ``tcp://HOST:PORT`` or ``rfc2217://HOST:PORT`` (without HOST:
     loopback), `device` an existing serial device.  Raises PortError, a ValueError with one clear line.
@@ -74,7 +74,7 @@ def open_port(
 
 
 def _parse_listen(listen: str) -> tuple[str, str, int]:
-    """Scheme, host and port number.  Raises PortError."""
+    """The scheme, host and port number of an address.  Raises PortError."""
     match = _LISTEN.fullmatch(listen)
     if match is None or int(match["port"]) > 65535:
         raise PortError(f"cannot listen on {listen!r}: give tcp://HOST:PORT or rfc2217://HOST:PORT")

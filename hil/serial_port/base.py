@@ -1,8 +1,8 @@
-"""What every serial port of the bench is: a place where a PC program meets the robot's line.
+"""The base class of the bench's serial ports, through which a PC program uses the robot's line.
 
-A port never blocks.  `transmit` hands over what it can and keeps the rest in a bounded buffer; `receive` reads
-no more than the line has room for, so a writer faster than the line fills the kernel's buffer and is held back
-there, as at a real port.
+A port never blocks.  `transmit` sends as many bytes as the other side accepts, and keeps the rest in a bounded buffer.
+`receive` reads no more bytes than the line has room for.  So a program that writes faster than the line fills the
+operating system's buffer and has to wait, as at a real port.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from hil.serial_port.frames import DEFAULT_KEEP, Counters, Delivery, OutboundQue
 class SerialPort(ABC):
     """The PC's side of the robot's serial line."""
 
-    #: What a PC program opens (a device name or a pyserial URL).
+    #: The device name or pyserial URL that a PC program opens.
     address: str
 
     def __init__(self, *, keep: int = DEFAULT_KEEP, deliver: Delivery = Delivery.FRAMES) -> None:
         self.counters = Counters()
         self.outbound = OutboundQueue(self.counters, keep=keep, deliver=deliver)
-        #: Bytes in transit: taken from the buffer, not yet accepted by the system.
+        #: Bytes in transit: taken from the buffer, but not accepted by the system yet.
         self._transit = b""
 
     def robot_sent(self, byte: int, end_cycles: int) -> None:
-        """A byte of the robot, at the end of its stop bit."""
+        """Take in a byte of the robot, at the end of its stop bit."""
         self.outbound.push(byte, end_cycles)
 
     def transmit(self, now_cycles: int) -> None:
-        """Hand over what became visible up to now, as far as the other side takes it."""
+        """Send the bytes that became visible up to now, as far as the other side accepts them."""
         self.outbound.settle(now_cycles)
         while True:
             if not self._transit:
@@ -50,7 +50,7 @@ class SerialPort(ABC):
             self._transit = self._transit[accepted:]
 
     def receive(self, room: int) -> bytes:
-        """At most `room` bytes that the PC sent, b"" if none."""
+        """At most `room` bytes from the PC; b"" if there are none."""
         if room <= 0:
             return b""
         data = self._read(room)
@@ -59,11 +59,11 @@ class SerialPort(ABC):
 
     @abstractmethod
     def wait_fds(self) -> Sequence[int]:
-        """File descriptors whose readability means that `receive` has something to do."""
+        """The file descriptors that are readable when `receive` has something to do."""
 
     @abstractmethod
     def close(self) -> None:
-        """Give everything back.  Closing twice does nothing."""
+        """Release everything.  A second call does nothing."""
 
     def _ready_for_more(self) -> bool:
         return True
@@ -73,7 +73,7 @@ class SerialPort(ABC):
 
     @abstractmethod
     def _write(self, data: bytes) -> int:
-        """Write without waiting; how many bytes were accepted, -1 if the listener is gone."""
+        """Write without waiting.  Returns how many bytes were accepted, or -1 if nobody is connected any more."""
 
     @abstractmethod
     def _read(self, room: int) -> bytes:

@@ -1,7 +1,7 @@
 """An existing serial device by name: a com0com pair on Windows, a USB adapter with a real XBee, any pyserial URL.
 
-The device's own driver buffers what is written; no more than a frame is given to it ahead of the line where the
-driver tells how much waits, so that old frames are dropped here, whole, and not there.
+The driver of the device buffers what is written.  If it reports how many bytes wait, it gets at most one frame more
+than the line has sent.  So old frames are dropped here as whole frames, and not in the driver.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from hil.serial_port.base import SerialPort
 from hil.serial_port.frames import DEFAULT_KEEP, Delivery
 from hil.serial_url import gone, open_url
 
-#: A frame is at most 48 bytes ("#ODO " and six 16-bit integers): one may wait in the driver.
+#: One frame may wait in the driver.  A frame is at most 48 bytes long ("#ODO " and six 16-bit integers).
 MAX_IN_DRIVER: Final = 48
 
 
 class DevicePort(SerialPort):
-    """A serial device of this computer, opened with pyserial and never waited for."""
+    """A serial device of this computer, opened with pyserial.  No call waits for it."""
 
     def __init__(self, device: str, *, keep: int = DEFAULT_KEEP, deliver: Delivery = Delivery.FRAMES) -> None:
         """Open `device`.  Raises PortError if that is not possible."""
@@ -32,7 +32,7 @@ class DevicePort(SerialPort):
         self.address = device
 
     def wait_fds(self) -> Sequence[int]:
-        """The device where the system can wait for it: not on Windows, not an rfc2217:// or loop:// URL."""
+        """The device, if the system can wait for it: not on Windows, and not for an rfc2217:// or loop:// URL."""
         fd = self._fd()
         return () if fd is None else (fd,)
 
@@ -41,7 +41,7 @@ class DevicePort(SerialPort):
         self._serial.close()
 
     def _fd(self) -> int | None:
-        """A descriptor that `select` takes, if there is one."""
+        """A descriptor for `select`, if there is one."""
         if os.name != "posix" or not self._serial.is_open:
             return None
         try:
@@ -57,7 +57,7 @@ class DevicePort(SerialPort):
 
     def _write(self, data: bytes) -> int:
         fd = self._fd()
-        # pyserial would spin on a full driver; so ask first.
+        # pyserial would spin while the driver is full; so ask first.
         if fd is not None and not select.select([], [fd], [], 0)[1]:
             return 0
         try:

@@ -1,14 +1,15 @@
-"""Robot to PC: bytes gathered into frames, and a bounded buffer that forgets whole frames, oldest first.
+"""From the robot to the PC: gathers bytes to frames, in a bounded buffer that drops whole frames, the oldest first.
 
 A frame is ``#...\\r`` (the robot sends ``#ODO x,y,theta,dF,dR,dL\\n\\r``).  Two ways of handing it over:
 
-* `Delivery.FRAMES` (default): a frame becomes visible whole, at the end of its last byte's stop bit.  The line's
-  timing holds at frame grain, and a reader that looks at any moment never sees a number cut in half.  The thesis
-  console takes a frame cut inside its last field for a complete one (five commas) and draws a wrong point.
-* `Delivery.BYTES`: each byte becomes visible at the end of its own stop bit, as on the wire, with that consequence.
+* `Delivery.FRAMES` (default): a whole frame becomes visible at the end of its last stop bit.  So each frame has the
+  right time, and a reader never sees a part of a number.  (The thesis console treats a frame that is cut in its last
+  field as complete, because it has five commas, and draws a wrong point.)
+* `Delivery.BYTES`: each byte becomes visible at the end of its own stop bit, as on the wire.  Readers can see parts of
+  frames.
 
-Nothing is withheld for ever: bytes outside a frame leave after a pause on the line or when there are too many.
-What the port has taken is in transit and never dropped, so what arrives is always whole frames in order.
+No byte is kept back for ever: bytes outside a frame are sent after a pause on the line, or when there are too many.
+Bytes that the port has taken are in transit and never dropped.  So the PC always gets whole frames in order.
 """
 
 from __future__ import annotations
@@ -23,9 +24,9 @@ from emulator.clock import CYCLES_PER_MS
 FRAME_BEGIN: Final = 0x23  # '#'
 FRAME_END: Final = 0x0D  # '\r'
 
-#: A longer run without an end is handed over as it is.  The firmware's own frame buffer has 80 characters.
+#: More bytes than this without an end are sent as they are.  The firmware's frame buffer has 80 characters.
 LONGEST_UNIT: Final = 256
-#: Silence after which an unfinished unit is handed over: five byte times of 9600 baud, rounded.
+#: The silence after which an unfinished unit is sent: five byte times at 9600 baud, rounded.
 PAUSE_CYCLES: Final = 5 * CYCLES_PER_MS
 #: CHOICE: 6 s of odometry.  With less, a program that reads every few seconds loses frames; with more, a program that
 #: was busy gets older frames first.  A kernel's own buffer (4095 bytes) would hold 38 s.
@@ -33,7 +34,7 @@ DEFAULT_KEEP: Final = 24
 
 
 class Delivery(Enum):
-    """When a byte becomes visible to the PC: with its frame, or by itself."""
+    """How bytes become visible to the PC: with their frame, or one by one."""
 
     FRAMES = "frames"
     BYTES = "bytes"
@@ -41,7 +42,7 @@ class Delivery(Enum):
 
 @dataclass(slots=True)
 class Counters:
-    """What passed through a port since it was opened.  Bytes dropped belong to frames dropped."""
+    """Counts of frames and bytes since the port was opened.  Dropped bytes are those of dropped frames."""
 
     bytes_from_robot: int = 0
     bytes_to_robot: int = 0
@@ -60,12 +61,12 @@ class Counters:
 @dataclass(slots=True)
 class _Unit:
     data: bytes
-    #: Part of it was already taken: dropping the rest would tear the frame.
+    #: A part of it was taken already.  It is not dropped, because the frame would be torn.
     begun: bool
 
 
 def split_units(data: bytes) -> list[bytes]:
-    """Cut a stretch of the line after each frame end; the last piece may be unfinished."""
+    """Split bytes of the line after each frame end.  The last piece may be unfinished."""
     pieces = data.split(b"\r")
     units = [piece + b"\r" for piece in pieces[:-1]]
     if pieces[-1]:
@@ -74,7 +75,7 @@ def split_units(data: bytes) -> list[bytes]:
 
 
 class OutboundQueue:
-    """Bytes of the robot on their way out: at most `keep` finished frames wait, the oldest give way."""
+    """Bytes of the robot that wait to be sent.  At most `keep` finished frames wait; then the oldest are dropped."""
 
     def __init__(self, counters: Counters, *, keep: int = DEFAULT_KEEP, deliver: Delivery = Delivery.FRAMES) -> None:
         if not 1 <= keep <= 64:
@@ -89,18 +90,18 @@ class OutboundQueue:
         self._last_byte_end = 0
 
     def __len__(self) -> int:
-        """How many finished units wait."""
+        """The number of finished units that wait."""
         return len(self._waiting)
 
     @property
     def has_piece(self) -> bool:
-        """Whether `take` would return something."""
+        """Whether `take` would return bytes."""
         if self._waiting:
             return True
         return self.deliver is Delivery.BYTES and not self._open_unwanted and self._open_taken < len(self._open)
 
     def push(self, byte: int, end_cycles: int) -> None:
-        """A byte of the robot whose stop bit ended at `end_cycles`."""
+        """Take in a byte of the robot whose stop bit ended at `end_cycles`."""
         self.settle(end_cycles)
         if byte == FRAME_BEGIN and self._open:
             self._close()
@@ -114,12 +115,12 @@ class OutboundQueue:
             self._close()
 
     def settle(self, now_cycles: int) -> None:
-        """Hand over an unfinished unit after which the line has been silent."""
+        """Finish the last unit if the line has been silent since."""
         if self._open and now_cycles - self._last_byte_end >= PAUSE_CYCLES:
             self._close()
 
     def take(self) -> bytes:
-        """The next bytes to put on their way, b"" if none.  They are the caller's now."""
+        """Remove the next bytes and return them; b"" if there are none."""
         if self._waiting:
             return self._waiting.popleft().data
         if self.has_piece:
@@ -129,14 +130,14 @@ class OutboundQueue:
         return b""
 
     def discard(self) -> None:
-        """Nobody is there to hear: forget what waits, so that the next listener begins with a whole frame."""
+        """Drop everything that waits, because nobody is connected.  So the next reader begins with a whole frame."""
         while self._waiting:
             self.count_dropped(self._waiting.popleft().data)
         if self._open_taken:
             self._open_unwanted = True
 
     def count_dropped(self, data: bytes) -> None:
-        """Bytes of one frame that will not arrive."""
+        """Count the bytes of a frame that will not arrive."""
         self.counters.frames_dropped += 1
         self.counters.bytes_dropped += len(data)
 

@@ -1,8 +1,8 @@
-"""A stable name for a pseudo-terminal: a symbolic link that the user chose (``COM3``).
+"""A stable name for a pseudo-terminal: a symbolic link whose name the user chose (``COM3``).
 
-A file that is not ours is never touched.  Which links are ours is known from a record beside a lock, kept in a
-private directory under the system's temporary one: while the lock is held the robot of that link is alive; when
-it is free and the record matches the link, the link is stale (its robot was killed) and is replaced.
+Files of other programs are never touched.  A record and a lock in a private directory, below the system's directory for
+temporary files, say which links are ours.  While the lock is held, the robot of that link runs.  If the lock is free
+and the record matches the link, the robot was killed; then the link is replaced.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from hil.serial_url import PortError
 
 
 class PortLink:
-    """The symbolic link `name` -> `target`, for as long as this object is open."""
+    """The symbolic link `name` -> `target`.  It exists while this object is open."""
 
     def __init__(self, name: str | Path, target: str, *, records: Path | None = None) -> None:
-        """Create the link.  Raises PortError if the name is taken by something else or by a live robot."""
+        """Create the link.  Raises PortError if another file or a running robot has this name."""
         self.path = Path(os.path.abspath(name))
         self.target = target
         folder = records or Path(tempfile.gettempdir()) / f"hil-links-{os.getuid()}"
@@ -60,7 +60,7 @@ class PortLink:
         os.pwrite(self._record, os.fsencode(self.target), 0)
 
     def close(self) -> None:
-        """Remove the link, unless somebody has put something else in its place."""
+        """Remove the link, unless it has been replaced by something else."""
         if self._closed:
             return
         self._closed = True

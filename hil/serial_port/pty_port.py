@@ -1,13 +1,12 @@
-"""A pseudo-terminal: what a program on this machine opens like a serial device.
+"""A pseudo-terminal, which a program on this machine opens like a serial device.
 
-It is raw and without echo before anybody can open it; otherwise the robot would receive its own frames.  The robot's
-process keeps the slave open for its whole life, so a program that opens and closes it a hundred times never hangs the
-line up.
+It is set to raw mode without echo before anybody can open it.  Otherwise the robot would receive its own frames.  The
+robot's process keeps the slave open all the time, so programs can open and close it without hanging up the line.
 
-When nobody reads, the kernel would keep the *oldest* 20 KB (minutes of frames) and refuse the newest.  So unread frames
-are watched through the slave.  As soon as more than `keep` are unread, all are taken back and the newest are put in
-again: a late reader gets the latest frames, whole and in order.  If somebody has read a part of a frame, its rest stays
-in front of them, so a slow reader gets that frame whole, too.
+If nobody reads, the operating system would keep the *oldest* 20 KB (minutes of frames) and refuse the newest.  So the
+port counts the unread frames through the slave.  If more than `keep` are unread, it takes all of them back and writes
+only the newest again.  So a late reader gets the latest frames, whole and in order.  If a reader has read a part of a
+frame, the rest of that frame stays in front of them, so a slow reader gets whole frames, too.
 
 Not modelled: the baud rate, parity and modem lines that a program sets (the line is always 9600 8N1).
 """
@@ -29,7 +28,7 @@ from hil.serial_port.frames import DEFAULT_KEEP, Delivery, split_units
 from hil.serial_port.link import PortLink
 from hil.serial_url import PortError
 
-#: The line discipline shows at most this much as unread.
+#: The line discipline reports at most this number of bytes as unread.
 KERNEL_READ_BUFFER: Final = 4095
 
 
@@ -62,7 +61,7 @@ class PtyPort(SerialPort):
             os.close(self._slave)
             raise
         self.address = str(link) if link is not None else self.device
-        #: The newest bytes written, to know how many frames the unread ones are.
+        #: The newest bytes written.  They show how many frames are unread.
         self._recent = b""
         self._closed = False
 
@@ -71,12 +70,12 @@ class PtyPort(SerialPort):
         return (self._master,)
 
     def unread(self) -> int:
-        """How many bytes lie in the slave, as far as the kernel has carried them there."""
+        """The number of unread bytes in the slave, as far as the operating system has passed them on."""
         (count,) = struct.unpack("i", fcntl.ioctl(self._slave, termios.FIONREAD, b"\0\0\0\0"))
         return int(count)
 
     def transmit(self, now_cycles: int) -> None:
-        """Hand over frames, then see that what lies unread is the recent past."""
+        """Send frames, and keep only the newest of those that nobody has read."""
         # A program that claimed the terminal for itself (TIOCEXCL) and left would lock everybody out, because
         # the slave is never closed for good.
         with contextlib.suppress(OSError):
@@ -102,12 +101,12 @@ class PtyPort(SerialPort):
         return True
 
     def _reclaim(self) -> None:
-        """Take back what lies unread and put the newest frames in again, leaving room for one more."""
+        """Take back all unread bytes and write the newest frames again, with room for one more."""
         taken = b""
         while chunk := self._steal():
             taken += chunk
         units = split_units(taken)
-        # Somebody has read the beginning of the first, and waits for its end.
+        # A reader has read the beginning of the first frame, and waits for its end.
         begun = units[:1] if units and not units[0].startswith(b"#") else []
         whole = units[len(begun) :]
         surplus = max(0, sum(unit.endswith(b"\r") for unit in whole) - (self.outbound.keep - 1))

@@ -28,7 +28,7 @@ IAC: Final = b"\xff"
 
 
 class LineSettings:
-    """The serial port as `PortManager` wants it: attributes to read and set, buffers to purge."""
+    """The serial port for `PortManager`: attributes to read and set, and buffers to purge."""
 
     def __init__(self, forget_output: Callable[[], None]) -> None:
         self.baudrate = BAUD
@@ -44,11 +44,11 @@ class LineSettings:
         self.dsr = True
         self.cd = True
         self.ri = False
-        #: What the robot sent and the program has not seen: the program's *receive* buffer.
+        #: The bytes that the robot sent and the program has not received: the program's *receive* buffer.
         self.reset_input_buffer = forget_output
 
     def reset_output_buffer(self) -> None:
-        """What the program sent is with the line already."""
+        """Do nothing: the line has the program's bytes already."""
 
 
 class Rfc2217Port(TcpPort):
@@ -59,21 +59,21 @@ class Rfc2217Port(TcpPort):
     def __init__(self, host: str, port: int, *, keep: int = DEFAULT_KEEP, deliver: Delivery = Delivery.FRAMES) -> None:
         super().__init__(host, port, keep=keep, deliver=deliver)
         self._manager: PortManager | None = None
-        #: Bytes of the protocol that wait to be sent; they go before the next frame, never inside one.
+        #: Bytes of the protocol that wait to be sent.  They are sent before the next frame, never inside one.
         self._control = bytearray()
 
     def write(self, data: bytes) -> None:
-        """For `PortManager`: an answer of the protocol."""
+        """Queue an answer of the protocol.  `PortManager` calls it."""
         self._control += data
 
     def transmit(self, now_cycles: int) -> None:
-        """Protocol answers first, then frames."""
+        """Send the answers of the protocol, then frames."""
         self._send_control()
         super().transmit(now_cycles)
 
     def _connected(self) -> None:
         self._control.clear()
-        # The types say Serial, the code wants what LineSettings and `write` offer.
+        # Its annotation says Serial, but its code uses only what LineSettings and `write` have.
         self._manager = PortManager(cast(Any, LineSettings(self.outbound.discard)), cast(Any, self))
         self._send_control()
 

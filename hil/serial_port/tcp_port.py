@@ -1,9 +1,9 @@
-"""A TCP server for pyserial's ``socket://host:port``: the line's bytes, nothing else.
+"""A TCP server for pyserial's ``socket://host:port``.  It carries only the bytes of the line.
 
-One program at a time, as at a serial port: a second connection waits in the queue until the first is gone.  A new
-listener begins with the next whole frame; frames sent while nobody is connected are dropped and counted.  The
-receive buffer is kept small so that a fast writer feels the line's speed; what the client's own kernel stores on its
-side is beyond reach, in both directions.
+It serves one program at a time, as a serial port does; a second connection waits in the queue until the first is
+closed.  A new client begins with the next whole frame.  Frames that are sent while nobody is connected are dropped and
+counted.  The receive buffer is small, so that a fast writer is slowed to the speed of the line.  The buffers on the
+client's side cannot be controlled.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from hil.serial_port.base import SerialPort
 from hil.serial_port.frames import DEFAULT_KEEP, Delivery
 from hil.serial_url import PortError
 
-#: CHOICE: about 4 s of a 9600 baud line, in each direction; the kernel rounds it up.
+#: CHOICE: about 4 s of a line of 9600 baud, in each direction.  The operating system rounds it up.
 SOCKET_BUFFER: Final = 4096
 
 
@@ -51,11 +51,11 @@ class TcpPort(SerialPort):
         return self._client is not None
 
     def wait_fds(self) -> Sequence[int]:
-        """The client's socket, or the listener while there is none."""
+        """The client's socket; without a client, the listening socket."""
         return ((self._client or self._listener).fileno(),)
 
     def transmit(self, now_cycles: int) -> None:
-        """Hand over frames to whoever is connected; drop them when nobody is."""
+        """Send frames to the client; drop them if there is none."""
         self._accept()
         if self._client is None:
             self.outbound.settle(now_cycles)
@@ -64,7 +64,7 @@ class TcpPort(SerialPort):
         super().transmit(now_cycles)
 
     def receive(self, room: int) -> bytes:
-        """At most `room` bytes of the connected program."""
+        """At most `room` bytes from the connected program."""
         self._accept()
         return super().receive(room)
 
