@@ -1,6 +1,6 @@
-"""What a console program demands, read from its source: packages, and files at paths of a Windows drive.
+"""Reads from the source of a console program which packages and which files on a Windows drive it needs.
 
-Only top-level imports count: what stands in a function, or in a ``try``, the program can do without.
+Only top-level imports count.  The program can run without an import in a function or in a ``try``.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from hil.console.runner import STAND_INS
 from hil.files import read_bytes
 
 _DRIVE_PATH = re.compile(r"[A-Za-z]:/[^\n]*")
-#: A larger file is no console program.
+#: The size of the largest file that is read as a console program.
 MAX_BYTES: Final = 4 << 20
-#: Part of Python, but often installed apart.
+#: Modules of Python that are often installed as a package of their own.
 _APART: Final = frozenset({"tkinter"})
 
 
@@ -28,9 +28,9 @@ class App:
     """A console program."""
 
     path: Path
-    #: Top-level packages that it imports and that Python may lack.
+    #: The top-level packages that it imports and that may be missing.
     packages: tuple[str, ...]
-    #: Files it names by a drive (``C:/...``), which is a relative path anywhere but on Windows.
+    #: The files that it names with a drive (``C:/...``).  On other systems than Windows, these are relative paths.
     drive_paths: tuple[str, ...]
 
     @property

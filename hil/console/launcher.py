@@ -1,7 +1,7 @@
-"""The console program's process, and its farewell.
+"""The process of the console program, and the stop of the robot after its end.
 
-The console of the thesis leaves without a word to the robot, which goes on with the last order: so when the app has
-ended, however it ended, the robot is told to stop.
+The console of the thesis ends without an order to the robot, which continues with the last order.  So when the app has
+ended, for whatever reason, the robot gets a stop.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from hil.console.folder import RunFolder
 from hil.console.needs import environment
 
 _RUNNER: Final = Path(__file__).with_name("runner.py")
-#: An app that was asked to end and does not is ended the hard way.
+#: If the app has not ended this time after it was asked to, it is killed.
 GRACE_S: Final = 3.0
-#: Six bytes at 9600 baud take 6.25 ms; TaskORD acts on them at once.  And some room.
+#: The time for a stop: six bytes at 9600 baud take 6.25 ms, and TaskORD obeys at once.  The rest is a reserve.
 STOP_NS: Final = 250_000_000
-#: How much of its output is shown when the app failed.
+#: The number of characters of its output that are shown when the app failed.
 _LAST_OUTPUT: Final = 4096
 
 
 class Process:
-    """The app, running."""
+    """The running app."""
 
     def __init__(self, app: App, folder: RunFolder, python: str = sys.executable) -> None:
-        """Start it.  Raises OSError."""
+        """Start the app.  Raises OSError."""
         self.app = app
         self.output = folder.output
         self._killed_at: float | None = None
@@ -51,7 +51,7 @@ class Process:
 
     @property
     def pid(self) -> int:
-        """Its process."""
+        """The identifier of its process."""
         return self._child.pid
 
     @property
@@ -60,20 +60,20 @@ class Process:
         return self._killed_at is not None
 
     def end(self) -> None:
-        """Ask it to end.  Safe in a signal handler."""
+        """Ask the app to end.  Safe in a signal handler."""
         if self._killed_at is None:
             self._killed_at = time.monotonic() + GRACE_S
             self._child.terminate()
 
     def ended(self) -> bool:
-        """Whether it has ended."""
+        """Whether the app has ended."""
         status = self._child.poll()
         if status is None and self._killed_at is not None and time.monotonic() > self._killed_at:
             self._child.kill()
         return status is not None
 
     def failure(self) -> str:
-        """Why it ended, if it was not by itself and with success; otherwise ""."""
+        """Why the app failed; "" if it ended by itself and with success, or because `end` was called."""
         status = self._child.returncode
         if not status or self.asked_to_end:
             return ""
@@ -83,28 +83,28 @@ class Process:
 
 
 class ByteCarrier(Protocol):
-    """What carries bytes between robot and app: a `Session` of a fresh robot, or a `Tap`."""
+    """The connection between robot and app: a `Session` of an emulated robot, or a `Tap`."""
 
     @property
     def elapsed_ns(self) -> int:
-        """Time since it began."""
+        """The time since it began, in nanoseconds."""
 
     def feed(self, data: bytes) -> None:
         """Send bytes to the robot."""
 
     def stop(self) -> None:
-        """End soon."""
+        """End the connection after the present turn."""
 
 
 class StopWhenAppEnds:
-    """After each turn: has the app ended?  Then one ``#STOP``, and the end when the robot has had time for it."""
+    """Checks after each turn whether the app has ended.  Then it sends ``#STOP``, waits for the robot, and ends."""
 
     def __init__(self, process: Process) -> None:
         self._process = process
         self._end_ns: int | None = None
 
     def __call__(self, carrier: ByteCarrier) -> None:
-        """A turn has passed."""
+        """Check the app.  It is called after each turn."""
         if self._end_ns is None:
             if self._process.ended():
                 carrier.feed(order("stop"))

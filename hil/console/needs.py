@@ -1,6 +1,7 @@
-"""Is everything there that a console needs: its packages, Tk, a display?  Asked of the Python that will run it.
+"""Checks that everything that a console needs is installed: its packages, Tk, a display.
 
-What is missing ends in one line that says how to install it, by Debian's name and by pip's.
+The check runs in the Python that will run the console.  If something is missing, one line says how to install it, with
+the names of Debian's package and of pip's.
 """
 
 from __future__ import annotations
@@ -14,13 +15,13 @@ from typing import Final
 
 from hil.console.app import App
 
-#: The question takes a second at most where everything is well; a display that does not answer takes for ever.
+#: The check normally takes a second at most.  It would take for ever if a display does not answer.
 TIMEOUT_S: Final = 30.0
-#: The back end of matplotlib that lives in the same windows as the app.
+#: The back end of matplotlib that uses the same windows as the app.
 BACK_END: Final = "TkAgg"
 _BACK_END_NEEDS: Final = "PIL.ImageTk"
 
-#: Imported name -> (Debian's package, pip's package).
+#: The imported name -> (Debian's package, pip's package).
 _PACKAGES: Final = {
     "tkinter": ("python3-tk", ""),
     "serial": ("python3-serial", "pyserial"),
@@ -28,7 +29,7 @@ _PACKAGES: Final = {
     "PIL": ("python3-pil", "pillow"),
 }
 
-#: Prints which of the names given cannot be imported, and what Tk says about the display.
+#: A program that prints which of the given names cannot be imported, and the error of Tk about the display.
 _QUESTION: Final = """
 import importlib.util, json, sys
 folder, windows, *names = sys.argv[1:]
@@ -59,7 +60,7 @@ class _Answer:
 
 
 def environment(app: App) -> dict[str, str]:
-    """The environment of the app's process."""
+    """The environment variables of the app's process."""
     result = {**os.environ, "PYTHONUTF8": "1", "PYTHONUNBUFFERED": "1"}
     if app.draws:
         result["MPLBACKEND"] = BACK_END
@@ -97,7 +98,7 @@ def _ask(app: App, python: str, names: list[str]) -> _Answer:
 
 
 def _how(missing: tuple[str, ...], python: str) -> str:
-    """What to install for the missing names."""
+    """The text that says what to install for the missing names."""
     known = [_PACKAGES.get(name, (f"python3-{name.lower()}", name)) for name in missing]
     debian = " ".join(package for package, _ in known)
     pip = " ".join(package for _, package in known if package)

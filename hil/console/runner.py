@@ -1,13 +1,12 @@
-"""What the app's process does before the app: ``python runner.py APP``.
+"""Runs an app with modules that only Windows has: ``python runner.py APP``.
 
-Gives the app the modules that only Windows has (or that want root elsewhere) from `standins`, and only the app: a
-module named ``msvcrt`` that everybody finds makes ``subprocess``, ``getpass`` and others believe that they are on
-Windows.  The import statement in files of the app's own folder is answered with the stand-in, which stands in
-`sys.modules` under another name.
+The modules (or those that need root on other systems) come from `standins`.  Only the app gets them.  If everybody
+found a module named ``msvcrt``, then ``subprocess``, ``getpass`` and others would assume Windows.  Import statements in
+files of the app's own folder get the stand-in, which is in `sys.modules` under another name.
 
 Not covered: ``importlib.import_module("msvcrt")`` in the app.
 
-Runs in the Python that runs the app, which may not have this project: it imports nothing of it.
+This file runs in the Python that runs the app.  That may not have this project, so the file imports nothing of it.
 """
 
 from __future__ import annotations
@@ -21,13 +20,13 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-#: Modules that the app finds in `standins`, each in a file of its name.
+#: The modules in `standins`, each in a file of its name.
 STAND_INS = ("keyboard", "msvcrt")
 _FOLDER = Path(__file__).parent / "standins"
 
 
 def load_stand_in(name: str) -> ModuleType:
-    """Load a stand-in from its file, under a name that nobody asks for."""
+    """Load a stand-in from its file, under a name that nobody imports."""
     spec = importlib.util.spec_from_file_location(f"stand_in_{name}", _FOLDER / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None
@@ -46,7 +45,7 @@ def serve(app_folder: Path) -> None:
         if not isinstance(file, str):
             return False
         path = Path(file).absolute()
-        # A virtual environment may live beside the app.
+        # A virtual environment may be in the folder of the app.
         return app_folder in path.parents and "site-packages" not in path.parts
 
     def imported(
@@ -66,7 +65,7 @@ def serve(app_folder: Path) -> None:
 
 
 def main() -> None:
-    """Run the app as ``python APP`` would."""
+    """Run the app like ``python APP``."""
     app = Path(sys.argv[1]).absolute()
     sys.argv = [str(app)]
     sys.path[0] = str(app.parent)

@@ -1,1 +1,1 @@
-"""The real-time workbench: response times computed, and seen on the emulated kernel."""
+"""The real-time workbench: it computes response times, and measures them on the emulated kernel."""

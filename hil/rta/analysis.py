@@ -1,25 +1,25 @@
-"""Response-time analysis with fixed priorities: the exact one, and the bounds that a course adds.
+"""Response-time analysis with fixed priorities: the exact analysis, and the simpler bounds of a course.
 
 Modelled
-    The busy window (Joseph and Pandya 1986; Lehoczky 1990 and Tindell 1994 for deadlines beyond the period and release
-    jitter).  Blocking under three protocols:
+    The analysis uses the busy window (Joseph and Pandya 1986; Lehoczky 1990 and Tindell 1994 for deadlines beyond the
+    period and for release jitter).  Blocking is computed under three protocols:
 
-    ceiling      immediate ceiling: the longest single section of a less urgent task in a gate that a task of this
-                 priority or above enters, too.
-    inheritance  Sha, Rajkumar, Lehoczky 1990: each less urgent task blocks at most once, each gate at most once; the
-                 worst such choice.  `GateMutexPri` does this as long as no gate is entered within another: the owner
-                 is raised when a more urgent task waits, and lowered when it leaves.
-    none         a less urgent owner keeps its priority, and tasks in between run before it: all tasks down to the least
-                 urgent owner that matters count as if they were above, with the work that was left from before.
+    ceiling      Immediate ceiling.  The blocking time is the longest single critical section of a task of lower
+                 priority in a gate that a task of this priority or above enters, too.
+    inheritance  Sha, Rajkumar, Lehoczky 1990.  Each task of lower priority blocks at most once, and each gate at most
+                 once; the worst such choice counts.  `GateMutexPri` does this as long as no gate is entered within
+                 another: the owner's priority is raised when a task of higher priority waits, and lowered at `leave`.
+    none         The owner keeps its lower priority, and tasks in between run before it.  All tasks down to the lowest
+                 owner that matters count as tasks of higher priority, with the work that was left from before.
 
-    With nested gates, `GateMutexPri` raises only the owner of the gate, not the task that this owner waits for, and
+    With nested gates, `GateMutexPri` raises only the owner of the gate, not the task for which this owner waits, and
     lowers it at the first `leave`.  Then no bound better than `none` holds, and `inheritance` is computed as `none`.
     Tasks that may wait in a circle have no bound, except under `ceiling`, where no task waits.
-    Tasks of one priority delay each other (CHOICE: each counts as if it was above the other, which is never too low).
+    Tasks of one priority delay each other.  CHOICE: each counts as if it had the higher priority, so the bound is safe.
 Not modelled
-    Tasks that wait in the middle of an activation for anything but a gate (`Task_sleep`).
+    Tasks that wait during an activation for anything but a gate (`Task_sleep`).
 Time
-    Whole nanoseconds, no rounding.
+    Times are whole nanoseconds, without rounding.
 Sources
     TFG 3.4.4 for `course_bound_ns`; Liu and Layland 1973; Bini, Buttazzo and Buttazzo 2003 for the hyperbolic bound.
 """
@@ -35,14 +35,14 @@ from typing import Final
 
 from hil.rta.task_set import Arrival, Section, TaskModel, TaskSet
 
-#: After so many activations in one busy window the search ends: the processor is full, or next to it.
+#: The search ends after this number of activations in one busy window: the utilisation is 1, or close to it.
 _MAX_ACTIVATIONS: Final = 10_000
-#: How often something comes in a window, and what it takes each time.
+#: The number of arrivals in a window of a length, and the computation time of each.
 _Demand = tuple[Callable[[int], int], int]
 
 
 class Protocol(StrEnum):
-    """How a gate treats its owner while a task of higher priority waits."""
+    """The protocol of a gate: what happens to the owner's priority while a task of higher priority waits."""
 
     NONE = "none"
     INHERITANCE = "inheritance"
@@ -51,19 +51,19 @@ class Protocol(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class ResponseBound:
-    """What was computed of one task.  None: there is no bound, the processor is too full."""
+    """The result for one task.  None: there is no bound, because the utilisation is too high."""
 
     task: TaskModel
     blocking_ns: int
-    #: From the release as it should come, with the task's own jitter.
+    #: From the nominal release, with the task's own jitter, to the end.
     response_ns: int | None
-    #: From the moment at which it is ready.
+    #: From the moment at which the task is ready to the end.
     ready_to_end_ns: int | None
     course_bound_ns: int
 
     @property
     def slack_ns(self) -> int | None:
-        """What is left up to the deadline; negative: it is missed."""
+        """The time between response and deadline; negative if the deadline is missed."""
         return None if self.response_ns is None else self.task.deadline_ns - self.response_ns
 
     @property
@@ -74,7 +74,7 @@ class ResponseBound:
 
 @dataclass(frozen=True, slots=True)
 class StartUp:
-    """When a task is ready for its work at last, from the start of the kernel, and how many releases wait by then."""
+    """When a task has finished its own start-up, from the start of the kernel, and how many releases wait by then."""
 
     task: TaskModel
     ready_ns: int | None
@@ -83,7 +83,7 @@ class StartUp:
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """Tests by utilisation alone.  They speak of tasks with D = T whose priorities follow their periods."""
+    """Tests that use only the utilisation.  They hold for rate-monotonic priorities and deadlines equal to periods."""
 
     utilisation: float
     liu_layland: float
@@ -91,19 +91,19 @@ class Bounds:
 
     @property
     def liu_layland_holds(self) -> bool:
-        """Whether the first one says yes; no means nothing."""
+        """Whether the bound of Liu and Layland holds.  If not, this shows nothing."""
         return self.utilisation <= self.liu_layland
 
     @property
     def hyperbolic_holds(self) -> bool:
-        """Whether the product of U + 1 is at most 2; no means nothing."""
+        """Whether the product of U + 1 is at most 2 (hyperbolic bound).  If not, this shows nothing."""
         return self.hyperbolic <= 2
 
 
 def blocking_ns(task_set: TaskSet, task: TaskModel, protocol: Protocol) -> int:
-    """The longest that less urgent tasks can hold `task` up by their own sections.
+    """The longest time for which critical sections of tasks of lower priority can block `task`.
 
-    Under `none` it is what their sections take alone; who runs between comes on top in `response`.
+    Under `none` it is only the time of their sections; `response` adds the tasks that run in between.
     """
     below, ceilings = _sections_that_block(task_set, task)
     if protocol is Protocol.CEILING:
@@ -122,7 +122,8 @@ def blocking_ns(task_set: TaskSet, task: TaskModel, protocol: Protocol) -> int:
 
 
 def _sections_that_block(task_set: TaskSet, task: TaskModel) -> tuple[Sequence[Mapping[str, int]], Mapping[str, int]]:
-    """For each less urgent task its longest stay in each gate that a task of this priority, or above, enters."""
+    """For each task of lower priority, its longest section in each gate that a task of this priority or above enters.
+    """
     ceilings = task_set.ceilings()
     found = []
     for other in task_set.tasks:
@@ -138,7 +139,10 @@ def _sections_that_block(task_set: TaskSet, task: TaskModel) -> tuple[Sequence[M
 
 
 def course_bound_ns(task_set: TaskSet, task: TaskModel, blocked_ns: int) -> int:
-    """The sufficient test of TFG 3.4.4: every more urgent task as often as it fits into the deadline, rounded up."""
+    """The sufficient test of TFG 3.4.4.
+
+    Each task of higher priority counts as often as its period fits in the deadline, rounded up.
+    """
     above = sum(
         -(-task.deadline_ns // other.arrival.period_ns) * other.computation_ns
         for other in task_set.tasks
@@ -150,11 +154,11 @@ def course_bound_ns(task_set: TaskSet, task: TaskModel, blocked_ns: int) -> int:
 def analyse(
     task_set: TaskSet, protocol: Protocol = Protocol.INHERITANCE, *, blocked_ns: Mapping[str, int] | None = None
 ) -> tuple[ResponseBound, ...]:
-    """Every task, the most urgent first.  `blocked_ns` gives blocking times in place of computed ones."""
+    """Analyse all tasks, the highest priority first.  `blocked_ns` replaces computed blocking times by given ones."""
     found: dict[str, ResponseBound] = {}
     alone = protocol is Protocol.NONE or (protocol is Protocol.INHERITANCE and task_set.nested)
     stuck = _stuck(task_set) if alone else frozenset()
-    for task in reversed(task_set.by_priority()):  # the least urgent first: `none` asks for those below
+    for task in reversed(task_set.by_priority()):  # the lowest priority first: `none` needs the tasks below
         blocked = blocking_ns(task_set, task, Protocol.INHERITANCE if alone else protocol)
         below: list[tuple[TaskModel, int | None]] = []
         if blocked_ns is not None:
@@ -168,7 +172,7 @@ def analyse(
 
 
 def _stuck(task_set: TaskSet) -> frozenset[str]:
-    """Tasks that may wait for ever: they enter a gate of a circle, or one that is held by who waits in it."""
+    """The tasks that may wait for ever: they enter a gate of a circle, or a gate whose owner waits in a circle."""
     gates = set(task_set.circles())
     orders = [order for task in task_set.tasks for section in task.sections for order in section.orders()]
     while more := {held for held, entered in orders if entered in gates} - gates:
@@ -177,7 +181,7 @@ def _stuck(task_set: TaskSet) -> frozenset[str]:
 
 
 def _run_between(task_set: TaskSet, task: TaskModel) -> Sequence[TaskModel]:
-    """Less urgent tasks that can run while `task`, or one above it, waits for a gate whose owner nobody raises."""
+    """The tasks of lower priority that can run while `task`, or one above it, waits for a gate without inheritance."""
     lowest = task.priority
     while True:
         gates = {section.gate for other in task_set.tasks if other.priority >= lowest for section in other.stays}
@@ -188,14 +192,14 @@ def _run_between(task_set: TaskSet, task: TaskModel) -> Sequence[TaskModel]:
 
 
 def _demand(task_set: TaskSet, items: Sequence[TaskModel]) -> list[_Demand]:
-    """What tasks ask of the processor in a window, with their switches."""
+    """The demand of tasks on the processor in a window, with their task switches."""
     return [(item.arrival.count, item.computation_ns + 2 * task_set.switch_ns) for item in items]
 
 
 def _responses(
     task_set: TaskSet, task: TaskModel, blocked_ns: int, below: Sequence[tuple[TaskModel, int | None]]
 ) -> tuple[int, int] | None:
-    """The worst response over a whole busy window: from the nominal release, and from ready."""
+    """The worst response times in a whole busy window: from the nominal release, and from the moment of being ready."""
     equal_or_above = [other for other in task_set.tasks if other is not task and other.priority >= task.priority]
     switches = 2 * task_set.switch_ns
     load = sum(interrupt.utilisation for interrupt in task_set.interrupts) + sum(
@@ -209,7 +213,7 @@ def _responses(
     for other, response in below:
         if response is None:
             return None
-        # What was released up to a response before the window may still run in it.
+        # Work that was released before the window, by up to its response time, may still run in the window.
         others.append((partial(_with_carry_in, other.arrival, response), other.computation_ns + switches))
     own, arrival = task.computation_ns + switches, task.arrival
     window = worst = worst_ready = 0
@@ -228,7 +232,7 @@ def _responses(
 
 
 def _least_window(work_ns: int, at_least_ns: int, others: Sequence[_Demand], most_ns: int) -> int | None:
-    """The least window that holds `work_ns` and all that the others ask for in it."""
+    """The shortest window that has room for `work_ns` and for the demand of the others in it."""
     window = at_least_ns
     while (longer := work_ns + sum(count(window) * time for count, time in others)) > window:
         window = longer
@@ -242,7 +246,7 @@ def _with_carry_in(arrival: Arrival, response_ns: int, window_ns: int) -> int:
 
 
 def _earliest(arrival: Arrival, number: int) -> int:
-    """When the release with this number should have come, the first one being ready at 0 as late as it may be."""
+    """The nominal time of the release with this number, if the first release is ready at 0 with its whole jitter."""
     distances = arrival.distances_ns
     if not distances or not distances[-1]:
         return number * arrival.period_ns - arrival.jitter_ns
@@ -251,7 +255,7 @@ def _earliest(arrival: Arrival, number: int) -> int:
 
 
 def bounds(task_set: TaskSet) -> Bounds:
-    """What the tests by utilisation say."""
+    """The results of the tests that use only the utilisation."""
     count = len(task_set.tasks) + len(task_set.interrupts)
     shares = [task.utilisation for task in task_set.tasks] + [i.utilisation for i in task_set.interrupts]
     return Bounds(
@@ -260,9 +264,9 @@ def bounds(task_set: TaskSet) -> Bounds:
 
 
 def most_computation_ns(task_set: TaskSet, name: str, protocol: Protocol = Protocol.INHERITANCE) -> int | None:
-    """How long the computation of one task may take, all else as it is, with every deadline kept; None: not even so.
+    """The longest computation time of one task with which all deadlines are kept; None if there is none.
 
-    Its sections stay as they are.
+    Everything else, also the sections of the task, stays as it is.
     """
     task = next(task for task in task_set.tasks if task.name == name)
 
@@ -277,7 +281,7 @@ def most_computation_ns(task_set: TaskSet, name: str, protocol: Protocol = Proto
 
 
 def most_growth(task_set: TaskSet, protocol: Protocol = Protocol.INHERITANCE) -> float | None:
-    """The factor by which all computation times of tasks (and their sections) may grow; None: it is below 1."""
+    """The factor by which the computation times of all tasks, and their sections, may grow; None if it is below 1."""
 
     def longer(sections: Sequence[Section], thousandths: int) -> tuple[Section, ...]:
         return tuple(
@@ -301,7 +305,7 @@ def most_growth(task_set: TaskSet, protocol: Protocol = Protocol.INHERITANCE) ->
 
 
 def _largest(holds_with: Callable[[int], bool], low: int, high: int) -> int:
-    """The last whole number from `low` (kept) to below `high` (not kept) that is kept."""
+    """The greatest whole number for which `holds_with` is true.  It is true for `low` and false for `high`."""
     while high - low > 1:
         middle = (low + high) // 2
         if holds_with(middle):
@@ -312,9 +316,10 @@ def _largest(holds_with: Callable[[int], bool], low: int, high: int) -> int:
 
 
 def start_up(task_set: TaskSet, first_release_ns: int = 0) -> tuple[StartUp, ...]:
-    """When each task has done its own start-up, while those above already get their releases.
+    """When each task has finished its own start-up, while the tasks above already get their releases.
 
-    The kernel starts at 0; the releases begin at `first_release_ns`.  Blocking does not count: no gate is entered yet.
+    The kernel starts at 0, and the releases begin at `first_release_ns`.  There is no blocking: no task has entered a
+    gate yet.
     """
     found = []
     for task in task_set.by_priority():

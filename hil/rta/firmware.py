@@ -1,8 +1,8 @@
-"""The task set of the running firmware: what its tasks and gates take, seen over phasings of its Clock objects.
+"""Measures the task set of the running firmware: the times of its tasks and gates, for many phasings.
 
-The robot (or a board of the user's) starts up as always.  Then its Clock objects are stopped and started again with new
-delays, so that their tasks come together in another way; orders come at random moments between them.  The first phasing
-is the critical instant: all Clock objects fall due at one tick, and the end of an order with them.
+The robot (or a board of the user) starts up as usual.  Then its Clock objects are stopped and started again with new
+delays, so that the releases of their tasks have other phases; orders come at random moments between them.  The first
+phasing is the critical instant: all Clock objects are due at one tick, together with the end of an order.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ from hil.rta.observe import NS_PER_CYCLE, Observer
 from hil.rta.task_set import TaskSet
 from hil.running import RunningBoard
 
-#: The deadlines of the robot's tasks, in ns (TFG figure 39); of any other task it is the period.
+#: The deadlines of the robot's tasks, in ns (TFG figure 39).  The deadline of any other task is its period.
 DEADLINES_NS: Final = {
     "TaskUS": 5_000_000, "TaskGYRO": 5_000_000, "TaskORD": 6_250_000, "TaskSERVO": 25_000_000,
     "TaskNAVIGATION": 50_000_000, "TaskODO": 250_000_000,
 }  # fmt: skip
-#: The least distance of TaskORD's releases, in ns: the shortest order on the line (TFG 3.4.2).
+#: The least time between two releases of TaskORD, in ns: the time of the shortest order on the line (TFG 3.4.2).
 SHORTEST_ORDER_NS: Final = 6_250_000
-#: A byte on the line of 9600 baud (TFG 3.4.2).
+#: The time of a byte on the line of 9600 baud (TFG 3.4.2).
 _BYTE_CYCLES: Final = SYSCLK_HZ * 10 // 9600
 _STEP_CYCLES: Final = SYSCLK_HZ // 20
 
 
 @dataclass(frozen=True, slots=True)
 class TaskStartUp:
-    """A task's start-up: CPU time up to its first wait, and when that was (after power-up)."""
+    """The start-up of a task: its CPU time up to its first wait, and when that was (after power-up)."""
 
     task: str
     computation_us: float
@@ -42,7 +42,7 @@ class TaskStartUp:
 
 
 class RunningFirmware:
-    """A board with its program, powered up here.  `orders` are fed in turn, one a phasing."""
+    """A board with its program.  `orders` are sent in turn, one in each phasing."""
 
     def __init__(self, machine: RunningBoard, *, orders: Sequence[bytes] = (), seed: int = 1) -> None:
         self.machine = machine
@@ -55,7 +55,7 @@ class RunningFirmware:
         machine.board.trace.read(self._who_releases)
 
     def start(self) -> None:
-        """Start up, and count from then on."""
+        """Run the start-up, and measure from then on."""
         self.machine.boot()
         self.observer.begin()
 
@@ -64,7 +64,7 @@ class RunningFirmware:
         return [timer for timer in self.machine.board.kernel.clocks.queue if timer.period and timer.active]
 
     def _who_releases(self, _cycles: int, kind: str, name: str) -> None:
-        """A task that is made ready within the function of a Clock object has its period."""
+        """Note the Clock object that releases a task: the task has the period of that object."""
         if kind == "clock":
             self._due = name
         elif kind == "swi end":
@@ -73,7 +73,7 @@ class RunningFirmware:
             self._released_by[name] = self._due
 
     def run(self, phasings: int, progress: Callable[[float], None] = lambda fraction: None) -> None:
-        """The critical instant, then so many random phasings."""
+        """Run the critical instant, and then a number of random phasings."""
         for number in range(phasings + 1):
             self._phasing(number, random=number > 0)
             progress((number + 1) / (phasings + 1))
@@ -83,7 +83,7 @@ class RunningFirmware:
         longest = max((timer.period for timer in self._clocks), default=100)
         tick_cycles = clocks.tick_period_us * CYCLES_PER_MS // 1000 + 1
         for timer in self._clocks:
-            # Not before its period is over, so that no release comes sooner after another than it may.
+            # At least a period, so that no release follows another sooner than it may.
             timer.timeout = timer.period + self._random.randrange(timer.period) if random else longest
             clocks.start(timer)
         begin = machine.clock.now
@@ -103,7 +103,7 @@ class RunningFirmware:
             machine.run_until(min(cycles, machine.clock.now + _STEP_CYCLES))
 
     def measured(self, deadlines_ns: Mapping[str, int] = DEADLINES_NS) -> TaskSet:
-        """The set with the largest times of the runs; what a Clock object releases has its period."""
+        """The task set with the largest times of the runs.  A task that a Clock object releases has its period."""
         for obj in self.machine.firmware.linked.objects.values():
             for value in obj.data:
                 if isinstance(value, GateMutexPri | GateMutex):
@@ -118,11 +118,11 @@ class RunningFirmware:
         )
 
     def of_own_c(self) -> frozenset[str]:
-        """The tasks that run code which was not calibrated, because it is the user's."""
+        """The tasks that run code of the user, whose computation times were not calibrated."""
         return self.machine.of_own_c(self.observer.names())
 
     def start_ups(self) -> Sequence[TaskStartUp]:
-        """What start-up took, task by task, as they came to their first wait."""
+        """The start-up of each task, in the order of their first waits."""
         seen = [
             TaskStartUp(name, task.start_up * NS_PER_CYCLE / 1000, task.first_wait_at * NS_PER_CYCLE / 1e6)
             for name, task in self.observer.tasks.items()

@@ -1,8 +1,8 @@
-"""What a run of the kernel shows of response times: from the trace alone.
+"""Measures response times in a run of the kernel, from its trace alone.
 
-Every cycle belongs to somebody: a task, an interrupt, a Swi, or nobody.  An activation of a task begins when it is made
-ready and ends when it blocks, as in `emulator.sysbios.statistics`; waiting for a gate is part of it.  A stay in a gate
-is the CPU time of its owner from `enter` to `leave`, with the switches back to it.
+Each cycle belongs to a task, an interrupt, a Swi, or to nobody.  An activation of a task begins when the task becomes
+ready and ends when it blocks, as in `emulator.sysbios.statistics`; waiting for a gate is part of it.  The time in a
+gate is the CPU time of its owner from `enter` to `leave`, with the task switches back to the owner.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from hil.rta.task_set import Arrival, Interrupt, Section, TaskModel, TaskSet
 
 NS_PER_CYCLE: Final = 10**9 // SYSCLK_HZ
 
-#: So many distances between two of a kind are kept: bursts up to this length are seen as such.
+#: The number of distances that are kept.  Longer bursts of arrivals are not seen.
 KEPT_DISTANCES: Final = 16
 
 
 @dataclass(frozen=True, slots=True)
 class CpuSpan:
-    """A span in which one thread has the CPU, in cycles; `gate` is what a task holds meanwhile."""
+    """A span in which one thread has the CPU, in cycles; `gate` is the gate that a task holds during it."""
 
     who: str
     begin: int
@@ -45,7 +45,7 @@ class Activation:
 
 
 class Arrivals:
-    """The least time that 2, 3, ... arrivals in a row have spanned, in cycles."""
+    """The least time between the first and the last of 2, 3, ... consecutive arrivals, in cycles."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -53,7 +53,7 @@ class Arrivals:
         self._last: list[int] = []
 
     def add(self, cycles: int) -> None:
-        """One more."""
+        """Add an arrival."""
         for index, earlier in enumerate(reversed(self._last)):
             span = cycles - earlier
             if index == len(self.distances):
@@ -68,46 +68,46 @@ class Arrivals:
 
 @dataclass(slots=True)
 class ObservedTask:
-    """One task of the run; times in cycles."""
+    """The measurements of one task; times are in cycles."""
 
     computation: int = 0
     response: int = 0
     activations: int = 0
     arrivals: Arrivals = field(default_factory=Arrivals)
-    #: The longest stay in each gate; before it in the key the gates that were held as it was entered.
+    #: The longest time in each gate.  The key has the gates that were held before, and the gate as its last element.
     gates: dict[tuple[str, ...], int] = field(default_factory=dict)
     worst: Activation | None = None
-    #: CPU time up to the first wait, and when that was.
+    #: The CPU time up to the first wait, and when that was.
     start_up: int = 0
     first_wait_at: int | None = None
-    # The activation that runs.
+    # The running activation.
     ready_at: int | None = None
     used: int = 0
     waits: bool = False
-    #: Gates that are held, and the CPU time in each so far.
+    #: The gates that are held, and the CPU time in each so far.
     held: dict[str, int] = field(default_factory=dict)
-    #: Those, with what was held before them.
+    #: The gates that are held, each with the gates that were held before it.
     paths: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
 class ObservedInterrupt:
-    """An interrupt or a Swi: the longest, and how they come."""
+    """The measurements of an interrupt or a Swi: its longest run, and its arrivals."""
 
     computation: int = 0
     arrivals: Arrivals = field(default_factory=Arrivals)
 
 
 class Observer:
-    """Listen with it: `trace.listen(observer)`.  `begin` forgets what runs already."""
+    """Measures from a trace: `trace.listen(observer)`.  After `begin`, activations that run already do not count."""
 
     def __init__(self) -> None:
         self.tasks: dict[str, ObservedTask] = {}
         self.above: dict[str, ObservedInterrupt] = {}
-        #: Names of gates in place of the kernel's.
+        #: The names for gates that replace those of the kernel.
         self.gate_names: dict[str, str] = {}
         self._running = ""
-        #: Interrupts and Swis that run, the innermost last: name, its CPU time so far.
+        #: The running interrupts and Swis, the innermost last: the name, and the CPU time so far.
         self._stack: list[tuple[str, int]] = []
         self._owner: dict[str, str] = {}
         self._waiting: dict[str, list[str]] = {}
@@ -123,13 +123,13 @@ class Observer:
         }  # fmt: skip
 
     def __call__(self, cycles: int, kind: str, name: str) -> None:
-        """One trace event."""
+        """Take in a trace event."""
         handler = self._handlers.get(kind)
         if handler is not None:
             handler(cycles, name)
 
     def begin(self) -> None:
-        """Count from now on; activations that run already are left out."""
+        """Measure from now on.  Activations that run already do not count."""
         self._counting = True
         for seen in self.tasks.values():
             seen.ready_at = None
@@ -226,12 +226,12 @@ class Observer:
                 for outer in range(1, len(path)):
                     seen.gates.setdefault(path[:outer], 0)
                 seen.gates[path] = max(stay, seen.gates.get(path, 0))
-        # `GateMutexPri` has made the next owner ready already; `GateMutex` will, and that one tells of its `enter`.
+        # `GateMutexPri` has made the next owner ready already.  With `GateMutex`, the next owner's `enter` comes later.
         for task in [task for task in self._waiting.get(name, ()) if not self._seen(task).waits][:1]:
             self._enter(task, name)
 
     def _hwi(self, cycles: int, name: str) -> None:
-        # The core took its entry before the kernel could tell.
+        # The core's interrupt entry took its cycles before the kernel's trace event.
         self._begin_above(cycles - INTERRUPT_ENTRY_CYCLES, f"Hwi:{name}")
 
     def _hwi_end(self, cycles: int, name: str) -> None:
@@ -257,17 +257,17 @@ class Observer:
                 self.above[name].computation = max(self.above[name].computation, used)
 
     def names(self) -> Sequence[str]:
-        """The tasks that were seen to end an activation."""
+        """The tasks that have ended an activation."""
         return [name for name, seen in self.tasks.items() if seen.activations and name != IDLE]
 
     def measured(
         self, tasks: Mapping[str, tuple[int, int]], *, periods_ns: Mapping[str, int] | None = None,
         around_gate_cycles: int = 0,
     ) -> TaskSet:  # fmt: skip
-        """What was seen as a task set.
+        """The measurements as a task set.
 
-        `tasks` gives priority and deadline (ns, 0: the period); `periods_ns` those periods that are known: what came
-        closer is jitter.  All others come as close as they were seen to.
+        `tasks` gives the priority and the deadline of each task (in ns; 0: the period).  `periods_ns` gives the known
+        periods; a shorter distance counts as jitter.  Other tasks have the distances that were measured.
         """
         found = []
         for name in self.names():
@@ -300,7 +300,7 @@ class Observer:
 
 
 def _arrival(arrivals: Arrivals, period_ns: int | None) -> Arrival:
-    """Arrivals as they were seen; of one alone nothing is known, and it counts as never again (an hour)."""
+    """The measured arrivals.  After a single one nothing is known; its period counts as an hour."""
     spans = [span * NS_PER_CYCLE for span in arrivals.distances]
     if period_ns is None:
         return Arrival(max(1, spans[0]), distances_ns=tuple(spans)) if spans else Arrival(3600 * 10**9)

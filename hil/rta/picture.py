@@ -1,4 +1,4 @@
-"""The worst moment of a task as a picture: who had the CPU from its release to its end, and who came meanwhile."""
+"""Draws the worst activation of a task: which threads had the CPU from its release to its end, and other releases."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ _US: Final = NS_PER_CYCLE / 1000
 def draw_moment(
     path: Path, moment: Activation, *, priorities: Mapping[str, int], gates: Mapping[str, str], computed_ns: int | None,
 ) -> None:  # fmt: skip
-    """Write it to a file.  Rows go from interrupts down by priority; `gates` are names in place of the kernel's."""
+    """Draw an activation and write it to a file.
+
+    The rows are interrupts, then tasks by falling priority.  `gates` are names that replace those of the kernel.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch

@@ -1,24 +1,24 @@
 """A task set as a TOML sheet.
 
     # all times in microseconds
-    switch_us = 0                      # one task switch, if the computation times do not hold it
+    switch_us = 0                      # one task switch, if the computation times do not contain it
 
     [[task]]
     name = "TaskGYRO"
     priority = 5
-    period_us = 5000                   # or the least distance, of a sporadic one
-    deadline_us = 5000                 # the period, if it is left out
+    period_us = 5000                   # for a sporadic task, the least time between two releases
+    deadline_us = 5000                 # default: the period
     computation_us = 42.97
     jitter_us = 0                      # how late a release may come
-    start_up_us = 0                    # what it computes before it first waits
-    sections = [{ gate = "GYRO", time_us = 4.05 }]   # longest stay in each gate; may have `sections` within
+    start_up_us = 0                    # the computation time before its first wait
+    sections = [{ gate = "GYRO", time_us = 4.05 }]   # longest time in each gate; may contain `sections`
 
     [[interrupt]]                      # above all tasks
     name = "Clock"
     period_us = 1000
     computation_us = 5
 
-An error says file, key and line.
+An error names file, key and line.
 """
 
 from __future__ import annotations
@@ -45,18 +45,18 @@ def load_sheet(path: Path) -> TaskSet:
 
 
 def parse_sheet(text: str, name: str) -> TaskSet:
-    """The same of a text; `name` is what errors call it."""
+    """The task set of the text of a sheet; `name` is its name in errors."""
     table = parse_toml(text, name)
     return _Sheet(text, name).task_set(table)
 
 
 class _Sheet:
-    """A sheet that is read, with its text for the lines."""
+    """Reads a sheet.  It keeps the text to find the lines of errors."""
 
     def __init__(self, text: str, name: str) -> None:
         self._lines = text.splitlines()
         self._name = name
-        #: (kind, index) of the table that is read: an error is looked for in its lines.
+        #: (kind, index) of the table that is being read.  The line of an error is in that table.
         self._at: tuple[str, int] | None = None
 
     def task_set(self, table: Mapping[str, Any]) -> TaskSet:
@@ -94,7 +94,7 @@ class _Sheet:
         )  # fmt: skip
 
     def _sections(self, around: Mapping[str, Any], time_ns: int, held: tuple[str, ...]) -> tuple[Section, ...]:
-        """Those of a task, or within a section; `held` are the gates that are held already."""
+        """The sections of a task, or those within a section; `held` are the gates that are held already."""
         found = []
         for entry in self._tables(around, "sections"):
             self._known(entry, _SECTION, "a section")
@@ -156,7 +156,7 @@ class _Sheet:
         return ValueError(f"{self._name}:{self._line(key)}: {key}: {message}")
 
     def _line(self, key: str) -> int:
-        """The line of a key in the table that is read; without the key, that of the table."""
+        """The line of a key in the table that is being read; if it has no such key, the line of the table."""
         first, last = 0, len(self._lines)
         if self._at is not None:
             kind, index = self._at

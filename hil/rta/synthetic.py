@@ -1,14 +1,14 @@
-"""A task set as tasks on the emulated kernel: each computes for its time, enters its gates, and waits for its release.
+"""Runs a task set on the emulated kernel.  Each task computes for its time, enters its gates, and waits for a release.
 
 Modelled
     The kernel is `emulator.sysbios` with the costs of its services.  The computation of a task is the time in the
-    sheet, plus the calls of the kernel around it.  The gates are `GateMutexPri` (inheritance), `GateMutex` (none), or
-    `GateMutexPri` within `Task_setPri` to the ceiling (ceiling).  The point of an activation at which a gate is entered
-    is drawn anew each time.  Releases and interrupts come as Hwis; there is no tick besides those of the sheet.
+    sheet, plus the kernel calls around it.  The gates are `GateMutexPri` (inheritance), `GateMutex` (none), or
+    `GateMutexPri` with `Task_setPri` to the ceiling (ceiling).  The point of an activation at which a gate is entered
+    is random.  Releases and interrupts are Hwis; there is no tick except those of the sheet.
 Not modelled
-    Start-up; computation times below the largest.
+    The start-up of tasks, and computation times below the largest.
 Time
-    Cycles of 5 ns; times of the sheet are rounded up to them.  The first phasing is the critical instant.
+    Times are cycles of 5 ns; the times of the sheet are rounded up.  The first phasing is the critical instant.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ from hil.rta.analysis import Protocol, analyse
 from hil.rta.observe import NS_PER_CYCLE, Observer
 from hil.rta.task_set import Interrupt, Section, TaskModel, TaskSet
 
-#: The line of CPU timer 1, whose Hwi releases the tasks; those of the interrupts are the first vectors of the groups.
+#: The line of CPU timer 1, whose Hwi releases the tasks.  The other interrupts use the first vectors of the PIE groups.
 _RELEASE: Final = 13
 _FIRST_VECTOR: Final = 32
 _VECTORS_OF_A_GROUP: Final = 8
 MAX_INTERRUPTS: Final = 12
 _FOREVER: Final = 0xFFFFFFFF
-#: Nobody runs for so long between two phasings.
+#: The idle time between two phasings.
 _QUIET_CYCLES: Final = CYCLES_PER_MS
 
 
@@ -57,7 +57,7 @@ class _Member:
 
 
 class _Params:
-    """A pointer to such a structure."""
+    """A pointer to a structure that has no memory behind it."""
 
     def __init__(self) -> None:
         self.values: dict[str, Any] = {}
@@ -67,13 +67,13 @@ class _Params:
 
 
 class CannotRunError(ValueError):
-    """A set that can be computed, and not be run."""
+    """A task set that can be analysed, but cannot run."""
 
 
 class SyntheticTasks:
-    """The kernel with the tasks of a set.  `cost_scale` 0: its services take no time.
+    """The kernel with the tasks of a set.  With `cost_scale` 0, its services take no time.
 
-    Raises CannotRunError for a set that cannot run like that: without a bound, or whose activations overtake the next.
+    Raises CannotRunError for a set without a bound, or with activations that last beyond their next release.
     """
 
     def __init__(
@@ -107,7 +107,7 @@ class SyntheticTasks:
         self._ceilings = task_set.ceilings()
         self._due: list[Any] = []
         self.kernel.start(self._main)
-        # Everybody comes to the first wait.
+        # Every task comes to its first wait.
         self.kernel.run_until(self.clock.now + 100 * CYCLES_PER_MS)
         self.observer.begin()
 
@@ -116,7 +116,7 @@ class SyntheticTasks:
         self.kernel.shutdown()
 
     def run(self, phasings: int, progress: Callable[[float], None] = lambda fraction: None) -> None:
-        """The critical instant, then so many random phasings."""
+        """Run the critical instant, and then a number of random phasings."""
         for number in range(phasings + 1):
             self._phasing(random=number > 0)
             progress((number + 1) / (phasings + 1))
@@ -198,7 +198,7 @@ class SyntheticTasks:
             self._work(_cycles(task.computation_ns), task.sections)
 
     def _work(self, cycles: int, sections: Sequence[Section]) -> None:
-        """Compute for so long, with the sections somewhere in it."""
+        """Compute for a time, with the sections at random points in it."""
         outside = cycles - sum(_cycles(section.time_ns) for section in sections)
         at = 0
         places = sorted(self._random.randint(0, max(0, outside)) for _ in sections)
@@ -227,7 +227,7 @@ class SyntheticTasks:
             kernel.Task_setPri(own, before)
 
     def _compute(self, cycles: int) -> None:
-        """CPU time that can be pre-empted at any cycle."""
+        """Use CPU time.  The task can be pre-empted at any cycle."""
         clock = self.clock
         while cycles > 0:
             step = min(cycles, max(1, clock.next - clock.now))
@@ -235,9 +235,9 @@ class SyntheticTasks:
             clock.charge(step)
 
     def measured(self) -> TaskSet:
-        """The set with the largest times of the runs."""
+        """The task set with the largest times of the runs."""
         costs = self.kernel.core.costs
-        # From the first setPri to the last: the task is raised, and the gate not yet entered, or left.
+        # Around the gate, from the first to the last `Task_setPri`, the task has the raised priority, too.
         around = costs["gate_enter"] + 2 * costs["task_set_priority"] if self.protocol is Protocol.CEILING else 0
         return self.observer.measured(
             {task.name: (task.priority, task.deadline_ns) for task in self.task_set.tasks}, around_gate_cycles=around

@@ -1,7 +1,7 @@
-"""What is analysed: tasks, interrupts, and the gates they enter.  All times are whole nanoseconds.
+"""A task set: tasks, interrupts, and the gates that tasks enter.  All times are whole nanoseconds.
 
-Priorities are those of SYS/BIOS: a larger number is the more urgent one, and tasks of one priority run in the order in
-which they became ready.  Interrupts (and Swis) stand above every task.
+Priorities are those of SYS/BIOS: a larger number is a higher priority, and tasks of one priority run in the order in
+which they became ready.  Interrupts and Swis are above all tasks.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ NS_PER_MS = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class Arrival:
-    """How often something can come.
+    """The arrivals of releases or interrupts.
 
-    At most one every `period_ns`, each up to `jitter_ns` late.  Or `distances_ns`: the least time that 2, 3, 4, ...
-    in a row can span; the last of them repeats.
+    There is at most one in each `period_ns`, and each is up to `jitter_ns` late.  Or `distances_ns` gives the least
+    times that 2, 3, 4, ... consecutive arrivals can span; the last of them repeats.
     """
 
     period_ns: int
@@ -30,7 +30,7 @@ class Arrival:
             raise ValueError(f"a period of {self.period_ns} ns: it must be more than 0")
 
     def count(self, window_ns: int) -> int:
-        """How many can come within a half-open window of this length."""
+        """The most arrivals in a half-open window of this length."""
         if window_ns <= 0:
             return 0
         distances = self.distances_ns
@@ -42,27 +42,27 @@ class Arrival:
 
     @property
     def mean_ns(self) -> float:
-        """The least mean distance over a long time."""
+        """The least mean distance of arrivals over a long time."""
         distances = self.distances_ns
         return distances[-1] / len(distances) if distances and distances[-1] else float(self.period_ns)
 
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """The longest stay of a task in one gate, from `enter` to `leave`, without pre-emption; `inner` are gates in it."""
+    """The longest time of a task in a gate, from `enter` to `leave`, without pre-emption; `inner`: gates within it."""
 
     gate: str
     time_ns: int
     inner: tuple[Section, ...] = ()
 
     def all(self) -> Iterator[Section]:
-        """This one, and those within it."""
+        """This section, and those within it."""
         yield self
         for section in self.inner:
             yield from section.all()
 
     def orders(self) -> Iterator[tuple[str, str]]:
-        """Which gate is held while which is entered."""
+        """Pairs of gates: the first is held while the second is entered."""
         for section in self.inner:
             yield from ((self.gate, within.gate) for within in section.all())
             yield from section.orders()
@@ -70,7 +70,7 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class TaskModel:
-    """One task.  `computation_ns` holds its `sections`; `start_up_ns` is what it computes before it first waits."""
+    """A task.  `computation_ns` contains its `sections`; `start_up_ns` is the computation before its first wait."""
 
     name: str
     priority: int
@@ -87,13 +87,13 @@ class TaskModel:
 
     @property
     def stays(self) -> Sequence[Section]:
-        """Its sections, and those within them."""
+        """All sections of the task, also those within others."""
         return [section for outer in self.sections for section in outer.all()]
 
 
 @dataclass(frozen=True, slots=True)
 class Interrupt:
-    """An interrupt or a Swi: above all tasks."""
+    """An interrupt or a Swi.  It is above all tasks."""
 
     name: str
     arrival: Arrival
@@ -109,8 +109,8 @@ class Interrupt:
 class TaskSet:
     """Tasks and interrupts on one processor.
 
-    `switch_ns` is added twice to each activation (to the task, and back to whom it pre-empted) where the computation
-    times do not hold it.
+    `switch_ns` is the time of a task switch, if the computation times do not contain it.  It is added twice to each
+    activation: for the switch to the task, and for the switch back to the pre-empted task.
     """
 
     tasks: tuple[TaskModel, ...]
@@ -125,11 +125,11 @@ class TaskSet:
                 raise ValueError(f"{name!r} occurs twice")
 
     def by_priority(self) -> Sequence[TaskModel]:
-        """The most urgent first."""
+        """The tasks, the highest priority first."""
         return sorted(self.tasks, key=lambda task: -task.priority)
 
     def ceilings(self) -> dict[str, int]:
-        """Gate -> priority of the most urgent task that enters it."""
+        """Gate -> the highest priority of the tasks that enter it."""
         found: dict[str, int] = {}
         for task in self.tasks:
             for section in task.stays:
@@ -138,13 +138,13 @@ class TaskSet:
 
     @property
     def nested(self) -> bool:
-        """Whether somebody enters a gate while holding another."""
+        """Whether a task enters a gate while it holds another."""
         return any(section.inner for task in self.tasks for section in task.sections)
 
     def circles(self) -> frozenset[str]:
-        """Gates of which tasks may each hold one and wait for the next, in a circle: for ever.
+        """The gates of possible deadlocks: each task holds one of them and waits for the next, in a circle.
 
-        CHOICE: another gate around all of them, which would prevent it, is not looked for.
+        CHOICE: a gate around all of them would prevent the deadlock; this is not checked.
         """
         orders = {(*order, task.name) for task in self.tasks for section in task.sections for order in section.orders()}
 

@@ -1,7 +1,7 @@
-"""Section 3.4 of the thesis, cell by cell: what is printed, what comes out of its own rule, what is exact.
+"""Section 3.4 of the thesis, number by number: the printed value, the value by the thesis' own rule, the exact value.
 
-The printed numbers are data (`thesis.toml`).  A cell is right if its own rule, with what is printed before it, gives it
-to the digits that are printed; where the rule itself is not sound, or data before it is wrong, a remark says so.
+The printed numbers are data (`thesis.toml`).  A number is right if its own rule, applied to the numbers printed before
+it, gives it to the printed digits.  If the rule itself is not sound, or its data are wrong, a remark says so.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _REMARKS: Final[Mapping[tuple[str, str], tuple[str, str]]] = {
 
 @dataclass(frozen=True, slots=True)
 class PrintedNumber:
-    """One printed number.  `own_rule` is what the thesis' own rule gives, `exact` what holds; None: no such thing."""
+    """A printed number.  `own_rule` is the value by the rule of the thesis, `exact` the true value, if any."""
 
     table: str
     name: str
@@ -56,10 +56,10 @@ def load() -> Mapping[str, Any]:
 
 
 def task_set(*, corrected_users: bool = False) -> TaskSet:
-    """Figure 39 with the sections of 3.4.3.
+    """The task set of figure 39 with the sections of 3.4.3.
 
-    ODOMETRÍA has the ceiling that is printed, so somebody of priority 3 enters it (for no time); `corrected_users`: as
-    in annex 1.
+    ODOMETRÍA has the printed ceiling, so a task of priority 3 enters it (for no time).  With `corrected_users`, the
+    users of the gates are those of annex 1.
     """
     data = load()
     lines = []
@@ -81,7 +81,7 @@ def task_set(*, corrected_users: bool = False) -> TaskSet:
 
 
 def cells() -> list[PrintedNumber]:
-    """Every number of figures 37 to 41 and of 3.4.4, in the order of the pages."""
+    """All numbers of figures 37 to 41 and of 3.4.4, in the order of the pages."""
     data = load()
     return [
         *_durations(data), *_figure_39(data), *_line(data), *_figure_40(data), *_figure_41(data), *_responses(data),
@@ -216,7 +216,7 @@ def _responses(data: Mapping[str, Any]) -> Iterator[PrintedNumber]:
 
 
 def _other_computation(data: Mapping[str, Any]) -> str:
-    """What W of TaskORD is with the computation time that stands in its formula, which is not that of figure 39."""
+    """W of TaskORD with the computation time of its formula, which is not that of figure 39."""
     slip = data["section_344_computation"]["TaskORD"]
     sets = task_set()
     tasks = tuple(

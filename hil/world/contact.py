@@ -1,20 +1,21 @@
-"""Sliding and bumping: one implicit step of wheels, tyres and walls, by bounded impulses.
+"""Friction and impact: one implicit step of wheels, tyres and walls, with bounded impulses.
 
-Velocities (wheel, wheel, forward, yaw) meet in up to a handful of contacts, each of which wants a relative velocity
-of zero and may use only so much impulse: dry friction of a motor, grip of a tyre, a wall that pushes but never
-pulls, and its rubbing.  They are solved in a fixed order until settled (projected Gauss-Seidel), which is stable for
-any step and gives the same result every time.
+The four velocities (wheel, wheel, forward, yaw) are coupled by a few contacts: dry friction of a motor, grip of a tyre,
+a wall that pushes but never pulls, and friction at the wall.  Each contact drives its relative velocity to zero, with
+an impulse within its bounds.  The contacts are solved in a fixed order until the impulses settle (projected
+Gauss-Seidel).  This is stable for any step, and gives the same result every time.
 
-Velocities do not remove an overlap: a speed that removes it would stay with the robot, and the shorter the step, the
-greater it would be.  `pushed_out` moves the body instead.
+Velocities do not remove an overlap.  The robot would keep a speed that removes it, and this speed would be greater the
+shorter the step is.  `pushed_out` moves the body instead.
 
 Modelled
-    Coulomb friction in motors, between tyre and floor along the wheel, between body and wall; inelastic impact; a
-    body moved aside by what is put or dragged onto it.
+    Coulomb friction in motors, between tyre and floor along the wheel, and between body and wall.  Impacts are
+    inelastic.  A body is moved aside by an object that is put or dragged onto it.
 Not modelled
-    Sideways slip of the tyres but for that, elasticity, a friction coefficient that falls with speed.
+    Sideways slip of the tyres (except when the body is moved aside), elasticity, and a friction coefficient that falls
+    with speed.
 Sources
-    Standard rigid-body contact; coefficients are CHOICEs of robot.RobotParams.
+    Standard rigid-body contact.  The coefficients are CHOICEs of robot.RobotParams.
 """
 
 from __future__ import annotations
@@ -24,11 +25,11 @@ from typing import Final
 
 from hil.world.geometry import Post, Segment
 
-#: The greatest number of passes.  Solving ends earlier when each impulse changes by less than this force (N, or N.m
-#: about a wheel) gives in the step.
+#: The greatest number of passes.  Solving ends earlier if each impulse changes by less than this force would cause in
+#: the step (N, or N.m about a wheel).
 ITERATIONS: Final = 16
 SETTLED_N: Final = 2e-7
-#: Rounds among walls that push a body to each other; a corner of 90 degrees takes one.
+#: The greatest number of rounds over walls, which may push a body to each other.  A corner of 90 degrees needs one.
 ROUNDS: Final = 8
 
 
@@ -69,14 +70,14 @@ def touches(
 
 
 def _from_wall(wall: Segment, x: float, y: float) -> tuple[float, float, float]:
-    """Unit vector from a wall to (x, y), and the distance.  On the wall itself either side may be chosen."""
+    """The unit vector from a wall to (x, y), and the distance in m.  On the wall itself, the side is arbitrary."""
     px, py = wall.nearest(x, y)
     away = hypot(x - px, y - py)
     return ((x - px) / away, (y - py) / away, away) if away > 1e-12 else (wall.nx, wall.ny, 0.0)
 
 
 def _from_post(post: Post, x: float, y: float) -> tuple[float, float, float]:
-    """Unit vector from a post's middle to (x, y), and the distance.  In its middle any direction may be chosen."""
+    """The unit vector from the centre of a post to (x, y), and the distance in m.  At the centre it is arbitrary."""
     away = hypot(x - post.x_m, y - post.y_m)
     return ((x - post.x_m) / away, (y - post.y_m) / away, away) if away > 1e-12 else (1.0, 0.0, 0.0)
 
@@ -84,9 +85,9 @@ def _from_post(post: Post, x: float, y: float) -> tuple[float, float, float]:
 def pushed_out(
     x: float, y: float, radius_m: float, push_m: float, walls: tuple[Segment, ...], posts: list[Post]
 ) -> tuple[float, float]:
-    """The new middle of a disc about (x, y) that overlaps walls or posts.
+    """The new centre of a disc about (x, y) that overlaps walls or posts.
 
-    Each post pushes it by `push_m` at most.  Then walls push it all the way out.
+    Each post moves it by `push_m` at most.  Then walls move it until it overlaps no wall.
     """
     for post in posts:
         if post.distance(x, y) < radius_m:
@@ -105,14 +106,14 @@ def pushed_out(
 
 
 def _add(found: list[Touch], nx: float, ny: float, gap_m: float) -> None:
-    for other in found:  # two walls touched at their common corner are one touch
+    for other in found:  # two walls that are touched at their common corner count once
         if other.nx * nx + other.ny * ny > 0.999999 and abs(other.gap_m - gap_m) < 1e-9:
             return
     found.append(Touch(nx, ny, gap_m))
 
 
 class ContactRow:
-    """One contact: coefficients of the four velocities, the target velocity, bounds of its impulse."""
+    """One contact: the coefficients of the four velocities, the target velocity, and the bounds of its impulse."""
 
     __slots__ = ("high", "impulse", "low", "mass", "q", "rubs_on", "want")
 
@@ -132,7 +133,7 @@ class ContactRow:
         m0, m1, m2, m3 = inverse_masses
         self.mass = 1.0 / (q0 * q0 * m0 + q1 * q1 * m1 + q2 * q2 * m2 + q3 * q3 * m3)
         self.impulse = 0.0
-        #: Friction: its bounds are `low`, `high` times that normal row's impulse.
+        #: The normal row of a friction contact.  The bounds are `low` and `high` times the impulse of that row.
         self.rubs_on = rubs_on
 
 
