@@ -1,4 +1,4 @@
-"""Findings as plain data and back: what travels from an xdist worker to the one who writes the report."""
+"""Converts findings to plain data and back.  An xdist worker sends them to the process that writes the report."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from emulator.c28x.sites import Place
 
 
 def pack(finding: Finding) -> dict[str, Any]:
-    """A finding in numbers, texts, lists and dictionaries."""
+    """A finding as numbers, texts, lists and dictionaries."""
     data = asdict(finding)
     data["place"] = finding.place and finding.place._asdict()
     data["call_path"] = [place._asdict() for place in finding.call_path]
@@ -20,7 +20,7 @@ def pack(finding: Finding) -> dict[str, Any]:
 
 
 def unpack(data: dict[str, Any]) -> Finding:
-    """The finding that `pack` took."""
+    """The finding that `pack` has converted."""
     place = data["place"]
     return Finding(
         **{

@@ -1,7 +1,7 @@
-"""One test in the plugin: the boards it used, the findings it expects, and whether it has failed.
+"""One test in the plugin: the boards that it used, the findings that it expects, and whether it has failed.
 
-A finding fails the test that caused it unless the test expects or allows it; an expected finding that does not come
-fails it too.  Severities, baseline and threshold are those of the project (`hil.reports.policy`).
+A finding fails the test that caused it, unless the test expects or allows it.  An expected finding that does not come
+fails the test, too.  Severities, baseline and threshold are those of the project (`hil.reports.policy`).
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from hil.reports.model import Report, ReportEntry, Run
 from hil.reports.policy import Policy, nearest
 from hil.testing.text import entry_lines
 
-#: From here on two identifiers are taken for one, mistyped (0 to 1, `difflib`).
+#: From this similarity on, an unknown identifier counts as a mistyped rule (0 to 1, `difflib`).
 _ALIKE: Final = 0.75
 
 
 @dataclass(frozen=True, slots=True)
 class ExpectedFinding:
-    """A finding that a test waits for (`required`) or puts up with.
+    """A finding that a test expects (`required`) or allows.
 
-    `rule` may hold wildcards where it is not required; `object` is the object's name or its path (`result`,
-    `us.Read_Distance.result`), `function` the C function.  Parts of the user may report rules of
-    their own, so only a name that looks like a mistyped rule is refused.
+    `rule` may have wildcards if the finding is not required.  `object` is the object's name or its path (`result`,
+    `us.Read_Distance.result`), `function` the C function.  Parts of the user may report rules of their own, so only a
+    name that looks like a mistyped rule is refused.
     """
 
     rule: str
@@ -38,13 +38,13 @@ class ExpectedFinding:
     required: bool = True
 
     def __post_init__(self) -> None:
-        """Raises ValueError for a rule that does not exist, but that is like one which does."""
+        """Raise ValueError for a name that is no rule but similar to one."""
         wild = not self.required and any(c in self.rule for c in "*?[")
         if not wild and self.rule not in RULES and get_close_matches(self.rule, RULES, cutoff=_ALIKE):
             raise ValueError(f"no rule {self.rule!r}: {nearest(self.rule)}")
 
     def fits(self, finding: Finding) -> bool:
-        """Whether this is the finding meant."""
+        """Whether a finding is the expected one."""
         function = finding.place.function if finding.place else ""
         return (
             fnmatchcase(finding.rule, self.rule)
@@ -57,7 +57,7 @@ class ExpectedFinding:
         return f"expects({', '.join([repr(self.rule), *wanted])})"
 
 
-#: What makes two findings of two tests the same: rule, file, line, object.
+#: Two findings of different tests with the same key are the same: rule, file, line, object.
 Key = tuple[str, str, int, str]
 
 
@@ -68,7 +68,7 @@ def key_of(finding: Finding) -> Key:
 
 
 class Case:
-    """A running test.  `reported` are the static findings that earlier tests of this process have answered for."""
+    """A running test.  `reported` are the static findings that belong to earlier tests of this process."""
 
     def __init__(self, name: str, policy: Policy, baseline: Baseline | None, reported: set[Key]) -> None:
         self.name = name
@@ -80,7 +80,7 @@ class Case:
         self._ends: list[Callable[[], None]] = []
 
     def watch(self, findings: Findings, end: Callable[[], None]) -> None:
-        """Answer for what a board finds; `end()` ends its run, which shows what only the end of a run shows."""
+        """Include the findings of a board in this test.  `end()` ends its run, because some rules check that."""
         self._watched.append(findings)
         self._ends.append(end)
 
@@ -90,12 +90,12 @@ class Case:
             end()
 
     def expect(self, rule: str, *, object: str = "", function: str = "", required: bool = True) -> None:
-        """Wait for a finding, or put up with it.  Raises ValueError for a rule that is mistyped."""
+        """Expect or allow a finding.  Raises ValueError for a mistyped rule."""
         self.expectations.append(ExpectedFinding(rule, object, function, required))
 
     @property
     def findings(self) -> list[Finding]:
-        """What the boards of this test have found, in order."""
+        """The findings of this test's boards, in order."""
         return [finding for findings in self._watched for finding in findings]
 
     def expected(self, finding: Finding) -> bool:
@@ -103,13 +103,14 @@ class Case:
         return any(e.fits(finding) for e in self.expectations)
 
     def missing(self) -> list[ExpectedFinding]:
-        """What was expected and has not come."""
+        """The expected findings that have not come."""
         return [e for e in self.expectations if e.required and not any(e.fits(f) for f in self.findings)]
 
     def unexpected(self) -> list[Finding]:
-        """What nobody expects; a static finding belongs to the first test that links its module.
+        """The findings that the test neither expects nor allows.
 
-        What has been read before it was written need not be foretold too.
+        A static finding belongs to the first test that links its module.  If a read before the first write was found
+        in the run, the static finding about the same object need not be expected, too.
         """
         read = {key_of(f)[1:] for f in self.findings if f.rule == "uninitialised"}
         return [
@@ -121,19 +122,19 @@ class Case:
         ]
 
     def not_modelled(self) -> list[str]:
-        """What the boards used that this emulator does not have, each once: registers, functions, parts."""
+        """The registers, functions and parts that the boards used and that are not modelled, each once."""
         used = (f for f in self.findings if f.rule == "unmodelled" and self.policy.severity_of(f) is not None)
         return list(dict.fromkeys(".".join(f.object.split(".")[:2]) or f.message for f in used))
 
     def counted(self) -> list[ReportEntry]:
-        """What fails this test: unexpected, severe enough, and not in the baseline; the worst first."""
+        """The findings that fail this test, the worst first: unexpected, severe enough, and not in the baseline."""
         report = Report.of(self.unexpected(), run=Run(self.name), policy=self.policy, baseline=self.baseline)
         return sorted(report.counted, key=lambda entry: -entry.severity.rank)
 
     def verdict(self) -> str:
-        """Why the test has failed, what counts most first; empty if it has not.
+        """Why the test has failed, the most important reason first; empty if it has not failed.
 
-        The first line is what pytest's summary shows of it: the first finding, and of how many.
+        Pytest's summary shows the first line: the first finding, and the number of findings.
         """
         try:
             entries, missing = self.counted(), self.missing()
@@ -146,11 +147,11 @@ class Case:
         return "\n\n".join("\n".join(block) for block in blocks)
 
     def close(self) -> None:
-        """The test is over: its static findings have been answered for."""
+        """End the test.  Its static findings are not reported again."""
         self._reported.update(key_of(f) for f in self.findings if f.how == "static")
 
 
 def _instead(findings: Iterable[Finding]) -> list[str]:
-    """What was found where something else was expected."""
+    """The text of the findings that came when others were expected."""
     found = sorted({f"{f.rule} ({f.object})" if f.object else f.rule for f in findings})
     return [f"    found: {', '.join(found) or 'nothing'}"]

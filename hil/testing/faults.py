@@ -1,4 +1,4 @@
-"""Lets feeds and faults work on a test's board, which has no start-up and no world."""
+"""Applies feeds and faults to the board of a test, which has no start-up and no world."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class BoardTarget:
         self.findings = board.findings
         #: (byte, end_cycles): the PC has a byte of the board.
         self.uart_sent: Signal[int, int] = Signal()
-        #: By input that is fed, what ends that.
+        #: The fed inputs, each with the function that ends the feed.
         self.feeds: dict[str, Callable[[], None]] = {}
         self._firmware = firmware
         if board.pc is not None:

@@ -1,7 +1,7 @@
-"""The fixtures of the plugin.  They are made when a test asks for them, and only then is the emulator imported.
+"""The fixtures of the plugin.  They are created when a test uses them, and only then is the emulator imported.
 
 They use each other by names that begin with `hil_`, so that a project's own `board` or `seed` does not affect them.
-The short names are made by `short_names`.
+`short_names` adds the short names.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def in_one_line() -> Iterator[None]:
-    """A wrong setting or a driver outside the language is one line, not a traceback."""
+    """Report a wrong setting, or a driver with unsupported code, in one line without a traceback."""
     try:
         yield
     except (ValueError, OSError) as error:
@@ -40,7 +40,7 @@ def in_one_line() -> Iterator[None]:
 
 @pytest.fixture
 def hil_case(request: pytest.FixtureRequest) -> Case:
-    """What this test expects, and what its boards find."""
+    """The findings that this test expects, and those of its boards."""
     from hil.testing.session import session_of
 
     item = request.node
@@ -69,7 +69,7 @@ def hil_expects(hil_case: Case) -> Callable[..., None]:
 
 @pytest.fixture
 def hil_fill(request: pytest.FixtureRequest) -> str:
-    """What never-written memory holds in this test."""
+    """The content of memory that was never written, in this test."""
     return str(getattr(request, "param", settings.fills(request.node)[0]))
 
 
@@ -82,20 +82,20 @@ def hil_seed(request: pytest.FixtureRequest) -> int:
 
 @pytest.fixture
 def firmware_modules(request: pytest.FixtureRequest) -> Sequence[str]:
-    """The modules to link: importable names, or files relative to the test file; none: those of the robot."""
+    """The modules to link: importable names, or files relative to the test file.  Without any: those of the robot."""
     with in_one_line():
         return settings.firmware_modules(request.node)
 
 
 @pytest.fixture
 def firmware_externs() -> dict[str, Callable[..., Any]]:
-    """Python functions in the place of externs or firmware functions, by name; none."""
+    """Python functions that replace externs or functions of the firmware, by name.  By default there are none."""
     return {}
 
 
 @pytest.fixture
 def hil_board(request: pytest.FixtureRequest, hil_seed: int, hil_case: Case) -> Iterator[Board]:
-    """The chip and the parts around it, those of the marker `board`; in a test with `bench` its board."""
+    """The chip with the parts of the marker `board`.  In a test with `bench`, it is the board of the bench."""
     from hil.board import load, optional
     from hil.collector import uncollected
 
@@ -112,7 +112,7 @@ def hil_board(request: pytest.FixtureRequest, hil_seed: int, hil_case: Case) -> 
 
 @pytest.fixture
 def hil_findings(hil_board: Board) -> Findings:
-    """What the board has found so far."""
+    """The findings of the board so far."""
     return hil_board.findings
 
 
@@ -169,7 +169,7 @@ def hil_advance(hil_timeline: Timeline) -> Callable[[float], None]:
 
 @pytest.fixture
 def hil_until(hil_timeline: Timeline) -> Callable[..., Any]:
-    """`until(trigger, within_s=1.0)`: let virtual time pass until the trigger fires; returns what it gives."""
+    """`until(trigger, within_s=1.0)`: let virtual time pass until the trigger fires.  Returns its value."""
     return hil_timeline.until
 
 
@@ -181,9 +181,9 @@ def hil_later(hil_timeline: Timeline) -> Callable[[float, Callable[[], Any]], No
 
 @pytest.fixture
 def hil_uart(hil_board: Board) -> Callable[..., Uart]:
-    """`uart(tx_gpio, rx_gpio, baud=9600)`: the other end of a serial line; the same one for the same pins.
+    """`uart(tx_gpio, rx_gpio, baud=9600)`: the other end of a serial line.  The same pins give the same object.
 
-    Without pins it is the line that the board has to a PC: the robot's on GPIO89 and GPIO90.
+    Without pins, it is the line of the board to a PC: for the robot, that on GPIO89 and GPIO90.
     """
     from hil.testing.uart import Uart
 
@@ -218,7 +218,7 @@ def hil_when(hil_board: Board, hil_uart: Callable[..., Uart]) -> When:
 
 @pytest.fixture
 def hil_outside(hil_board: Board) -> Outside:
-    """What is outside of the chip: volts, ranges, rates, shafts, levels."""
+    """Sets the inputs of the chip from outside: volts, ranges, rates, shafts, levels."""
     from hil.testing.outside import Outside
 
     return Outside(hil_board)
@@ -234,9 +234,10 @@ def hil_kernel(hil_board: Board, hil_timeline: Timeline) -> Tasks:
 
 @pytest.fixture
 def hil_feed(request: pytest.FixtureRequest, hil_board: Board) -> Callable[..., None]:
-    """`feed("ADCINA3", ([0.0, 0.1], [1.0, 2.0]), how="linear")`: what an input sees, timed from now.
+    """`feed("ADCINA3", ([0.0, 0.1], [1.0, 2.0]), how="linear")`: give an input values.  Times count from now, in s.
 
-    A number, arrays, a function of the time in s, a generator of `(time_s, value)`, a file; "physics" gives it back.
+    The values are a number, arrays, a function of the time, a generator of `(time_s, value)`, or a file.  "physics"
+    ends the feed.
     """
     from hil.feeds import feed as begin
     from hil.testing.faults import BoardTarget
@@ -256,9 +257,9 @@ def hil_feed(request: pytest.FixtureRequest, hil_board: Board) -> Callable[..., 
 
 @pytest.fixture
 def hil_fault(request: pytest.FixtureRequest, hil_board: Board) -> Iterator[Callable[..., MountedFault]]:
-    """`fault("gyro-reset", at=0.5)`: something breaks, timed from now; a fault that never fired fails the test.
+    """`fault("gyro-reset", at=0.5)`: inject a fault.  Times count from now; a fault that never fires fails the test.
 
-    Its `report()` gives when it fired and its first access; `remove()` ends it.
+    `report()` of the result gives the times when it fired and its first access; `remove()` ends it.
     """
     from hil.faults import Fault, mount, parse
     from hil.testing.faults import BoardTarget
@@ -272,7 +273,7 @@ def hil_fault(request: pytest.FixtureRequest, hil_board: Board) -> Iterator[Call
 
     def fault(kind: str, **parameters: Any) -> MountedFault:
         with in_one_line():
-            # `for` is a word of Python: `for_s`, as in a table.
+            # `for` is a keyword of Python, so it is `for_s`, as in a table.
             declared = Fault.from_table({"kind": kind, **parameters}) if ":" not in kind else parse(kind)
             mounted.append(mount(declared, machine, from_now=True))
         return mounted[-1]

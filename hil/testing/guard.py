@@ -1,8 +1,8 @@
-"""Ends a driver function that does not return, with a finding at its loop: no call of a test hangs.
+"""Ends a driver function that does not return, with a finding at its loop.  So no call of a test hangs.
 
-An endless loop at the end of `main` is right.  Then the caller is told, and there is no finding.  In an interrupt
-routine such a loop is a finding.  Interrupt routines that are taken during a call are guarded like calls.  The loop
-told is that of the innermost function that has not returned for half of the time limit.
+An endless loop at the end of `main` is right.  Then the caller gets `Idling`, and there is no finding.  In an interrupt
+routine, such a loop is a finding.  Interrupt routines that run during a call are guarded like calls.  The finding names
+the loop of the innermost function that has not returned for half of the time limit.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from hil.board import Board
 from hil.testing.waits import PollingLoop, PollingLoops
 
-#: How often a call is looked at, and what it may compute before its loop is examined: a hundredth of a second of the
-#: chip's, less than half of one of this machine's; or how many interrupts it may be interrupted by, which is as long.
+#: The time between two checks of a call, and the computation after which its loop is examined: 10 ms of virtual time,
+#: less than half a second of real time.  Or the number of interrupts after which it is examined; that takes as long.
 _CHECK_CYCLES: Final = 10 * CYCLES_PER_MS
 _COMPUTED_CYCLES: Final = 2_000_000
 _ROUTINES: Final = 1000
-#: So many turns of a loop follow the look at which nothing was left that could end it.
+#: The turns of a loop that are still executed after a check has found nothing that could end it.
 _TURNS: Final = 2
 
 
 def guard(board: Board, linked: Linked, limit_s: float) -> None:
-    """End every call of a test that takes longer than `limit_s` seconds of virtual time: EndlessPoll, Idling.
+    """End each call of a test that takes longer than `limit_s` seconds of virtual time, by EndlessPoll or Idling.
 
-    One that has computed for long is ended before if nothing is left that could end its loop (`PollingLoop.hopeless`).
+    A call that has computed for long is ended earlier if nothing can end its loop (`PollingLoop.hopeless`).
     """
     watch = _CallWatch(board, linked, limit_s)
     board.vectors.wrap_with(watch.routine)
@@ -45,17 +45,17 @@ def guard(board: Board, linked: Linked, limit_s: float) -> None:
 
 @dataclass(slots=True, eq=False)
 class _Call:
-    """A call that has not returned: its function, and when and where it began."""
+    """A call that has not returned: its function, and the time and place of its start."""
 
     path: str
     who: str
     began: int
     computed: int
-    #: How many interrupts were being served, and how many routines had returned.
+    #: The number of interrupt routines that were running, and the number that had returned.
     level: int
     routines: int
     halfway: list[Calls | None] = field(default_factory=list)
-    #: When a loop was found hopeless first, and what had been executed besides interrupt routines, in cycles.
+    #: When a loop was first found hopeless, and the cycles that were executed outside interrupt routines until then.
     hopeless: dict[Place, tuple[int, int]] = field(default_factory=dict)
     events: tuple[Event, ...] = ()
 
@@ -68,18 +68,18 @@ class _CallWatch:
         self._waits = PollingLoops(board, linked)
         self._limit = round(limit_s * SYSCLK_HZ)
         self._every = min(_CHECK_CYCLES, max(1, self._limit // 4))
-        #: Those that have not returned, the innermost last.
+        #: The calls that have not returned, the innermost last.
         self._calls: list[_Call] = []
-        #: How many interrupt routines have returned, and how long they took, all in all (those of others among them
-        #: twice).
+        #: The number of interrupt routines that have returned, and their total time.  The time of nested routines
+        #: counts twice.
         self._routines = 0
         self._served = 0
-        #: The calls of the firmware that had not returned at the last look.
+        #: The calls of the firmware that had not returned at the last check.
         self._before: list[Calls | None] = []
         self._next: Event | None = None
 
     def watched(self, path: str, function: Callable[..., Any]) -> Callable[..., Any]:
-        """`function`, which is ended if it does not return."""
+        """Wrap `function` so that it is ended if it does not return."""
         clock, core, calls = self._clock, self._core, self._calls
 
         @wraps(function)
@@ -104,7 +104,7 @@ class _CallWatch:
         return call
 
     def routine(self, function: Callable[[], Any]) -> Callable[[], Any]:
-        """An interrupt routine, which is ended likewise."""
+        """Wrap an interrupt routine in the same way."""
         clock, watched = self._clock, self.watched(function.__qualname__, function)
 
         @wraps(function)
@@ -131,14 +131,14 @@ class _CallWatch:
         self._before[:] = [running for _, running in self._findings.position.frames()]
 
     def _examine(self, call: _Call) -> None:
-        """End a call that nothing can end any more."""
+        """End a call if nothing can end its loop any more."""
         called = _path_from(self._findings, self._before)
         wait = self._loop(call, called)
         if wait is None or not wait.hopeless:
             call.hopeless.clear()
             return
-        # What has come before is seen in the next turn.  A poll is carried from event to event, and a delay is waited
-        # for; whatever else the loop does is executed.
+        # The next turn sees what happened before.  In a poll, time moves on from event to event, and a delay passes;
+        # everything else in the loop is executed.
         clock = self._clock
         until = next((other.began for other in self._calls if other.level > call.level), clock.now)
         own = until - self._served - (clock.waited if wait.delays else 0)
@@ -182,7 +182,7 @@ class _CallWatch:
 
 
 def _path_from(findings: Findings, halfway: list[Calls | None]) -> tuple[Place, ...]:
-    """The call path of the innermost firmware function that is one of `halfway` still; nothing if there is none."""
+    """The call path of the innermost firmware function that is still one of `halfway`; empty if there is none."""
     for at, running in findings.position.frames():
         if any(running is call for call in halfway):
             return findings.path(at, running)

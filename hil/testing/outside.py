@@ -1,7 +1,7 @@
-"""Sets what is outside of the chip in a test: volts, ranges, rates, shafts, levels.
+"""Sets the inputs of the chip in a test: volts, ranges, rates, shafts, levels.
 
-Plain methods with units in their names.  A value stays until it is set again, even if a world would set it: in a test
-with `bench` the world goes on moving everything else.
+The methods have units in their names.  A value stays until it is set again, even if a world would set it.  In a test
+with `bench`, the world still determines everything else.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from emulator.devices.touch_sensor import TouchSensor
 from emulator.signals import DutyWire, Wire
 from hil.board import Board
 
-#: Values of one axis: one that stays, or one a sample, of which the last stays.
+#: The values of one axis: a constant, or a value for each sample; the last one stays.
 Samples: TypeAlias = int | Iterable[int]
 T = TypeVar("T")
 
 
-#: Signals by their first letters -> what reaches them instead of levels.
+#: The first letters of signals that ignore levels -> what they receive instead.
 _INSTEAD: Final = {
     "SCI": "send characters with uart()", "SPI": "attach a device to the bus", "SDA": "attach a device to the bus",
     "SCL": "attach a device to the bus", "EPW": "the module drives it",
@@ -32,9 +32,9 @@ _INSTEAD: Final = {
 
 
 class Outside:
-    """The fixture `outside`: the world's side of one board.
+    """The fixture `outside`: sets the inputs of one board.
 
-    Methods for parts that come with the tool raise ValueError on a board that has none of them.
+    A method for a kind of part raises ValueError if the board has no such part.
     """
 
     def __init__(self, board: Board) -> None:
@@ -44,9 +44,9 @@ class Outside:
     # ADC
 
     def adc_volts(self, channel: int, volts: float | Callable[[float], float], adc: str = "A") -> None:
-        """Put a voltage on input `channel` (0..15) of ADC-A to D, or a function of the time in seconds.
+        """Connect a voltage, or a function of the time in seconds, to input `channel` (0..15) of ADC-A to D.
 
-        What the board has at that input is unplugged.
+        The part of the board at that input is disconnected.
         """
         inputs = self._of_adc(self._board.analog, adc)
         if not 0 <= channel < len(inputs):
@@ -58,9 +58,9 @@ class Outside:
             inputs[channel].follow("test", lambda _cycles: volts, steady=True)
 
     def adc_codes(self, codes: Iterable[int] | None, adc: str = "A") -> None:
-        """Make the next conversions of ADC-A to D give these codes (0..4095), whatever the volts; the last one stays.
+        """Make the next conversions of ADC-A to D give these codes (0..4095), whatever the voltage is.
 
-        None: volts again.
+        The last code stays.  None ends this: the voltage counts again.
         """
         converter = self._of_adc(self._board.adc, adc)
         if codes is None:
@@ -78,7 +78,7 @@ class Outside:
     # Sonars
 
     def sonar_range_m(self, sensor: str, range_m: float | None) -> None:
-        """A wall `range_m` metres in front of the sonar "LEFT", "FRONT" or "RIGHT"; None: nothing in sight."""
+        """Put a wall `range_m` metres in front of the sonar "LEFT", "FRONT" or "RIGHT".  None: there is no wall."""
         sensors = {n: each for ring in self._board.find(SonarRing).values() for n, each in ring.sensors.items()}
         if sensor not in sensors:
             raise ValueError(f"no sonar {sensor!r}: {', '.join(sensors) or 'this board has none'}")
@@ -88,7 +88,7 @@ class Outside:
     # Gyro
 
     def gyro_rate_rad_s(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
-        """Turn the gyro at these rates in rad/s, positive counter-clockwise, from now on; ends `gyro_raw`."""
+        """Turn the gyro at these rates in rad/s (positive: counter-clockwise) from now on.  This ends `gyro_raw`."""
         self._gyro.force_samples(None)
         self._gyro.set_rate_source(lambda _cycles: (x, y, z))
 
@@ -97,15 +97,16 @@ class Outside:
         self.gyro_rate_rad_s(radians(x), radians(y), radians(z))
 
     def gyro_raw(self, x: Samples = 0, y: Samples = 0, z: Samples = 0) -> None:
-        """Have the gyro's next samples be these digits (-32768..32767); of a sequence one a sample, the last stays.
+        """Set the next samples of the gyro, in digits (-32768..32767).
 
-        Samples come at the gyro's own data rate, once the firmware has switched it on.
+        A sequence has a value for each sample; the last one stays.  Samples come at the gyro's data rate, after the
+        firmware has switched it on.
         """
         a, b, c = (_endless((values,) if isinstance(values, int) else values) for values in (x, y, z))
         self._gyro.force_samples(lambda _cycles: (next(a), next(b), next(c)))
 
     def gyro_temperature_c(self, temperature_c: float) -> None:
-        """Die temperature of the gyro in degrees Celsius."""
+        """Set the die temperature of the gyro in degrees Celsius."""
         self._gyro.set_temperature(temperature_c)
 
     @property
@@ -115,7 +116,7 @@ class Outside:
     # Wheels
 
     def wheel_speed_rad_s(self, side: str, speed_rad_s: float) -> None:
-        """Turn the shaft of the wheel "left" or "right" from now on, whatever the motor does; positive forwards."""
+        """Turn the shaft of the wheel "left" or "right" from now on, whatever the motor does (positive: forwards)."""
         self._wheel(side).turn_at(speed_rad_s)
 
     def _wheel(self, side: str) -> _Wheel:
@@ -129,13 +130,13 @@ class Outside:
     # Parts of one's own
 
     def part(self, name: str) -> Any:
-        """The part of the board called `name`, as its `solder` made it.  Raises ValueError."""
+        """The part of the board with the name `name`.  Raises ValueError if there is none."""
         return self._board.part(name).device
 
     def put(self, name: str, **faces: float) -> None:
         """Set faces of a part: `outside.put("infrared", distance_m=0.3)`.
 
-        Raises ValueError for one that it does not have, and for a value outside of what it can be.
+        Raises ValueError for a face that the part does not have, and for a value outside of the range of the face.
         """
         part = self._board.part(name)
         for face, value in faces.items():
@@ -144,14 +145,14 @@ class Outside:
     # Pins
 
     def bumper(self, pressed: bool) -> None:
-        """Press the bumper or let it go."""
+        """Press or release the bumper."""
         self._board.only(TouchSensor, "bumper").press(pressed)
 
     def drive_pin(self, gpio: int, level: int | None) -> None:
-        """Drive GPIO`gpio` from outside with 0 or 1; None lets it go.
+        """Drive GPIO`gpio` from outside with 0 or 1; None releases it.
 
-        Raises ValueError where that would have no effect: the pin belongs to a module that does not look at levels, or
-        somebody else drives it to the other one.
+        Raises ValueError if that would have no effect: the pin belongs to a module that ignores levels, or another
+        driver drives it to the other level.
         """
         pin = self._pin(gpio)
         signal = self._board.signal_of(gpio)
@@ -173,7 +174,7 @@ class Outside:
         return pin_of(self._board, gpio)
 
     def pwm_duty(self, gpio: int) -> float:
-        """The duty, 0..1, that an ePWM puts on GPIO`gpio` (0..23, 145..168)."""
+        """The duty (0 to 1) of the ePWM output on GPIO`gpio` (0..23, 145..168)."""
         return self._pwm(gpio).duty
 
     def pwm_period_s(self, gpio: int) -> float:
@@ -188,14 +189,14 @@ class Outside:
 
 
 def pin_of(board: Board, gpio: int) -> Wire:
-    """GPIO`gpio` of the chip.  Raises ValueError for one that it does not have."""
+    """The pin GPIO`gpio` of the chip.  Raises ValueError if the chip has none."""
     if not 0 <= gpio < len(board.pins):
         raise ValueError(f"pin {gpio}: this chip has GPIO0 to GPIO{len(board.pins) - 1}")
     return board.pins[gpio]
 
 
 class _Wheel:
-    """A shaft that is turned from outside: every millisecond, and whenever somebody looks at the encoder."""
+    """A shaft that is turned from outside.  It moves every millisecond, and when the encoder is read."""
 
     def __init__(self, board: Board, motor: NxtMotor) -> None:
         self._clock = board.clock
@@ -206,7 +207,7 @@ class _Wheel:
         self._tick()
 
     def turn_at(self, speed_rad_s: float) -> None:
-        """Another speed from now on."""
+        """Set the speed from now on."""
         self._sync()
         self._speed_rad_s = self._motor.omega_rad_s = speed_rad_s
 

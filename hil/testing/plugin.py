@@ -1,7 +1,7 @@
 """The pytest plugin `c2000_hil`: options, markers, the verdict on each test, and the report of a session.
 
-Everything that knows the emulator is imported when a test first asks for it: a project that has this package
-installed and does not use it pays nothing.
+Modules that use the emulator are imported when a test first needs them.  So the plugin costs nothing in a project that
+does not use it.
 """
 
 from __future__ import annotations
@@ -50,21 +50,21 @@ __all__ = [
     "hil_timeline", "hil_uart", "hil_until", "hil_when",
 ]  # fmt: skip
 
-#: The fixture of the whole robot, loaded by its name: nothing here knows it.
+#: The module with the fixture of the whole robot.  It is loaded by its name, because the plugin does not import it.
 _ROBOT: Final = "hil.robot.fixtures"
-#: Scenarios are of the robot too.
+#: The module that collects scenarios, which are about the robot, too.
 _SCENARIOS: Final = "hil.scenarios.collected"
 
-#: The attribute of a test's report that carries its findings, from an xdist worker to the one who writes.
+#: The attribute of a test's report with its findings.  xdist sends it from a worker to the main process.
 _CARRIED: Final = "c2000_hil_findings"
-#: The one that carries what a test used and is not modelled.
+#: The attribute with the names that a test used and that are not modelled.
 _NOT_MODELLED: Final = "c2000_hil_not_modelled"
-#: What an xdist worker puts out under this name is what its tests have counted.
+#: The name under which an xdist worker returns the coverage of its tests.
 _COUNTED: Final = "c2000_hil_coverage"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Options and ini keys."""
+    """Add the options and ini keys."""
     group = parser.getgroup("c2000-hil", "firmware in the loop")
     group.addoption(
         "--hil-fill", action="append", dest="hil_fill", metavar="FILL",
@@ -90,7 +90,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_configure(config: pytest.Config) -> None:
-    """Markers, the robot's fixture, short names, and who collects the findings of all tests."""
+    """Register the markers, the robot's fixture, the short names, and the collector of all findings."""
     config.pluginmanager.register(import_module(_ROBOT), _ROBOT)
     give_short_names(config)
     register_markers(config)
@@ -108,7 +108,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
-    """Scenarios are collected: `*.scenario.toml`."""
+    """Collect scenarios: `*.scenario.toml`."""
     if not file_path.name.endswith(".scenario.toml"):
         return None
     collector: pytest.Collector = import_module(_SCENARIOS).ScenarioFile.from_parent(parent, path=file_path)
@@ -136,7 +136,7 @@ def pytest_report_collectionfinish(config: pytest.Config) -> list[str]:
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """A test of several fills is several tests."""
+    """Make a test for each fill."""
     if "hil_fill" not in metafunc.fixturenames:
         return
     with in_one_line():
@@ -147,9 +147,9 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, Any, Any]:
-    """Let a test's boards go with the test: pytest keeps its item as long as the session.
+    """Release a test's boards with the test, because pytest keeps its item as long as the session.
 
-    A board is full of cycles; most are young still, and to look at the young ones only takes a millisecond.
+    A board has many reference cycles.  Most are in the youngest generation, whose collection takes only a millisecond.
     """
     result = yield
     if CASE in item.stash:
@@ -160,7 +160,7 @@ def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, Any, Any]:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
-    """Judge a test by what its boards have found."""
+    """Judge a test by the findings of its boards."""
     case = item.stash.get(CASE, None)
     if case is None:
         result = yield
@@ -190,7 +190,7 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
 
 
 def _of_rules(marker: pytest.Mark | None) -> bool:
-    """Whether a marker `expects` is this plugin's: another one's names no rule."""
+    """Whether a marker `expects` belongs to this plugin.  That of another plugin names no rule."""
     if marker is None:
         return False
     from emulator.rules import RULES
@@ -200,7 +200,7 @@ def _of_rules(marker: pytest.Mark | None) -> bool:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, Any, Any]:
-    """Give the findings of a test to its report, which xdist carries to whoever writes."""
+    """Add the findings of a test to its report, which xdist sends to the main process."""
     report = yield
     case = item.stash.get(CASE, None)
     if case is not None and (call.when == "call" or (call.when == "setup" and call.excinfo is not None)):
@@ -217,13 +217,13 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
 
 
 class _Counting:
-    """In an xdist worker: hands what its tests have counted to the one who writes."""
+    """In an xdist worker: sends the coverage of its tests to the main process."""
 
     def __init__(self, config: pytest.Config) -> None:
         self.config = config
 
     def pytest_sessionfinish(self) -> None:
-        """Hand the counts to the main process."""
+        """Send the coverage to the main process."""
         from hil.testing.session import session_of
 
         coverage = session_of(self.config).coverage
@@ -232,7 +232,7 @@ class _Counting:
 
 
 class _Collector:
-    """Collects the findings of all tests, writes the files that were asked for, and says what was not modelled."""
+    """Collects the findings of all tests, writes the requested files, and lists what is not modelled."""
 
     def __init__(self, config: pytest.Config) -> None:
         self.config = config
@@ -243,19 +243,19 @@ class _Collector:
         self._not_modelled: list[list[str]] = []
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """The findings of one test, of this process or of a worker."""
+        """Collect the findings of one test, of this process or of a worker."""
         self._carried += ((report.nodeid, data) for data in getattr(report, _CARRIED, []))
         if used := getattr(report, _NOT_MODELLED, []):
             self._not_modelled.append(used)
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_testnodedown(self, node: Any) -> None:
-        """A worker of xdist has ended: what it has counted."""
+        """Collect the coverage of an xdist worker that has ended."""
         self._counted += getattr(node, "workeroutput", {}).get(_COUNTED, [])
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self) -> None:
-        """Write what was asked for."""
+        """Write the requested files."""
         option = self.config.getoption
         if not (self._carried or option("hil_sarif") or option("hil_html") or option("hil_lcov")):
             return
@@ -274,7 +274,7 @@ class _Collector:
             pytest.exit(f"c2000-hil: {error}", returncode=pytest.ExitCode.USAGE_ERROR)
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        """Show the findings of several tests, what was used that is not modelled, and what was written."""
+        """Show the findings of several tests, the names that are not modelled, and the written files."""
         if self._report is not None and self._report.entries:
             from hil.reports.terminal import summary
             from hil.testing.text import table

@@ -1,6 +1,6 @@
-"""What can change while a loop waits: by interrupt routines, and by events of peripherals.
+"""Computes what can change while a loop waits: by interrupt routines, and by events of peripherals.
 
-The answers are conservative: what is not known may change anything.
+The answers are conservative: an unknown effect may change anything.
 """
 
 from __future__ import annotations
@@ -35,22 +35,22 @@ from emulator.peripherals.epwm_event_trigger import EventTrigger
 from emulator.registers.pie_vectors import PieVectTable, Vector
 from hil.board import Board
 
-#: Functions outside the firmware that change nothing a loop could wait for.
+#: Functions outside the firmware that change nothing for which a loop could wait.
 DELAYS: Final = ("DelayUs", "DELAY_US", "F28x_usDelay")
 QUIET: Final = (*DELAYS, "ServiceDog", "KickDog", "EALLOW", "EDIS")
-#: Registers by which an interrupt routine says that it has seen its interrupt: nothing of another block changes.
+#: Registers with which an interrupt routine acknowledges its interrupt.  A write changes nothing in another block.
 _ANSWERS: Final = ("PIEACK", "TCR", "ETCLR", "ADCINTFLGCLR", "ADCINTOVFCLR")
-#: Numbers of the vectors: from here on those of the PIE, lines 1 to 8 of its groups; lines 9 to 16 (HDR hw_ints.h).
+#: The first vector numbers of the PIE: for lines 1 to 8 of its groups, and for lines 9 to 16 (HDR hw_ints.h).
 _GROUPED: Final = 0x20
 _GROUPED_HIGH: Final = 0x80
-#: Blocks that change by their own events, pins and accesses only.
+#: Blocks that change only by their own events, pins and accesses.
 _APART: Final = ("Spi", "Sci", "I2c", "Can")
-#: TRIGSEL of the CPU timers (TRM, ADC); those above are pins and ePWMs.
+#: The values of TRIGSEL for the CPU timers (TRM, ADC).  Higher values are pins and ePWMs.
 _TIMER_TRIGGERS: Final = (1, 2, 3)
 
 
 class Reach:
-    """What can change objects and registers, by the firmware's source and the present state of the chip."""
+    """Computes from the firmware's source and the state of the chip what can change objects and registers."""
 
     def __init__(self, board: Board, modules: list[Module], replaced: Set[str]) -> None:
         self._board, self._modules, self.replaced = board, modules, replaced
@@ -58,7 +58,7 @@ class Reach:
 
     @cached_property
     def threads(self) -> WriterAnalysis:
-        """Who calls which function, and who writes which object, in these modules."""
+        """Which functions call each other, and which write an object, in these modules."""
         return WriterAnalysis(self._modules, set())
 
     def calls_outside(self, part: Any) -> bool:
@@ -79,10 +79,10 @@ class Reach:
                     yield name, entry.id, getattr(routine, "__qualname__", "")
 
     def closed(self, number: int, *, running: tuple[str, ...] | None) -> str:
-        """The enable bit that blocks an interrupt; empty if none does.
+        """The enable bit that blocks an interrupt; empty if no bit does.
 
-        `running`: the routines that run now, over the loop that waits.  INTM then says nothing about the loop, nor does
-        the bit of IER that a routine finds cleared.
+        `running`: the routines that run now and have interrupted the loop.  During them, INTM and the cleared bit of
+        IER say nothing about the loop.
         """
         board, line = self._board, _line(number)
         if number >= _GROUPED:
@@ -97,7 +97,7 @@ class Reach:
         return "INTM is set: no interrupt is taken before EINT" if board.cpu.intm and running is None else ""
 
     def routines(self, running: tuple[str, ...] | None) -> list[_Routine] | None:
-        """The routines that may run, and those `running`; None if others may, or if an effect is not known."""
+        """The routines that may run, and those that run; None if others may run, or an effect is not known."""
         kernel = self._board.kernel
         if kernel.tasks.all or not all(self.closed(number, running=running) for number in kernel.hwis.table):
             return None
@@ -113,12 +113,12 @@ class Reach:
         return found
 
     def _listened_to(self) -> bool:
-        """Whether somebody else than the chip and its parts hears the pins: what is done then is not known."""
+        """Whether pins have a listener that is neither the chip nor a part of it; its effect is not known."""
         return any(_outside(f) for wire in self._board.pins for f in wire.changed.listeners)
 
     @cached_property
     def pointed_at(self) -> set[Variable]:
-        """The objects whose address is taken: whoever has it may write there."""
+        """The objects whose address is taken.  Any code with the address may write them."""
         found = {v for function in self.threads.functions.values() for v in addressed(within(function.body))}
         return found | addressed(self._initial())
 
@@ -144,7 +144,7 @@ class Reach:
         return any(routine.paths & writers for routine in routines)
 
     def may_change(self, routines: list[_Routine], register: RegisterRef) -> bool:
-        """Whether one of the routines, or an event of the chip, may change what a register holds."""
+        """Whether one of the routines, or an event of the chip, may change the value of a register."""
         for routine in routines:
             pointers = routine.uses_pointers and self.registers_pointed_at
             if routine.moves or pointers or register.block in routine.written | self._read_with_effect(routine):
@@ -171,7 +171,7 @@ class Reach:
         return not block.startswith(_APART)
 
     def _triggered(self, block: str, *, timers: bool, others: bool) -> bool:
-        """Whether a CPU timer, or something else than one, starts conversions of an ADC."""
+        """Whether a CPU timer (`timers`), or another trigger (`others`), starts conversions of an ADC."""
         regs = f"{block[:4]}Regs"
         words = [self._board.register(regs, f"ADCSOC{n}CTL").value >> 20 & 0x1F for n in range(16)]
         words.append(self._board.register(regs, "ADCBURSTCTL").value & 0x3F)
@@ -185,7 +185,7 @@ class Reach:
     # --- events ------------------------------------------------------------------------------------------------------
 
     def waiting(self) -> Iterator[Callable[..., Any]]:
-        """The callbacks of scheduled events, without those that end calls."""
+        """The callbacks of scheduled events, except those that end calls."""
         for callback in self._board.clock.waiting():
             function = getattr(callback, "func", callback)
             if getattr(function, "__module__", "") != "hil.testing.guard":
@@ -197,25 +197,25 @@ class Reach:
 
 
 class _Routine:
-    """The objects and registers that an interrupt routine touches, with all that it calls."""
+    """The objects and registers that an interrupt routine, and all functions that it calls, read and write."""
 
     def __init__(self, reach: Reach, path: str) -> None:
         functions = reach.threads.functions
         self.paths = reach.threads.below(path) & functions.keys()
         body = [s for name in self.paths for s in functions[name].body]
         nodes = list(within(body))
-        #: Something is called that may do anything, or interrupts are enabled.
+        #: Whether it calls a function with an unknown effect, or enables interrupts.
         self.unknown = any(_anything(reach, part) for part in nodes)
-        #: A register is written that may have an effect elsewhere: on pins, on other blocks.
+        #: Whether it writes a register that may have an effect on pins or other blocks.
         self.moves = False
-        #: Blocks of which a register is written; block and name of the registers that are read.
+        #: The blocks of the registers that it writes; block and name of the registers that it reads.
         self.written: set[str] = set()
         self.read = {
             (part.register.block, part.register.register)
             for part in nodes
             if isinstance(part, RegisterLoad) and isinstance(part.register, RegisterRef)
         }
-        #: It may write by a pointer; it may read or write by one.
+        #: Whether it may write through a pointer; whether it may read or write through one.
         self.by_pointer = any(_hands_over(part, functions.keys()) for part in nodes)
         self.uses_pointers = self.by_pointer or any(_by_pointer(part) for part in nodes)
         for s in statements(body):
@@ -244,7 +244,7 @@ def _line(number: int) -> int:
 
 
 def _anything(reach: Reach, part: Any) -> bool:
-    """Whether a part of a routine is a call that may do anything; the run-time library writes by pointers at most."""
+    """Whether a part of a routine is a call with an unknown effect.  The run-time library writes only by pointers."""
     if isinstance(part, Call) and reach.calls_outside(part):
         name = part.function.name
         return name in reach.replaced or part.function.path in reach.threads.functions or not hasattr(Rts, name)
@@ -263,7 +263,7 @@ def _by_pointer(part: Any) -> bool:
 
 
 def _to_register(part: Any) -> bool:
-    """Whether an expression may be the address of a register: it is taken, or made of a number."""
+    """Whether an expression may be the address of a register: by the operator &, or from a number."""
     if isinstance(part, Convert) and isinstance(part.ctype, PointerType):
         number = isinstance(part.operand, Const) and not part.operand.value
         return not isinstance(part.operand.ctype, PointerType) and not number
@@ -271,14 +271,14 @@ def _to_register(part: Any) -> bool:
 
 
 def _owner(callback: Callable[..., Any]) -> type[Any] | None:
-    """The class that a callback's event belongs to; None: the event changes no register."""
+    """The class to which the event of a callback belongs; None: the event changes no register."""
     if getattr(callback, "__module__", "") == "emulator.peripherals.pie":
         return None  # looks whether an acknowledge is missing
     return type(getattr(callback, "__self__", callback))
 
 
 def _outside(listener: Any) -> bool:
-    """Whether a listener belongs neither to the chip nor to this project's parts."""
+    """Whether a listener belongs neither to the chip nor to the parts of this project."""
     function = getattr(listener, "func", listener)
     module = str(getattr(function, "__module__", "") or type(getattr(function, "__self__", None)).__module__)
     return not module.startswith(("emulator.", "hil."))

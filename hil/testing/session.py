@@ -25,9 +25,9 @@ from hil.testing.stash import SESSION
 
 
 class ProjectSession:
-    """Policy and baseline of the project in `folder`; `strict` lets notes fail too.  Raises ValueError, OSError.
+    """The policy and baseline of the project in `folder`.  With `strict`, notes fail, too.
 
-    `counted`: the firmware of all tests is counted, in `coverage`.
+    `counted`: the coverage of the firmware in all tests is measured, in `coverage`.  Raises ValueError and OSError.
     """
 
     def __init__(self, folder: Path, *, strict: bool, counted: bool) -> None:
@@ -36,17 +36,17 @@ class ProjectSession:
         known = policy.baseline
         self.baseline = Baseline.read(known) if known is not None and known.is_file() else None
         self.coverage = Coverage() if counted else None
-        #: Static findings that a test of this process has answered for.
+        #: The static findings that belong to an earlier test of this process.
         self.reported: set[Key] = set()
 
     def case(self, name: str) -> Case:
-        """A test that begins."""
+        """Begin a test."""
         return Case(name, self.policy, self.baseline, self.reported)
 
     def report(self, carried: Iterable[tuple[str, dict[str, Any]]]) -> Report:
-        """The findings of all tests, each place once, with how often it was passed in all of them.
+        """The findings of all tests.  Each place comes once, with its count in all tests.
 
-        `carried`: the test that showed a finding, and the finding as `pack` made it.
+        `carried`: pairs of the test that showed a finding, and the finding as converted by `pack`.
         """
         found = merged_by((test, unpack(data)) for test, data in carried)
         return Report.of(
@@ -56,7 +56,7 @@ class ProjectSession:
 
 
 def session_of(config: pytest.Config) -> ProjectSession:
-    """The session of a pytest run, made on first use.  Raises ValueError, OSError."""
+    """The session of a pytest run.  It is created at its first use.  Raises ValueError and OSError."""
     if SESSION not in config.stash:
         counted = config.getoption("hil_lcov") is not None
         config.stash[SESSION] = ProjectSession(config.rootpath, strict=settings.strict(config), counted=counted)
@@ -66,7 +66,7 @@ def session_of(config: pytest.Config) -> ProjectSession:
 def write(
     report: Report, coverage: Coverage | None, *, sarif: Path | None, html: Path | None, lcov: Path | None
 ) -> list[str]:
-    """Write the files asked for; returns a line about each.  Raises OSError."""
+    """Write the requested files.  Returns a line about each.  Raises OSError."""
     lines = []
     for path, writer in ((sarif, write_sarif), (html, write_html)):
         if path is not None:

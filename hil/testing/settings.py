@@ -1,4 +1,4 @@
-"""The settings of a test: of its nearest marker, else of the option, else of the ini key.
+"""The settings of a test.  They come from its nearest marker, else from the option, else from the ini key.
 
 `MARKERS` and `INI` list them all; the options are `--hil-fill`, `--hil-seed` and `--hil-float-division`.
 """
@@ -13,14 +13,14 @@ import pytest
 
 from hil.testing.stash import TAKEN_MARKERS
 
-#: The functions of a user's modules that tests may call: all but those whose name begins with an underscore, which
+#: The functions of a user's modules that tests may call: all but those whose names begin with an underscore.  Those
 #: are `static` in C.
 API: Final = ("*.[!_]*",)
-#: What a test runs under if nobody says anything.
+#: The default settings of a test.
 FILL: Final = "zero"
 SEED: Final = "1"
 FLOAT_DIVISION: Final = "calibrated"
-#: Name, type and help of each ini key.
+#: The name, type and help text of each ini key.
 INI: Final[tuple[tuple[str, Literal["args", "string", "bool"], str], ...]] = (
     ("hil_fill", "args", "what never-written memory holds: zero (default), ones, nan, random:SEED, stack, trap"),
     ("hil_seed", "string", "seed of everything that varies between specimens and runs (default 1)"),
@@ -34,7 +34,7 @@ INI: Final[tuple[tuple[str, Literal["args", "string", "bool"], str], ...]] = (
     ("hil_call_limit", "string", "virtual seconds after which a call of a test is ended (default 5)"),
     ("hil_fixes", "args", "corrections of the robot's firmware to link in, or all"),
 )
-#: Keywords of the marker `firmware`.
+#: The keywords of the marker `firmware`.
 _FOR_C: Final = {"include", "defines", "abi"}
 MARKERS: Final = (
     "fill(policy, ...): run under these fills of never-written memory, one test each",
@@ -55,19 +55,22 @@ MARKERS: Final = (
 
 
 def markers(item: pytest.Item, *names: str) -> Iterator[pytest.Mark]:
-    """The markers of these names, the nearest first: `hil_NAME`, and NAME where it is nobody else's."""
+    """The markers of these names, the nearest first: `hil_NAME`, and NAME unless it belongs to another plugin."""
     taken = item.config.stash.get(TAKEN_MARKERS, ())
     ours = {f"hil_{name}" for name in names} | {name for name in names if name not in taken}
     return (marker for marker in item.iter_markers() if marker.name in ours)
 
 
 def nearest(item: pytest.Item, name: str) -> pytest.Mark | None:
-    """The nearest marker of a name; None without one."""
+    """The nearest marker with a name; None if there is none."""
     return next(markers(item, name), None)
 
 
 def marked(item: pytest.Item, name: str) -> tuple[Any, ...] | None:
-    """The arguments of the nearest marker `name`; None without one.  Raises ValueError for a marker without any."""
+    """The arguments of the nearest marker `name`; None if there is none.
+
+    Raises ValueError for a marker without arguments.
+    """
     marker = nearest(item, name)
     if marker is None:
         return None
@@ -77,7 +80,7 @@ def marked(item: pytest.Item, name: str) -> tuple[Any, ...] | None:
 
 
 def misused(marker: pytest.Mark) -> ValueError:
-    """The error for a marker with arguments that it does not take."""
+    """The error for a marker with wrong arguments."""
     named = (f"{key}={value!r}" for key, value in marker.kwargs.items())
     described = next(text for text in MARKERS if text.startswith(f"{marker.name.removeprefix('hil_')}("))
     given = ", ".join([*map(repr, marker.args), *named])
@@ -85,7 +88,7 @@ def misused(marker: pytest.Mark) -> ValueError:
 
 
 def fills(item: pytest.Item) -> list[str]:
-    """The fills of a test; it runs once under each."""
+    """The fills of a test.  The test runs once with each of them."""
     return list(marked(item, "fill") or item.config.getoption("hil_fill") or item.config.getini("hil_fill") or [FILL])
 
 
@@ -100,7 +103,7 @@ def seed(item: pytest.Item) -> int:
 
 
 def float_division(item: pytest.Item) -> str:
-    """How long dividing floats takes in a test: the name of a build.  Raises ValueError for one that is none."""
+    """The build that determines the time of a float division in a test.  Raises ValueError for an unknown name."""
     from emulator.c28x.float_division import float_division as known
 
     args = marked(item, "float_division")
@@ -110,7 +113,7 @@ def float_division(item: pytest.Item) -> str:
 
 
 def division_asked(config: pytest.Config) -> str:
-    """The build named by the option or the ini key; empty if neither is set."""
+    """The build in the option or the ini key; empty if neither is set."""
     return str(config.getoption("hil_float_division") or config.getini("hil_float_division") or "")
 
 
@@ -136,7 +139,7 @@ def board(item: pytest.Item) -> tuple[str, Path]:
 
 
 def options(item: pytest.Item) -> tuple[str, ...]:
-    """The parts that the board of a test has on demand."""
+    """The optional parts of a test's board."""
     marker = _board(item)
     return () if marker is None else tuple(marker.kwargs.get("options", ()))
 
@@ -155,13 +158,16 @@ def world(item: pytest.Item) -> str:
 
 
 def fixes(item: pytest.Item) -> tuple[str, ...]:
-    """The corrections that a test links in."""
+    """The corrections that a test links."""
     args = marked(item, "fixes")
     return tuple(item.config.getini("hil_fixes") or ()) if args is None else args
 
 
 def refuse_fixes(item: pytest.Item) -> None:
-    """Raises ValueError for the marker `fixes` of a test that links other firmware; one around it may mean others."""
+    """Raise ValueError for a marker `fixes` at a test that links other firmware than the robot's.
+
+    A marker `fixes` farther out than the marker `firmware` is no error, because it may be meant for other tests.
+    """
     levels: dict[str, int] = {}
     taken = item.config.stash.get(TAKEN_MARKERS, ())
     for node, marker in item.iter_markers_with_node():
@@ -177,14 +183,14 @@ def refuse_fixes(item: pytest.Item) -> None:
 
 
 def realistic(item: pytest.Item) -> bool:
-    """Whether the parts around the chip have noise and tolerance; `ideal` and `realistic`, the nearest one wins."""
+    """Whether the parts around the chip have noise and tolerance: the nearest of `ideal` and `realistic` decides."""
     for marker in markers(item, "ideal", "realistic"):
         return marker.name.endswith("realistic")
     return bool(item.config.getini("hil_realistic"))
 
 
 def firmware_modules(item: pytest.Item) -> tuple[str, ...]:
-    """The modules that a test links, files of its marker relative to the test file; none: those of the robot."""
+    """The modules that a test links; files of its marker are relative to the test file.  None: those of the robot."""
     marker = nearest(item, "firmware")
     if marker is not None:
         if not marker.args or marker.kwargs.keys() - _FOR_C:
@@ -197,9 +203,9 @@ def firmware_modules(item: pytest.Item) -> tuple[str, ...]:
 
 
 def for_c(item: pytest.Item) -> dict[str, Any]:
-    """How the C files of a test are read: `include` (as paths), `defines`, `abi`; only what is said.
+    """The settings for the C files of a test: `include` (as paths), `defines`, `abi`, as far as they are given.
 
-    Raises ValueError for a folder that is none, and for an unknown ABI.
+    Raises ValueError for a folder that does not exist, and for an unknown ABI.
     """
     marker = nearest(item, "firmware")
     said = dict(marker.kwargs) if marker is not None else {}
@@ -224,7 +230,7 @@ def for_c(item: pytest.Item) -> dict[str, Any]:
 
 
 def strict(config: pytest.Config) -> bool:
-    """Whether notes fail a test: `--hil-strict`, or the strict mode that pytest has from version 9 on (`--strict`)."""
+    """Whether notes fail a test: `--hil-strict`, or the strict mode of pytest 9 and later (`--strict`)."""
     try:
         own = bool(config.getini("strict"))
     except ValueError:
@@ -233,5 +239,5 @@ def strict(config: pytest.Config) -> bool:
 
 
 def located(name: str, folder: Path) -> str:
-    """An importable name as it is; a file relative to `folder` as an absolute path."""
+    """An importable name unchanged; a file relative to `folder` as an absolute path."""
     return str((folder / name).resolve()) if name.lower().endswith((".py", ".c")) else name

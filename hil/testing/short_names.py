@@ -1,8 +1,8 @@
 """Short names of fixtures and markers: `board` is `hil_board`.
 
-If another plugin has a fixture of a short name, that plugin keeps it, whichever was loaded first.  A conftest.py or a
-test file may override a short name as usual; the fixtures of this plugin use each other by their long names.  A marker
-that the project or another plugin has registered stays theirs.
+If another plugin has a fixture with a short name, that plugin keeps the name, whichever plugin was loaded first.  A
+conftest.py or a test file may override a short name as usual; the fixtures of this plugin use each other by their long
+names.  A marker that the project or another plugin has registered keeps its meaning.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ SHORT: Final = (
 
 
 def give_short_names(config: pytest.Config) -> None:
-    """Add the fixtures of short names, in front of those of every conftest.py."""
+    """Add the fixtures with short names.  Those of a conftest.py override them."""
     plugins = config.pluginmanager.get_plugins()
     others = {name for plugin in plugins for name in _fixtures(plugin)}
     ours = {f"hil_{name}": name for name in SHORT}
@@ -38,7 +38,7 @@ def give_short_names(config: pytest.Config) -> None:
 
 
 def register_markers(config: pytest.Config) -> None:
-    """Register the markers by their long names, and by the short ones that nobody has registered."""
+    """Register the markers by their long names, and by those short names that are free."""
     others = {line.partition(":")[0].partition("(")[0].strip() for line in config.getini("markers")}
     names = [line.partition(":")[0].partition("(")[0] for line in settings.MARKERS]
     config.stash[TAKEN_MARKERS] = [name for name in names if name in others]
@@ -49,7 +49,7 @@ def register_markers(config: pytest.Config) -> None:
 
 
 def _short(name: str, said: str) -> Callable[..., Any]:
-    """The fixture `name`, which gives what the fixture `hil_name` does."""
+    """The fixture `name`, which returns the value of the fixture `hil_name`."""
     long = f"hil_{name}"
 
     def give(**values: Any) -> Any:
@@ -61,7 +61,7 @@ def _short(name: str, said: str) -> Callable[..., Any]:
 
 
 def _fixtures(plugin: object) -> Iterator[str]:
-    """The names of the fixtures that a plugin defines; of a conftest.py none, which stands below all plugins."""
+    """The names of the fixtures of a plugin.  A conftest.py gives none, because it overrides all plugins."""
     file = str(getattr(plugin, "__file__", ""))
     if file.endswith("conftest.py"):
         return

@@ -17,17 +17,17 @@ _ANNOUNCED: Final[dict[type[BaseException], tuple[str, ...]]] = {
     KernelError: ("stack-overflow", "kernel-handle", "invalid-free", "null-dereference", "kernel-error"),
     RecursionError: ("stack-overflow",),
 }
-#: The exceptions with which firmware does not run on.
+#: The exceptions after which the firmware does not run on.
 STOPS: Final[tuple[type[BaseException], ...]] = (*_ANNOUNCED, FirmwareStopped)
 
 
 def announced(stop: BaseException) -> tuple[str, ...]:
-    """The rules whose findings announce this kind of stop."""
+    """The rules of the findings that come with this kind of stop."""
     cause = stop.__cause__ if isinstance(stop, FirmwareStopped) and stop.__cause__ else stop
     return next((rules for kind, rules in _ANNOUNCED.items() if isinstance(cause, kind)), ())
 
 
 def sentence(stop: BaseException) -> str:
-    """The stop in one line, with its thread."""
+    """The stop in one line, with the name of its thread."""
     who = "; ".join(getattr(stop, "__notes__", ()))
     return f"the firmware stopped: {stop}" + (f" ({who})" if who else "")

@@ -1,7 +1,7 @@
-"""Hypothesis strategies for what a driver of this robot meets: conversions, gyro registers, orders, paths.
+"""Hypothesis strategies for the inputs of this robot's drivers: conversions, gyro registers, orders, paths.
 
-Plain values in the driver's own units: ADC codes, register words, bytes.  Where a strategy stands for something
-physical its docstring says what.
+The values are in the units of the driver: ADC codes, register words, bytes.  If a strategy models something physical,
+its docstring says what.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 
 from hil.client.orders import KEYWORDS, LONGEST_ORDER, order, set_reference
 
-#: Conversions that the robot's driver takes for one distance.
+#: The number of conversions from which the robot's driver computes one distance.
 WINDOW: Final = 12
-#: 12-bit converter.
+#: The largest code of a 12-bit converter.
 CODE_MAX: Final = 4095
 
 
@@ -30,21 +30,21 @@ def codes() -> st.SearchStrategy[int]:
 
 @st.composite
 def steady_windows(draw: st.DrawFn, length: int = WINDOW, noise: int = 2) -> list[int]:
-    """A reflector at rest: one code with up to `noise` counts either way."""
+    """A reflector at rest: the same code with noise of up to `noise` counts in both directions."""
     level = draw(st.integers(noise, CODE_MAX - noise))
     return [level + draw(st.integers(-noise, noise)) for _ in range(length)]
 
 
 @st.composite
 def slewing_windows(draw: st.DrawFn, length: int = WINDOW) -> list[int]:
-    """A level that moves all the time: from one code to another in equal steps."""
+    """A level that changes all the time: from one code to another in equal steps."""
     first, last = draw(codes()), draw(codes())
     return [round(first + (last - first) * i / max(1, length - 1)) for i in range(length)]
 
 
 @dataclass(frozen=True, slots=True)
 class Outlier:
-    """A steady window with one code that does not belong to it."""
+    """A steady window with one wrong code."""
 
     codes: list[int]
     index: int
@@ -54,7 +54,7 @@ class Outlier:
 
 @st.composite
 def outlier_windows(draw: st.DrawFn, length: int = WINDOW, noise: int = 2, least: int = 50) -> Outlier:
-    """A steady window in which one code, anywhere, is at least `least` counts away."""
+    """A steady window in which one code, at any place, differs by at least `least` counts."""
     clean = draw(steady_windows(length, noise))
     index = draw(st.integers(0, length - 1))
     wrong = draw(codes().filter(lambda code: abs(code - clean[index]) >= least))
@@ -62,7 +62,7 @@ def outlier_windows(draw: st.DrawFn, length: int = WINDOW, noise: int = 2, least
 
 
 def adc_windows(length: int = WINDOW) -> st.SearchStrategy[list[int]]:
-    """Any of them, and any codes at all."""
+    """Any of these windows, and windows of arbitrary codes."""
     return st.one_of(
         steady_windows(length), slewing_windows(length), outlier_windows(length).map(lambda window: window.codes),
         st.lists(codes(), min_size=length, max_size=length),
@@ -73,7 +73,7 @@ def adc_windows(length: int = WINDOW) -> st.SearchStrategy[list[int]]:
 
 
 def gyro_words() -> st.SearchStrategy[int]:
-    """A signed output word of one axis, the ends and the signs of both bytes likely."""
+    """A signed output word of one axis.  Extreme values, and all signs of both bytes, are likely."""
     return st.one_of(
         st.integers(-32768, 32767), st.sampled_from([0, 1, -1, 127, 128, 255, 256, -128, -256, 32767, -32768])
     )
@@ -86,7 +86,7 @@ def rates_rad_s(full_scale_dps: float = 250.0) -> st.SearchStrategy[float]:
 
 
 def register_bytes(word: int) -> tuple[int, int]:
-    """The bytes (low, high) of an output word, as OUT_Z_L and OUT_Z_H hold them."""
+    """The bytes (low, high) of an output word, as in OUT_Z_L and OUT_Z_H."""
     return word & 0xFF, word >> 8 & 0xFF
 
 
@@ -94,7 +94,7 @@ def register_bytes(word: int) -> tuple[int, int]:
 
 
 def speeds(limit: float) -> st.SearchStrategy[float]:
-    """A speed as a person writes it: three decimals at most."""
+    """A speed with at most three decimals, as a person writes it."""
     return st.integers(-round(limit * 1000), round(limit * 1000)).map(lambda thousandths: thousandths / 1000.0)
 
 
@@ -104,13 +104,13 @@ def references() -> st.SearchStrategy[bytes]:
 
 
 def orders() -> st.SearchStrategy[bytes]:
-    """A well-formed order, begin and end mark included."""
+    """A well-formed order with its start and end marks."""
     return st.one_of(st.sampled_from([order(word) for word in KEYWORDS]), references())
 
 
 @st.composite
 def truncated_orders(draw: st.DrawFn) -> bytes:
-    """The beginning of an order: its end mark never came."""
+    """The beginning of an order without an end mark."""
     whole = draw(orders())
     return whole[: draw(st.integers(1, len(whole) - 1))]
 
@@ -119,7 +119,7 @@ _TEXT: Final = st.binary(max_size=12).map(lambda data: bytes(b for b in data if 
 
 
 def malformed_orders() -> st.SearchStrategy[bytes]:
-    """A frame with both marks that is no order: unknown letters, a reference without comma or number, too long."""
+    """A frame with both marks that is no order: unknown letters, a reference without comma or number, or too long."""
     letters = {f"#{name}".encode() for name in (*KEYWORDS.values(), "SETR")}
     unknown = _TEXT.map(lambda text: b"#" + text + b"\r").filter(lambda frame: frame[:5] not in letters)
     reference = st.sampled_from([b"", b",", b"0.1", b"0.1;0.2", b"x,y", b"0.1,", b",0.2", b"--1,0"])
@@ -130,13 +130,13 @@ def malformed_orders() -> st.SearchStrategy[bytes]:
 
 
 def noise() -> st.SearchStrategy[bytes]:
-    """Bytes between frames, neither mark among them."""
+    """Bytes between frames, without a start or end mark."""
     return _TEXT
 
 
 @st.composite
 def split(draw: st.DrawFn, data: bytes) -> list[bytes]:
-    """`data` in pieces, cut at any places; no piece is empty."""
+    """`data` split at arbitrary places; no piece is empty."""
     if len(data) < 2:
         return [data] if data else []
     cuts = sorted(draw(st.sets(st.integers(1, len(data) - 1), max_size=4)))
@@ -148,7 +148,7 @@ def split(draw: st.DrawFn, data: bytes) -> list[bytes]:
 
 @dataclass(frozen=True, slots=True)
 class DriveSegment:
-    """A stretch driven at constant speeds: m/s and rad/s (positive to the left), for seconds."""
+    """A drive at constant speeds: in m/s and rad/s (positive: to the left), for a time in seconds."""
 
     v_m_s: float
     w_rad_s: float
@@ -156,7 +156,7 @@ class DriveSegment:
 
 
 def segments(v_m_s: float = 0.3, w_rad_s: float = 1.5) -> st.SearchStrategy[DriveSegment]:
-    """Straight, a turn on the spot, or an arc; 0.1 to 2 s."""
+    """A straight line, a turn on the spot, or an arc, for 0.1 to 2 s."""
     duration = st.integers(1, 20).map(lambda tenths: tenths / 10.0)
     v, w = speeds(v_m_s), speeds(w_rad_s)
     zero = st.just(0.0)
@@ -165,5 +165,5 @@ def segments(v_m_s: float = 0.3, w_rad_s: float = 1.5) -> st.SearchStrategy[Driv
 
 
 def paths(longest: int = 6) -> st.SearchStrategy[list[DriveSegment]]:
-    """A path of some segments."""
+    """A path of several segments."""
     return st.lists(segments(), min_size=1, max_size=longest)

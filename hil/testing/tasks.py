@@ -1,7 +1,7 @@
-"""The fixture `kernel`: a user's own `main` and tasks under SYS/BIOS, without the robot's.
+"""The fixture `kernel`: a user's own `main` and tasks under SYS/BIOS, without the robot's firmware.
 
-Functions of the firmware, and plain Python functions that call the kernel's (`kernel.Semaphore_pend(...)`), are tasks
-alike.  Nothing runs before time is moved: `advance`, `until`.
+Functions of the firmware can be tasks, and so can Python functions that call the kernel's functions
+(`kernel.Semaphore_pend(...)`).  They run only while time passes: `advance`, `until`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ STACK_WORDS: Final = 512
 
 
 class Tasks:
-    """A kernel that a test fills and starts.  Every C function of SYS/BIOS is an attribute."""
+    """A kernel whose tasks a test creates and starts.  Every C function of SYS/BIOS is an attribute."""
 
     def __init__(self, board: Board, timeline: Timeline) -> None:
         self.kernel: Kernel = board.kernel
@@ -34,7 +34,10 @@ class Tasks:
         self, function: Callable[..., Any], *, priority: int = 1, name: str = "", stack_words: int = STACK_WORDS,
         arg0: int = 0, arg1: int = 0,
     ) -> Task:  # fmt: skip
-        """A task, as `Task_create` in `main` makes it; before `start`.  Raises ValueError for a wrong priority."""
+        """Create a task, as `Task_create` in `main` does.  Call it before `start`.
+
+        Raises ValueError for a wrong priority.
+        """
         if self._started:
             raise ValueError("create tasks before start(); after it, only the firmware creates them, with Task_create")
         if not 1 <= priority <= 15:
@@ -45,9 +48,9 @@ class Tasks:
         return tasks.add(translated(function), priority, stack, (arg0, arg1), True, name)
 
     def start(self, main: Callable[[], Any] | None = None) -> None:
-        """Begin with the firmware's `main`, or with `BIOS_start` for the tasks that were made here.
+        """Start with the firmware's `main`, or with `BIOS_start` for the tasks that were created here.
 
-        It has run up to its first moment of time; what follows needs `advance` or `until`.
+        The kernel runs until virtual time would pass.  Then call `advance` or `until`.
         """
         if self._started:
             raise ValueError("the kernel was started already")
@@ -58,7 +61,7 @@ class Tasks:
         self.kernel.start(self.kernel.BIOS_start if main is None else translated(main))
 
     def named(self, name: str) -> Task:
-        """The task of a name.  Raises ValueError."""
+        """The task with a name.  Raises ValueError if there is none."""
         for task in self.kernel.tasks.all:
             if task.name == name:
                 return task
@@ -66,6 +69,6 @@ class Tasks:
 
 
 def translated(function: Callable[..., Any]) -> Callable[..., Any]:
-    """What the kernel calls for a function of a linked image (`firmware.app.main`); any other as it is."""
+    """The function that the kernel calls for a function of a linked image (`firmware.app.main`); others unchanged."""
     inner: Callable[..., Any] = unwrap(getattr(function, "translated", function))
     return inner

@@ -1,4 +1,4 @@
-"""Findings in a test report: one as a few lines, those of a session as a table."""
+"""The text of findings in a test report: a finding as a few lines, those of a session as a table."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def one_line(finding: Finding) -> str:
 
 
 def entry_lines(entry: ReportEntry) -> list[str]:
-    """One finding: rule, message, place, call path, task, time, value, how often."""
+    """The lines of a finding: rule, message, place, call path, task, time, value, count."""
     finding, place = entry.finding, entry.finding.place
     lines = [f"{entry.severity.value} {finding.rule}: {finding.message}"]
     if place is not None:

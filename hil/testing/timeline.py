@@ -1,4 +1,4 @@
-"""A test's control of virtual time: forward by a time, or until a trigger.
+"""Lets virtual time pass in a test: for a duration, or until a trigger fires.
 
 A call of a driver function takes its own time.  Between calls `Timeline` advances the time: through the kernel if one
 runs, else from event to event with an idle CPU.
@@ -15,13 +15,13 @@ from hil.testing.triggers import Trigger
 
 
 class NotReached(AssertionError):
-    """A trigger did not come within its virtual time."""
+    """A trigger did not fire within its virtual time."""
 
 
 class Timeline:
-    """The time of one board.
+    """The virtual time of one board.
 
-    `run_until(cycles)` lets it pass with the board's kernel running; without one the CPU is idle.
+    `run_until(cycles)` lets time pass while the board's kernel runs.  Without a kernel, the CPU is idle.
     """
 
     def __init__(self, board: Board, run_until: Callable[[int], None] | None = None) -> None:
@@ -30,12 +30,12 @@ class Timeline:
         self._run_until = run_until
 
     def run_kernel(self) -> None:
-        """The board's kernel is started: it runs while time passes."""
+        """Note that the board's kernel has started.  It runs while time passes."""
         self._run_until = self._kernel.run_until
 
     @property
     def now_s(self) -> float:
-        """Virtual time since power-up in seconds."""
+        """The virtual time since power-up in seconds."""
         return seconds(self.clock.now)
 
     def advance(self, duration_s: float) -> None:
@@ -45,9 +45,9 @@ class Timeline:
         self._run(self.clock.now + round(duration_s * SYSCLK_HZ), lambda: False)
 
     def until(self, trigger: Trigger, within_s: float = 1.0) -> Any:
-        """Let time pass until `trigger` fires; returns what it gives (a pin's level, a match, a finding).
+        """Let time pass until `trigger` fires.  Returns its value (a pin's level, a match, a finding).
 
-        Raises NotReached, with what is the case instead, after `within_s` seconds of virtual time.
+        Raises NotReached, which names the present state, after `within_s` seconds of virtual time.
         """
         __tracebackhide__ = True
         start = self.clock.now
@@ -73,7 +73,7 @@ class Timeline:
         raise NotReached(f"{trigger} did not come {waited}" + (f": {instead}" if instead else ""))
 
     def later(self, delay_s: float, action: Callable[[], Any]) -> None:
-        """Call `action()` when `delay_s` seconds of virtual time have passed, whoever runs then."""
+        """Call `action()` after `delay_s` seconds of virtual time, whichever thread runs then."""
         self.clock.after(round(delay_s * SYSCLK_HZ), action)
 
     def _run(self, limit: int, done: Callable[[], bool]) -> None:

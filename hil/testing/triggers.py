@@ -1,6 +1,6 @@
-"""What a test waits for: a pin, a frame, a task, a register, a time, a finding, a condition; `a | b` for either.
+"""Triggers for which a test can wait: a pin, a frame, a task, a register, a time, a finding, a condition.
 
-`Timeline.until` arms a trigger, which then calls `fire(value)`.  Times are virtual.
+`a | b` fires with either of them.  `Timeline.until` arms a trigger, which then calls `fire(value)`.  Times are virtual.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from hil.testing.uart import Uart
 
 Fire = Callable[[Any], None]
 Disarm = Callable[[], None]
-#: How often a condition is looked at, in cycles.
+#: The cycles between two evaluations of a condition.
 SAMPLE_CYCLES: Final = SYSCLK_HZ // 10_000
 
 
 class Subscription:
-    """A listener that gets nothing after `end`, not even the rest of an emission under way."""
+    """A listener that gets nothing after `end`, not even if a signal is being emitted."""
 
     __slots__ = ("_fire", "_on", "_stop")
 
@@ -36,33 +36,33 @@ class Subscription:
         self._stop: Disarm = _nothing
 
     def until(self, stop: Disarm) -> None:
-        """It is connected; `stop` disconnects it."""
+        """Store `stop`, which disconnects the listener."""
         self._stop = stop
 
     def __call__(self, value: Any) -> None:
-        """It happened."""
+        """Pass a value on."""
         if self._on:
             self._fire(value)
 
     def end(self) -> None:
-        """Hear nothing more."""
+        """Disconnect the listener."""
         self._on = False
         self._stop()
 
 
 def _nothing() -> None:
-    """Does nothing: for a trigger that had nothing to connect."""
+    """Do nothing.  It ends a trigger that has connected nothing."""
 
 
 class Trigger(ABC):
-    """Something that happens.  `str()` says what, for the message of a time-out."""
+    """An event for which a test can wait.  `str()` describes it, for the message of a time-out."""
 
     @abstractmethod
     def arm(self, fire: Fire) -> Disarm:
-        """Call `fire(value)` when it happens; returns what ends the watch."""
+        """Call `fire(value)` when it happens.  Returns the function that ends this."""
 
     def instead(self) -> str:
-        """The present state instead, in a few words, for the message of a time-out."""
+        """The present state in a few words, for the message of a time-out."""
         return ""
 
     def __or__(self, other: Trigger) -> Either:
@@ -70,13 +70,13 @@ class Trigger(ABC):
 
 
 class Either(Trigger):
-    """The trigger that fires first; gives its value."""
+    """Fires with the first of several triggers.  Its value is that of the trigger."""
 
     def __init__(self, *triggers: Trigger) -> None:
         self.triggers = triggers
 
     def arm(self, fire: Fire) -> Disarm:
-        """Arm all."""
+        """Arm all triggers."""
         ends = [trigger.arm(fire) for trigger in self.triggers]
 
         def end() -> None:
@@ -86,7 +86,7 @@ class Either(Trigger):
         return end
 
     def instead(self) -> str:
-        """The state of each, where it has one."""
+        """The state of each trigger that has one."""
         return "; ".join(text for text in (t.instead() for t in self.triggers) if text)
 
     def __str__(self) -> str:
@@ -94,7 +94,7 @@ class Either(Trigger):
 
 
 class Pin(Trigger):
-    """GPIOn has a level, or with `edge` changes to it.  Gives the level."""
+    """A GPIO has a level, or with `edge` changes to it.  The value is the level."""
 
     def __init__(self, board: Board, gpio: int, level: int, *, edge: bool) -> None:
         self._wire = pin_of(board, gpio)
@@ -102,7 +102,7 @@ class Pin(Trigger):
         self._edge = edge
 
     def arm(self, fire: Fire) -> Disarm:
-        """Listen to the wire."""
+        """Listen to the wire of the pin."""
         watch = Subscription(lambda level: fire(level) if level == self._level else None)
         watch.until(self._wire.changed.connect(watch))
         if not self._edge:
@@ -110,7 +110,7 @@ class Pin(Trigger):
         return watch.end
 
     def instead(self) -> str:
-        """The level."""
+        """The present level."""
         return f"{self._wire.name} is {self._wire.level}"
 
     def __str__(self) -> str:
@@ -118,14 +118,14 @@ class Pin(Trigger):
 
 
 class Frame(Trigger):
-    """Bytes on a line that match a pattern, behind what was waited for before.  Gives the match."""
+    """Bytes on a line match a pattern, after those of earlier triggers.  The value is the match."""
 
     def __init__(self, uart: Uart, pattern: bytes) -> None:
         self._uart = uart
         self._pattern = re.compile(pattern, re.DOTALL)
 
     def arm(self, fire: Fire) -> Disarm:
-        """Look at what is unread, now and after each byte."""
+        """Compare the unread bytes, now and after each byte."""
 
         def look(_byte: Any) -> None:
             found = self._pattern.search(self._uart.unread)
@@ -140,7 +140,7 @@ class Frame(Trigger):
         return watch.end
 
     def instead(self) -> str:
-        """What came."""
+        """The unread bytes."""
         return f"received {self._uart.unread!r}"
 
     def __str__(self) -> str:
@@ -148,7 +148,7 @@ class Frame(Trigger):
 
 
 class TaskEvent(Trigger):
-    """An event of the kernel's trace about a name (a pattern such as `Task*`).  Gives the name."""
+    """An event of the kernel's trace about a name (a pattern such as `Task*`).  The value is the name."""
 
     def __init__(self, board: Board, kinds: tuple[str, ...], name: str, text: str) -> None:
         self._board = board
@@ -175,7 +175,7 @@ class TaskEvent(Trigger):
 
 
 class Written(Trigger):
-    """The firmware writes a register, or the given value to it.  Gives the whole word."""
+    """The firmware writes a register, or a given value to it.  The value of the trigger is the whole word."""
 
     def __init__(self, register: Cell, value: int | None) -> None:
         self._register = register
@@ -183,7 +183,7 @@ class Written(Trigger):
         self._last: int | None = None
 
     def arm(self, fire: Fire) -> Disarm:
-        """Tap the register."""
+        """Listen to writes of the register."""
 
         def look(_register: Cell, _access: str, word: int, _mask: int) -> None:
             self._last = word
@@ -194,7 +194,7 @@ class Written(Trigger):
         return lambda: self._register.untap(look)
 
     def instead(self) -> str:
-        """The last word written."""
+        """The last word that was written."""
         return "it was not written" if self._last is None else f"last written {self._last:#06x}"
 
     def __str__(self) -> str:
@@ -203,21 +203,21 @@ class Written(Trigger):
 
 
 class Time(Trigger):
-    """A virtual time since power-up has come.  Gives the time in seconds."""
+    """A virtual time since power-up.  The value is the time in seconds."""
 
     def __init__(self, board: Board, time_s: float) -> None:
         self._clock = board.clock
         self._time_s = time_s
 
     def arm(self, fire: Fire) -> Disarm:
-        """An event at that time, or at once."""
+        """Schedule an event at that time, or fire at once if it has passed."""
         event = self._clock.schedule(
             max(self._clock.now, round(self._time_s * SYSCLK_HZ)), lambda: fire(self._clock.now / SYSCLK_HZ)
         )
         return lambda: self._clock.cancel(event)
 
     def instead(self) -> str:
-        """The time."""
+        """The present time."""
         return f"it is {ms(self._clock.now):.3f} ms"
 
     def __str__(self) -> str:
@@ -225,7 +225,7 @@ class Time(Trigger):
 
 
 class Found(Trigger):
-    """A finding of a rule (or pattern), at its first occurrence from now on.  Gives the finding."""
+    """A finding of a rule (or pattern), at its first occurrence from now on.  The value is the finding."""
 
     def __init__(self, board: Board, rule: str) -> None:
         self._findings = board.findings
@@ -243,7 +243,7 @@ class Found(Trigger):
         return watch.end
 
     def instead(self) -> str:
-        """What was found."""
+        """The findings so far."""
         return f"found {', '.join(sorted({f.rule for f in self._findings})) or 'nothing'}"
 
     def __str__(self) -> str:
@@ -251,7 +251,7 @@ class Found(Trigger):
 
 
 class Holds(Trigger):
-    """A condition of the test's own holds, looked at every `SAMPLE_CYCLES`.  Gives what it returned."""
+    """A condition of the test is true.  It is evaluated every `SAMPLE_CYCLES`.  The value is its result."""
 
     def __init__(self, board: Board, condition: Callable[[], Any], text: str) -> None:
         self._clock = board.clock
@@ -259,7 +259,7 @@ class Holds(Trigger):
         self._text = text
 
     def arm(self, fire: Fire) -> Disarm:
-        """Look now and again."""
+        """Evaluate the condition now and regularly from now on."""
         pending: Event | None = None
 
         def look() -> None:
@@ -278,14 +278,14 @@ class Holds(Trigger):
 
 
 class When:
-    """The fixture `when`: makes triggers for one board."""
+    """The fixture `when`: creates triggers for one board."""
 
     def __init__(self, board: Board, uart: Callable[[], Uart]) -> None:
         self._board = board
         self._uart = uart
 
     def pin(self, gpio: int, level: int) -> Trigger:
-        """GPIO`gpio` is `level`, now or later."""
+        """GPIO`gpio` has the level `level`, now or later."""
         return Pin(self._board, gpio, level, edge=False)
 
     def rises(self, gpio: int) -> Trigger:
@@ -297,7 +297,7 @@ class When:
         return Pin(self._board, gpio, 0, edge=True)
 
     def frame(self, pattern: bytes | str, uart: Uart | None = None) -> Trigger:
-        """The firmware sends bytes that match the regular expression, on `uart` or the robot's line."""
+        """The firmware sends bytes that match the regular expression, on `uart` or on the robot's line."""
         raw = pattern.encode("latin-1") if isinstance(pattern, str) else pattern
         return Frame(uart or self._uart(), raw)
 
@@ -319,14 +319,14 @@ class When:
         return Written(self._board.register(block, name), value)
 
     def time(self, time_s: float) -> Trigger:
-        """`time_s` seconds since power-up."""
+        """Virtual time reaches `time_s` seconds since power-up."""
         return Time(self._board, time_s)
 
     def finding(self, rule: str = "*") -> Trigger:
-        """A finding of a rule, or of one that fits the pattern.  Raises ValueError for a rule that does not exist."""
+        """A finding of a rule, or of a rule that matches the pattern.  Raises ValueError for an unknown rule."""
         ExpectedFinding(rule, required=False)
         return Found(self._board, rule)
 
     def holds(self, condition: Callable[[], Any], text: str = "the condition") -> Trigger:
-        """`condition()` is true; looked at every 100 us."""
+        """`condition()` is true.  It is evaluated every 100 us."""
         return Holds(self._board, condition, text)

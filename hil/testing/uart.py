@@ -1,6 +1,6 @@
-"""The other end of a serial line: sends bytes at the line's own pace and keeps what the firmware sends.
+"""The other end of a serial line.  It sends bytes at the baud rate, and keeps the bytes that the firmware sends.
 
-A character whose stop bit is missing (another speed) is not received and counted in `framing_errors`.
+A character without a stop bit (because of another baud rate) is not received; it is counted in `framing_errors`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from hil.board import Board
 class Uart:
     """A peer at the pins `tx_gpio` (the chip's transmitter) and `rx_gpio` (its receiver), 8N1 at `baud` bits a second.
 
-    Raises ValueError for pins that no SCI reaches, and for a line without speed.
+    Raises ValueError for pins that no SCI can use, and for a baud rate of 0.
     """
 
     def __init__(self, board: Board, tx_gpio: int, rx_gpio: int, baud: int) -> None:
@@ -34,7 +34,7 @@ class Uart:
         self._read = 0
         #: (byte): the end of each character's stop bit.
         self.byte_received: Signal[int] = Signal()
-        #: Characters whose stop bit was not seen.
+        #: The number of characters without a stop bit.
         self.framing_errors = 0
         pc = board.pc
         if pc is not None and pc[:3] == (tx_gpio, rx_gpio, baud):
@@ -47,7 +47,7 @@ class Uart:
         board.serial_pins[tx_gpio].sent.connect(self._on_frame)
 
     def send(self, data: bytes, *, gap_s: float = 0.0) -> None:
-        """Put bytes on the line: back to back, or with `gap_s` seconds of silence after each."""
+        """Send bytes, without a gap or with `gap_s` seconds of silence after each."""
         if not gap_s:
             self._feed(data)
             return
@@ -57,21 +57,21 @@ class Uart:
 
     @property
     def pending(self) -> int:
-        """Bytes given to `send` that the chip has not received yet (those behind a gap not counted)."""
+        """The number of bytes in `send` that the chip has not received yet, without those after a gap."""
         return self._pending()
 
     @property
     def received(self) -> bytes:
-        """All that the firmware has sent."""
+        """All bytes that the firmware has sent."""
         return bytes(self._heard)
 
     @property
     def unread(self) -> bytes:
-        """What came after the last frame that a trigger matched."""
+        """The bytes after the last frame that a trigger has matched."""
         return bytes(self._heard[self._read :])
 
     def skip(self, count: int) -> None:
-        """Take `count` unread bytes as read."""
+        """Mark `count` unread bytes as read."""
         self._read += count
 
     def _on_frame(self, frame: SerialFrame) -> None:

@@ -1,8 +1,9 @@
-"""What an endless polling loop waits for, and what could end it: a flag, an interrupt routine and its enable bits.
+"""Finds what an endless polling loop waits for, and what could end it: a flag, an interrupt routine, its enable bits.
 
-`PollingLoop` looks at the conditions that end a loop, and at what these are computed from.  It is `hopeless` if nothing
-can change them: the loop does not, nor does a routine that may run, nor an event of the chip (`reach.py`).  Where this
-cannot be said for certain (a pointer, a counter of the chip, a task, something that the test has put off), it is not.
+`PollingLoop` examines the conditions that end a loop, and the objects from which they are computed.  A loop is
+`hopeless` if nothing can change them: neither the loop, nor a routine that may run, nor an event of the chip
+(`reach.py`).  If this is not certain (because of a pointer, a counter of the chip, a task, or an event that the test
+has scheduled), the loop is not hopeless.
 """
 
 from __future__ import annotations
@@ -35,15 +36,15 @@ from emulator.c28x.tree_queries import assigned, blocks, parts, register_text, r
 from hil.board import Board
 from hil.testing.reach import DELAYS, Reach
 
-#: Registers that show what is outside the chip: they are read anew, and change with events only.
+#: The registers that show the levels of pins.  They are read again, and change only with events.
 _PINS: Final = "GpioDataRegs"
-#: No expression of a turn takes longer, in cycles; a turn that may take longer than `_LONG` is not looked through.
+#: The longest time of an expression of a turn, in cycles.  A turn that may take longer than `_LONG` is not examined.
 _EXPRESSION_CYCLES: Final = 100
 _LONG: Final = 100_000
 
 
 class PollingLoops:
-    """The loops of an image, each looked at when it is asked for first."""
+    """The loops of an image.  Each is examined at its first use."""
 
     def __init__(self, board: Board, linked: Linked) -> None:
         self.board = board
@@ -68,7 +69,7 @@ class PollingLoops:
 
 
 class PollingLoop:
-    """A loop of a function, and what it waits for."""
+    """A loop of a function, and the conditions for which it waits."""
 
     def __init__(self, waits: PollingLoops, function: Function, loop: While) -> None:
         self.function, self.loop = function, loop
@@ -76,12 +77,12 @@ class PollingLoop:
         self._threads, self._functions = self._reach.threads, self._reach.threads.functions
         self._inside = [self.function, *self._below([self.loop])]
         self._body = [self.loop, *(s for function in self._inside[1:] for s in function.body)]
-        #: What each variable is computed from that the loop assigns and its end depends on.
+        #: For each variable that the loop assigns and its end depends on: the variables from which it is computed.
         self._sources: dict[Variable, set[Variable]] = {}
-        #: The functions that interrupt routines have called, and these themselves, while they run over the loop; None
-        #: while nothing does.
+        #: The interrupt routines that have interrupted the loop and run now, and the functions that they have called.
+        #: None: no routine runs.
         self.running: tuple[str, ...] | None = None
-        #: No turn takes longer, but for delays and interrupts; a turn with loops in it may.
+        #: The longest time of a turn without delays and interrupts.  A turn with inner loops may take longer.
         self.turn_cycles = _turn_cycles([*loop.body, *loop.step], self._functions) + _turn_cycles(
             [Evaluate(loop.where, loop.test)], self._functions
         )
@@ -91,13 +92,13 @@ class PollingLoop:
 
     @property
     def place(self) -> Place:
-        """Where the loop stands, and its condition."""
+        """The place of the loop, and its condition."""
         where, function = self.loop.where, self.function
         return Place(where.file, where.line, function.name, function.c_file, where.column)
 
     @property
     def rule(self) -> str:
-        """The rule that such a loop breaks: `endless-loop` if it polls nothing, else `endless-poll`."""
+        """The rule of the finding: `endless-loop` if the loop polls nothing, else `endless-poll`."""
         guard = self.loop.endless
         return "endless-loop" if guard is not None and guard.kind == "endless" else "endless-poll"
 
@@ -117,7 +118,7 @@ class PollingLoop:
         )
 
     def sentences(self) -> Iterator[str]:
-        """What could have ended it, a sentence each."""
+        """Sentences about what could have ended the loop."""
         registers = {register_text(part): part for part in self._exits if isinstance(part, RegisterRef)}
         for text, register in registers.items():
             event_may_change = self._reach.event_may_change(register.block)
@@ -135,14 +136,14 @@ class PollingLoop:
         return [self._functions[path] for path in sorted(paths)]
 
     def _conditions(self) -> Iterator[Expr | LValue]:
-        """The conditions that decide whether the loop ends: its test, those of exits and assignments in its body."""
+        """The conditions that decide whether the loop ends: its test, and those of exits and assignments in it."""
         if not isinstance(self.loop.test, Const):
             yield self.loop.test
         yield from _decisions(self.loop.body)
         yield from _decisions(self.loop.step)
 
     def _dependencies(self) -> Iterator[Any]:
-        """The registers and objects that the conditions depend on, directly or through what they are computed from."""
+        """The registers and objects on which the conditions depend, directly or through other objects."""
         waiting: list[Any] = list(self._conditions())
         called = [s for function in self._inside[1:] for s in statements(function.body)]
         through: set[Variable | None] = {assigned(s) for s in called}
@@ -176,7 +177,7 @@ class PollingLoop:
                 yield part
 
     def _makes_progress(self, variable: Variable) -> bool:
-        """Whether the loop computes an object's next value from its present one: such a loop makes progress."""
+        """Whether the loop computes an object's next value from its present value.  Such a loop makes progress."""
         if variable.kind != "global" and variable not in {*self.function.locals, *self.function.parameters}:
             return False  # a called function begins anew each time
         reached: set[Variable] = set()
@@ -188,7 +189,7 @@ class PollingLoop:
         return variable in reached
 
     def _is_unclear(self) -> bool:
-        """Whether the loop may change what it waits for, or that is not known."""
+        """Whether the loop may change its own conditions, or whether this is not known."""
         for part in self._exits:
             if isinstance(part, RegisterRef):
                 if part.block != _PINS and not self._board.register(part.block, part.register).looked_at:
@@ -218,7 +219,7 @@ class PollingLoop:
             yield f"it waits for {name}, which {path} writes: {self._when(path)}"
 
     def _when(self, path: str) -> str:
-        """When a function would run, and what keeps it from running."""
+        """When a function would run, and what prevents it from running."""
         for name, number, routine in self._reach.vectors():
             if routine in self._functions and path in self._threads.below(routine):
                 called = "" if routine == path else f", called by {routine}"
@@ -233,7 +234,7 @@ class PollingLoop:
 
 
 def _decisions(body: Iterable[Stmt]) -> Iterator[Expr | LValue]:
-    """The conditions that statements decide by."""
+    """The conditions of statements."""
     for s in statements(body):
         match s:
             case If(test=test) | While(test=test) | Switch(subject=test):
@@ -243,7 +244,7 @@ def _decisions(body: Iterable[Stmt]) -> Iterator[Expr | LValue]:
 
 
 def _turn_cycles(body: list[Stmt], functions: dict[str, Function], above: tuple[str, ...] = ()) -> int:
-    """The most cycles of one pass through statements, without delays; more than `_LONG`: not known."""
+    """The most cycles of one pass through statements, without delays.  More than `_LONG` means that it is not known."""
     cycles = 0
     for s in body:
         for part in (part for root in roots(s) for part in parts(root)):

@@ -1,4 +1,4 @@
-"""Stateful machines of Hypothesis: a system under test beside a model of what it must do.
+"""Stateful machines of Hypothesis.  Each compares a system under test with a model of its required behaviour.
 
-gates.py     GateMutexPri under tasks of different priority
+gates.py     GateMutexPri with tasks of different priorities
 """

@@ -1,8 +1,8 @@
-"""Gates entered and left by tasks of different priority, beside a model of `GateMutexPri`.
+"""Compares gates, which tasks of different priorities enter and leave, with a model of `GateMutexPri`.
 
-`GateModel` states the rules of the kernel's manual and source in a few lines and knows nothing of the emulator.
-`GateMachine` is the Hypothesis machine; a subclass may choose other priorities, or put its own functions (a monitor of
-the firmware) in the place of enter and leave:
+`GateModel` states the rules of the kernel's manual and source in a few lines, and does not use the emulator.
+`GateMachine` is the Hypothesis machine.  A subclass may choose other priorities, or replace enter and leave by its own
+functions (a monitor of the firmware):
 
     class TestGates(GateMachine.TestCase):
         settings = settings(max_examples=50)
@@ -24,7 +24,7 @@ from emulator.clock import CYCLES_PER_MS
 from emulator.sysbios.core import WAIT_FOREVER
 from hil.board import Board
 
-#: What carries the machine's commands to its tasks; above all of them.
+#: The priority of the task that passes the machine's commands to its tasks.  It is above all of them.
 DIRECTOR_PRIORITY: Final = 15
 
 
@@ -33,7 +33,7 @@ DIRECTOR_PRIORITY: Final = 15
 
 @dataclass
 class GateState:
-    """A gate: its owner, the priority to return to, its waiters."""
+    """A gate: its owner, the priority to which the owner returns, and its waiters."""
 
     owner: str = ""
     original: int = 0
@@ -41,20 +41,20 @@ class GateState:
 
 
 class GateModel:
-    """What `GateMutexPri` does to owners, waiters and priorities."""
+    """A model of `GateMutexPri`: owners, waiters and priorities."""
 
     def __init__(self, priorities: dict[str, int], gates: int) -> None:
         self.priority = dict(priorities)
         self.gates = [GateState() for _ in range(gates)]
-        #: Keys of the gates a task is inside of, the latest one last: 0 took the gate, 1 was inside already.
+        #: The keys of each task for each gate, the latest last.  0: it took the gate; 1: it was inside already.
         self.keys: dict[tuple[str, int], list[int]] = {(t, g): [] for t in priorities for g in range(gates)}
 
     def waits(self, task: str) -> bool:
-        """Whether a task is blocked at some gate."""
+        """Whether a task is blocked at a gate."""
         return any(task in gate.waiters for gate in self.gates)
 
     def deadlocks(self, task: str, number: int) -> bool:
-        """Whether this task would wait for somebody who waits, directly or not, for what it owns."""
+        """Whether this task would wait for a task that waits, directly or not, for a gate of this task."""
         owner = self.gates[number].owner
         while owner and owner != task:
             waited = next((gate for gate in self.gates if owner in gate.waiters), None)
@@ -64,7 +64,7 @@ class GateModel:
         return bool(owner) and self.gates[number].owner != task
 
     def enter(self, task: str, number: int) -> None:
-        """Free: it is taken.  Own: nested.  Else wait by priority; a lower owner inherits."""
+        """A free gate is taken; an own gate is nested.  Else the task waits by priority, and a lower owner inherits."""
         gate = self.gates[number]
         if not gate.owner:
             gate.owner, gate.original = task, self.priority[task]
@@ -78,7 +78,7 @@ class GateModel:
             self.priority[gate.owner] = max(self.priority[gate.owner], mine)
 
     def leave(self, task: str, number: int) -> None:
-        """The key 0 gives the gate to the first waiter and returns to the priority that it was taken with."""
+        """With key 0, the first waiter gets the gate, and the task returns to the priority with which it took it."""
         gate = self.gates[number]
         if self.keys[task, number].pop():
             return
@@ -94,7 +94,7 @@ class GateModel:
 
 
 class GateRig:
-    """A board whose kernel runs one task a name; each does what it is told, one command at a time."""
+    """A board whose kernel runs a task for each name.  Each task executes commands, one at a time."""
 
     def __init__(self, priorities: dict[str, int], gates: int) -> None:
         self.board = Board()
@@ -130,26 +130,26 @@ class GateRig:
                 self.kernel.Semaphore_post(self._wanted[self._queue.popleft()])
 
     def do(self, name: str, command: Callable[[], None]) -> None:
-        """Have a task run `command`, and everybody come to rest."""
+        """Let a task execute `command`, and run until all tasks are blocked."""
         self._commands[name] = command
         self._queue.append(name)
         self.kernel.run_until(self.board.clock.now + 3 * CYCLES_PER_MS)
 
     def enter(self, name: str, number: int) -> None:
-        """What the task runs to enter a gate."""
+        """The command with which a task enters a gate."""
         self.keys[name, number].append(self.kernel.GateMutexPri_enter(self.gates[number]))
 
     def leave(self, name: str, number: int) -> None:
-        """What the task runs to leave a gate with its latest key."""
+        """The command with which a task leaves a gate with its latest key."""
         self.kernel.GateMutexPri_leave(self.gates[number], self.keys[name, number].pop())
 
     def owner(self, number: int) -> str:
-        """Who owns a gate; empty if it is free."""
+        """The owner of a gate; empty if it is free."""
         gate = self.gates[number]
         return "" if gate.free or gate.owner is None else str(gate.owner.name)
 
     def waiters(self, number: int) -> list[str]:
-        """Who waits for a gate, the next owner first."""
+        """The tasks that wait for a gate, the next owner first."""
         return [waiter.task.name for waiter in self.gates[number].waiters]
 
     def priorities(self) -> dict[str, int]:
@@ -162,23 +162,23 @@ class GateRig:
 
 
 class GateMachine(RuleBasedStateMachine):
-    """Tasks enter and leave gates in any order without a deadlock; after each step both worlds are compared."""
+    """Tasks enter and leave gates in any order without a deadlock.  After each step, system and model are compared."""
 
-    #: Task -> priority.  Two equal ones show that waiters of one priority stand in order of arrival.
+    #: Task -> priority.  Two equal priorities show that waiters of one priority are served in the order of arrival.
     priorities: ClassVar[dict[str, int]] = {"low": 2, "middle": 5, "other": 5, "high": 9}
-    #: How many gates.
+    #: The number of gates.
     gates: ClassVar[int] = 2
 
     rig: GateRig
     model: GateModel
 
     def open(self) -> GateRig:
-        """The system under test; a subclass may give another."""
+        """Create the system under test.  A subclass may return another one."""
         return GateRig(self.priorities, self.gates)
 
     @initialize()
     def begin(self) -> None:
-        """A new board and a new model."""
+        """Create a board and a model."""
         self.rig = self.open()
         self.model = GateModel(self.priorities, self.gates)
 
@@ -193,7 +193,7 @@ class GateMachine(RuleBasedStateMachine):
     @precondition(lambda self: bool(self._can_enter()))
     @rule(data=st.data())
     def enter(self, data: st.DataObject) -> None:
-        """Some task that is awake enters some gate."""
+        """A task that is not blocked enters a gate."""
         task, number = data.draw(st.sampled_from(self._can_enter()), label="enter")
         self.rig.do(task, lambda: self.rig.enter(task, number))
         self.model.enter(task, number)
@@ -201,14 +201,14 @@ class GateMachine(RuleBasedStateMachine):
     @precondition(lambda self: bool(self._can_leave()))
     @rule(data=st.data())
     def leave(self, data: st.DataObject) -> None:
-        """Some task that is awake leaves some gate that it is inside of."""
+        """A task that is not blocked leaves a gate in which it is."""
         task, number = data.draw(st.sampled_from(self._can_leave()), label="leave")
         self.rig.do(task, lambda: self.rig.leave(task, number))
         self.model.leave(task, number)
 
     @invariant()
     def same(self) -> None:
-        """Owners, waiters in their order, keys, and the priority of every task."""
+        """Compare owners, waiters in their order, keys, and the priority of each task."""
         if not hasattr(self, "rig"):
             return
         for number, gate in enumerate(self.model.gates):
