@@ -26,11 +26,11 @@ from hil.bench import Bench
 from hil.client.decode import FrameDecoder, OdometryFrame
 
 IDS: Final = frozenset(name for name, entry in CATALOGUE.items() if entry.kind is DefectKind.CONSOLE)
-#: When the window can be clicked.
+#: The time in s after which the window can be clicked.
 READY_S: Final = 3.5
-#: A robot that stands moves by less than a millimetre.
+#: A robot that stands moves by less than this.
 STOPPED_M: Final = 1e-3
-#: The console's own period of orders.
+#: The period in s with which the console sends orders.
 CLICK_S: Final = 0.1
 
 
@@ -46,7 +46,7 @@ def _shown(script: Script, look: Callable[[Bench, Desk], Evidence], fixes: Fixes
     """Return what `look` sees after a script, with the firmware and console for `fixes`."""
     variant = Variant.of(fixes)
     corrected = IDS if ALL in variant else variant.fixes & IDS
-    # The behaviour of the console is measured, so the firmware need not be watched.
+    # Only the behaviour of the console is measured, so the firmware is not watched.
     with robot(replace(variant, fixes=variant.fixes - IDS), watch=False, static=False) as bench:
         return look(bench, run_console(bench, script, corrected))
 
@@ -93,7 +93,7 @@ def _first_point(_bench: Bench, desk: Desk) -> Evidence:
     first = desk.drawn[0]
     now = [frame for time_s, frame in _frames(desk) if time_s <= first.time_s][-1]
     behind_m = math.dist(first.robot, (now.x_mm / 10, now.y_mm / 10)) / 100
-    # Drawn at the latest with the next frame, by a robot at 0.3 m/s (TFG 3.2.3).
+    # The point is drawn with the next frame at the latest; the robot drives at 0.3 m/s (TFG 3.2.3).
     return measured("first point of the map behind the robot", behind_m, "m", high=V_MOST_M_S * 0.25)
 
 
@@ -111,7 +111,7 @@ def _torn_points(_bench: Bench, desk: Desk) -> Evidence:
 def _lines(begin_s: float, end_s: float, _bench: Bench, desk: Desk) -> Evidence:
     sent = sum(begin_s < time_s < end_s for time_s, _ in desk.frames)
     lines = desk.files[DRIVE_FILE].count("\n") - 1
-    # One frame may wait when the map begins, and one come while its end is drawn.
+    # One frame may wait when the map begins, and one may come while its last point is drawn.
     return measured(f"lines in the file of {sent} frames", lines, low=sent - 1, high=sent + 1)
 
 

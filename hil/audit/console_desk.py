@@ -1,10 +1,10 @@
-"""The PC of a console's user in virtual time: its clock, keys and clicks by a script, its serial port on a bench.
+"""The PC of a console's user in virtual time: its clock, the keys and clicks of a script, its serial port on a bench.
 
-What runs on it (`console_program`, `console_model`) calls `write`, `read`, `wait`, `update`, as the program of TFG
-annex 2 calls pyserial, `time.sleep` and Tk.  Nothing here waits for real time: a script gives the same bytes each
+The console on it (`console_program` or `console_model`) calls `write`, `read`, `wait` and `update`, as the program of
+TFG annex 2 calls pyserial, `time.sleep` and Tk.  Nothing waits for real time, so a script gives the same bytes each
 time.
 
-CHOICE: computing takes `UPDATE_S` for each update of the window, and the script's time for a point of the map.
+CHOICE: computation takes `UPDATE_S` for each update of the window, and the script's time for a point of the map.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from emulator.clock import SYSCLK_HZ
 from hil.bench import Bench
 
 UPDATE_S: Final = 1e-3
-#: The driver of Windows keeps this many unread characters (the default of SetupComm); later ones are lost.
+#: The driver of Windows keeps this number of unread characters (the default of SetupComm).  Later ones are lost.
 RECEIVED_MOST: Final = 4096
 
 
@@ -27,7 +27,7 @@ class ScriptEnded(BaseException):
 
 @dataclass(frozen=True, slots=True)
 class PressedKey:
-    """A key held down, in s from the start of the console."""
+    """A key that is held down, with times in s from the start of the console."""
 
     name: str
     begin_s: float
@@ -36,33 +36,33 @@ class PressedKey:
 
 @dataclass(frozen=True, slots=True)
 class Script:
-    """The user's actions, in s from the start of the console."""
+    """The actions of the user, with times in s from the start of the console."""
 
     seconds: float
-    #: Clicks: the time, and the text of the button or menu entry.
+    #: The clicks: the time, and the text of the button or menu entry.
     clicks: tuple[tuple[float, str], ...] = ()
     keys: tuple[PressedKey, ...] = ()
     #: The text of the two entries beside SET.
     v: str = ""
     w: str = ""
-    #: Characters that a disturbed line adds: when, which.
+    #: The characters that a disturbed line adds: the time, and the characters.
     noise: tuple[tuple[float, bytes], ...] = ()
-    #: From this time on nothing comes from the robot.
+    #: From this time on, nothing comes from the robot.
     silent_from_s: float = float("inf")
-    #: The time that the PC computes for a point of the map, besides the program's own pause.
+    #: The time that the PC computes for a point of the map, added to the program's own pause.
     drawing_s: float = 0.0
     #: The first line of the configuration file, and the name of the file of drives in its second line.
     port: str = "COM3 "
     archive: str = "trayectoria.txt"
-    #: Files that are there from the start, by name.
+    #: The files that exist at the start, by name.
     files: tuple[tuple[str, str], ...] = ()
-    #: From this time on another window has the keyboard.
+    #: From this time on, another window has the keyboard.
     elsewhere_from_s: float = float("inf")
 
 
 @dataclass(frozen=True, slots=True)
 class MapPoint:
-    """A point of the map, in cm: the robot, and where its left and right sonar see a wall."""
+    """A point of the map, in cm: the robot, and the points where its left and right sonar see a wall."""
 
     time_s: float
     robot: tuple[float, float]
@@ -71,12 +71,12 @@ class MapPoint:
 
 
 class Desk:
-    """The surroundings of the console, and a record of what it did."""
+    """The environment of the console, and a record of its actions."""
 
     def __init__(self, bench: Bench, script: Script) -> None:
         self.bench = bench
         self.script = script
-        #: By the text of a button.
+        #: The commands of the buttons, by the text of the button.
         self.commands: dict[str, Callable[[], object]] = {}
         self.wire: list[tuple[float, bytes]] = []
         self.drawn: list[MapPoint] = []
@@ -86,12 +86,12 @@ class Desk:
         self.opened = ""
         #: The text of the label about the robot.
         self.label = ""
-        #: Points of a drive that was loaded; where the axes have them.
+        #: The points of a loaded drive, and their positions on the axes.
         self.loaded = 0
         self.path: list[tuple[float, float]] = []
-        #: Lines of the map's legend.
+        #: The number of lines of the map's legend.
         self.legend = 0
-        #: Errors that Tk would print.
+        #: The errors that Tk would print.
         self.errors: list[str] = []
         self.left_at_s: float | None = None
         self._start = bench.clock.now
@@ -106,17 +106,17 @@ class Desk:
 
     @property
     def now_s(self) -> float:
-        """Since the start of the console."""
+        """The time since the start of the console."""
         return (self.bench.clock.now - self._start) / SYSCLK_HZ
 
     def wait(self, duration_s: float) -> None:
-        """The program sleeps; the window is not updated."""
+        """Let the program sleep.  The window is not updated."""
         self.bench.run_for(duration_s)
         while self._noise and self._noise[0][0] <= self.now_s:
             self._take(self._noise.pop(0)[1])
 
     def update(self) -> None:
-        """The program updates the window: it handles the clicks that came meanwhile."""
+        """Update the window: handle the clicks since the last update."""
         self.wait(UPDATE_S)
         if self.now_s >= self.script.seconds:
             raise ScriptEnded
@@ -124,11 +124,11 @@ class Desk:
             text = self._clicks.pop(0)[1]
             try:
                 self.commands[text]()
-            except Exception as error:  # as Tk: it is printed, and the window stays
+            except Exception as error:  # like Tk, which prints it and keeps the window
                 self.errors.append(f"{type(error).__name__}: {error}")
 
     def draw(self, robot: tuple[float, float], left: tuple[float, float], right: tuple[float, float]) -> None:
-        """Draw a point of the map, and what the sonars see from there."""
+        """Draw a point of the map, and the points that the sonars see from there."""
         self.drawn.append(MapPoint(self.now_s, robot, left, right))
         self.wait(self.script.drawing_s)
 
@@ -142,7 +142,7 @@ class Desk:
         return self.now_s < self.script.elsewhere_from_s
 
     def run(self, program: Callable[[Desk], None]) -> Desk:
-        """A console from its start until the script or the console has ended."""
+        """Run a console from its start until the script or the console has ended."""
         try:
             program(self)
         except ScriptEnded:
@@ -169,11 +169,11 @@ class Desk:
 
     @property
     def waiting(self) -> int:
-        """Characters that were received and not read."""
+        """The number of characters that were received but not read."""
         return len(self._received)
 
     def read(self, size: int = 1, timeout_s: float = 0.25) -> bytes:
-        """Read `size` characters, or those that have come when the time is up."""
+        """Read `size` characters, or those that have come within `timeout_s`."""
         until_s = self.now_s + timeout_s
         while len(self._received) < size and self.now_s < until_s:
             self.wait(UPDATE_S)
@@ -182,11 +182,11 @@ class Desk:
         return data
 
     def write(self, data: bytes) -> None:
-        """To the robot."""
+        """Send characters to the robot."""
         self.wire.append((self.now_s, data))
         self.bench.feed(data)
 
     @property
     def sent(self) -> bytes:
-        """All that was written."""
+        """All characters that the console has sent."""
         return b"".join(data for _, data in self.wire)

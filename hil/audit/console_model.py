@@ -1,8 +1,8 @@
-"""A model of the console of TFG annex 2: what each button sends and when, and what it shows of the robot's frames.
+"""A model of the console of TFG annex 2: the bytes and times of each button, and the display of the robot's frames.
 
-With the ids of catalogue entries (`CONS-...`) it is correct where they have a defect.
+With the ids of catalogue entries (`CONS-...`), the model does not have the defects of these entries.
 
-It is a description in our words.  This project carries no copy of the program.  Where the program is at hand,
+It is a description in our words; this project has no copy of the program.  If the program is available,
 `tests/hil/audit/test_console_model.py` checks that both send the same bytes at the same times.
 """
 
@@ -17,18 +17,18 @@ from hil.audit.console_desk import Desk
 
 FOLDER: Final = "C:/D/Documentos/4 año/TFG/logs trayectoria/"
 DRIVE_FILE: Final = FOLDER + "trayectoria.txt"
-#: What LOAD FILE opens.
+#: The file that LOAD FILE opens.
 LOAD_FILE: Final = FOLDER + "trayectoriaa.txt"
 HEADER: Final = "X,Y,theta,dF,dR,dL\n"
-#: TFG 3.2.3: the fastest that the robot drives and turns.
+#: The greatest speeds of the robot (TFG 3.2.3).
 V_MOST_M_S: Final = 0.3
 W_MOST_RAD_S: Final = 1.57
-#: The corrected console says that the robot is gone when it missed so many seconds of frames.
+#: If frames are missing for this time, the corrected console says that the robot is gone.
 GONE_S: Final = 1.0
 
 
 def on_axis(values: Sequence[str] | Sequence[float]) -> list[float]:
-    """The positions of values on a matplotlib axis: texts are categories, in the order in which they first come."""
+    """The positions of values on a matplotlib axis.  Texts are categories, in the order in which they first appear."""
     if not any(isinstance(value, str) for value in values):
         return [float(value) for value in values]
     places: dict[object, float] = {}
@@ -48,7 +48,7 @@ class ConsoleModel:
         self.points: list[tuple[int, ...]] = []
 
     def run(self) -> None:
-        """From its start."""
+        """Run the console from its start."""
         desk = self.desk
         port = desk.script.port
         desk.opened = port.split()[0] if self.fixed("CONS-port-name") else port[:4]
@@ -68,21 +68,21 @@ class ConsoleModel:
             self.update()
 
     def fixed(self, name: str) -> bool:
-        """Whether this entry's correction is in."""
+        """Whether the entry `name` is corrected."""
         return name in self.corrected
 
     def robot_label(self, there: bool) -> None:
-        """The label about the robot."""
+        """Set the label about the robot."""
         self.desk.label = "Robot Conectado" if there else "Robot No Conectado"
 
     def update(self) -> None:
-        """A look at the window."""
+        """Update the window."""
         if self.fixed("CONS-connected-once"):
             self.robot_label(self.desk.now_s - self.desk.heard_s < GONE_S)
         self.desk.update()
 
     def sleep(self, duration_s: float) -> None:
-        """Within a button's command."""
+        """Sleep in the command of a button."""
         if not self.fixed("CONS-window-sleeps"):
             self.desk.wait(duration_s)
             return
@@ -93,28 +93,28 @@ class ConsoleModel:
     # Orders
 
     def stop(self) -> None:
-        """STOP."""
+        """The button STOP."""
         self.desk.write(b"#STOP\r")
 
     def leave(self) -> None:
-        """Salir, and the window's cross."""
+        """The button Salir, and the closing button of the window."""
         if self.fixed("CONS-leave-drives"):
             self.desk.write(b"#STOP\r")
         raise SystemExit
 
     def initialise(self) -> None:
-        """Inicializar."""
+        """The button Inicializar."""
         self.desk.write(b"#INIT\r")
         self.sleep(1.0)
 
     def calibrate(self) -> None:
-        """CALIBRACION."""
+        """The button CALIBRACION."""
         self.sleep(0.5)
         self.desk.write(b"#CALB\r")
         self.sleep(6.0)
 
     def set_speeds(self) -> None:
-        """SET."""
+        """The button SET."""
         v, w = self.desk.script.v, self.desk.script.w
         if self.fixed("CONS-set-verbatim"):
             try:
@@ -129,7 +129,7 @@ class ConsoleModel:
                 self.v_m_s, self.w_rad_s = float(v), float(w)
 
     def tele(self) -> None:
-        """TELE: the arrows change the speeds, ten times a second."""
+        """The button TELE.  The arrow keys change the speeds, ten times a second."""
         desk = self.desk
         self.sleep(0.5)
         if self.fixed("CONS-speeds-kept"):
@@ -168,7 +168,7 @@ class ConsoleModel:
     # The map
 
     def mission(self) -> None:
-        """MISION: the order, and then the map until Escape."""
+        """The button MISION.  It sends the order, and then draws the map until Escape."""
         self.desk.write(b"#MISN\r")
         if self.fixed("CONS-oldest-first"):
             self.desk.read(self.desk.waiting)
@@ -186,7 +186,7 @@ class ConsoleModel:
                 break
 
     def _receive(self) -> bool:
-        """Take in the characters that came.  Returns whether there is something to draw."""
+        """Take in the received characters.  Returns whether there is a point to draw."""
         newest = self.fixed("CONS-oldest-first")
         came = self.desk.read(self.desk.waiting)
         text = came.decode("utf-8", "replace" if self.fixed("CONS-byte-ends-map") else "strict")
@@ -228,7 +228,7 @@ class ConsoleModel:
         self.update()
 
     def load(self) -> None:
-        """LOAD FILE."""
+        """The menu entry LOAD FILE."""
         name = DRIVE_FILE if self.fixed("CONS-load-other-file") else LOAD_FILE
         if name not in self.desk.files:
             raise FileNotFoundError(name)

@@ -1,7 +1,7 @@
-"""The console of TFG annex 2 itself, unmodified, on a desk in virtual time: its own text runs, with stand-ins for what
-it imports (pyserial, Tk, matplotlib, the keyboard, the clock, files on `C:`).
+"""Runs the unmodified console of TFG annex 2 on a desk in virtual time.
 
-`C2000_HIL_CONSOLE` names the program; this project carries no copy.  On a real window it is tested by
+Stand-ins replace the modules that it imports (pyserial, Tk, matplotlib, the keyboard, the clock) and files on `C:`.
+`C2000_HIL_CONSOLE` names the program; this project has no copy.  With a real window, it is tested by
 `tests/hil/console/test_thesis_console.py`.
 """
 
@@ -22,17 +22,17 @@ VARIABLE: Final = "C2000_HIL_CONSOLE"
 
 
 def at_hand() -> Path | None:
-    """The program, if there is one."""
+    """The path of the program, if there is one."""
     name = os.environ.get(VARIABLE, "")
     return Path(name) if name and Path(name).is_file() else None
 
 
 class _SerialException(Exception):
-    """As pyserial's."""
+    """Replaces the exception of pyserial."""
 
 
 class _DeskFile(io.StringIO):
-    """A file of the desk: what was written is there when it is closed."""
+    """A file of the desk.  The desk gets its content when the file is closed."""
 
     def __init__(self, files: dict[str, str], name: str, mode: str) -> None:
         if mode == "r" and name not in files:
@@ -51,7 +51,7 @@ class _DeskFile(io.StringIO):
 
 
 class _Widget:
-    """Any widget: those with a command are clicked by their text."""
+    """Any widget.  Widgets with a command are clicked by their text."""
 
     def __init__(self, program: ConsoleProgram, *_master: object, **options: Any) -> None:
         self._program = program
@@ -66,14 +66,14 @@ class _Widget:
     configure = config
 
     def place(self, **_where: object) -> None:
-        """Where it stands does not matter here."""
+        """Do nothing: the position does not matter here."""
 
     def after(self, _delay_ms: int, _what: Callable[[], None]) -> None:
-        """The text of the label is written anew; nothing here reads it."""
+        """Do nothing: it would update the text of the label, which nothing here reads."""
 
 
 class _Entry(_Widget):
-    """The entries beside SET: V is made first."""
+    """The entries beside SET.  The program creates that for V first."""
 
     def __init__(self, program: ConsoleProgram, *master: object, **options: Any) -> None:
         super().__init__(program, *master, **options)
@@ -85,10 +85,10 @@ class _Entry(_Widget):
 
 class _Window(_Widget):
     def title(self, _text: str) -> None:
-        """Nothing."""
+        """Do nothing."""
 
     def config(self, **_options: Any) -> None:
-        """Size and menu."""
+        """Do nothing: it sets the size and the menu."""
 
     def update(self) -> None:
         self._program.desk.update()
@@ -100,14 +100,14 @@ class _Window(_Widget):
 
 class _Menu(_Widget):
     def add_cascade(self, **_options: object) -> None:
-        """Nothing is clicked there."""
+        """Do nothing: no click goes there."""
 
     def add_command(self, label: str, command: Callable[[], None]) -> None:
         self._program.desk.commands[label] = command
 
 
 class ConsoleProgram:
-    """What the program finds when it imports, opens and prints."""
+    """The stand-ins for the modules and functions that the program uses."""
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
@@ -140,7 +140,7 @@ class ConsoleProgram:
         self._modules["matplotlib.pyplot"] = self._modules["matplotlib.animation"] = self._modules["matplotlib"]
 
     def run(self, path: Path) -> None:
-        """The program from its first line."""
+        """Run the program from its first line."""
         names = {
             **vars(builtins), "__import__": self._import, "open": self._open, "print": self._nothing,
             "quit": self._leave,
@@ -155,7 +155,7 @@ class ConsoleProgram:
         return self._modules[name] if name in self._modules else builtins.__import__(name, *arguments)
 
     def _nothing(self, *_arguments: object, **_options: object) -> None:
-        """Nothing that the robot or the map would show."""
+        """Do nothing: it changes neither the robot nor the map."""
 
     def _leave(self) -> None:
         raise SystemExit
@@ -183,6 +183,6 @@ class ConsoleProgram:
             self.desk.draw(robot, left, right)
 
     def _pause(self, duration_s: float) -> None:
-        """Matplotlib runs Tk meanwhile."""
+        """Wait, and update the window: matplotlib runs Tk during a pause."""
         self.desk.wait(duration_s)
         self.desk.update()

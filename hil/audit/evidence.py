@@ -1,7 +1,7 @@
-"""The evidence of one demonstration: findings of detectors, or a number measured against its bounds.
+"""The evidence of one demonstration: a finding of a detector, or a measured number with its bounds.
 
-A defect is never stated by hand here.  It is seen if a detector reported the entry's rule at the entry's function, or
-if a measured number lies outside the bounds that its source gives.  Evidence that is only read says so.
+No defect is stated by hand.  It is seen if a detector has reported the entry's rule in the entry's function, or if a
+measured number is outside of the bounds from its source.  Evidence that is only read is marked as such.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Evidence:
 
 
 def reported(findings: Iterable[Finding], rule: str, *, function: str = "", object: str = "") -> Evidence:
-    """Seen if a detector reported `rule` within `function` (or what it calls), of an object named like `object`."""
+    """Seen if a detector reported `rule` in `function`, or a function that it calls, for an object named `object`."""
     hits = tuple(
         finding
         for finding in findings
@@ -92,5 +92,5 @@ def measured(
 
 
 def read(what: str, value: float, unit: str, *, low: float, high: float) -> Evidence:
-    """As `measured`, for numbers of the text, or numbers that follow from these alone."""
+    """Like `measured`, for numbers of the text, or numbers that are computed only from these."""
     return replace(measured(what, value, unit, low=low, high=high), by=EvidenceKind.READ)

@@ -12,7 +12,7 @@ from hil.audit.evidence import Evidence, reported
 from hil.audit.properties import SpeedStep
 from hil.audit.rig import Fixes, Rig
 
-#: A rig with Odometry.c and what it stands on: a program that is made sooner than the whole robot's.
+#: A rig with Odometry.c and the modules that it needs.  It is built faster than the whole robot's program.
 _rig: Final = partial(Rig, modules=("firmware_model.odometry",))
 
 

@@ -1,5 +1,5 @@
-"""The picture of an entry: what the demonstration measured on the faithful firmware, with the entry's correction, and
-with all."""
+"""Draws the picture of an entry: the measurements on the faithful firmware, with the entry's correction, and with all
+corrections."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Final
 from hil.audit.run import DemonstrationOutcome
 from hil.client.plot import save
 
-#: Up to so many points are shown as points.
+#: The most points of a line that are drawn with markers.
 MARKED: Final = 60
 
 

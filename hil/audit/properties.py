@@ -1,10 +1,11 @@
-"""Properties of the drivers: what must hold for every example, stated once; the rules of `emulator.rules.behaviour`.
+"""Properties of the drivers, which must hold for every example.  They are the rules of `emulator.rules.behaviour`.
 
-Each is a function of a rig and one example.  Its evidence is `seen` when the property does not hold.  Demonstrations of
-the catalogue give them the example that falsifies the faithful firmware; the property tests give them any.  A rig is
-used again and again, so each property sets what it depends on itself.  Closed loop: `hil.audit.properties_robot`.
+A property is a function of a rig and one example.  Its evidence is `seen` if the property does not hold.  The
+demonstrations of the catalogue use the example that falsifies the faithful firmware; the property tests use any
+example.  A rig is used many times, so each property sets everything on which it depends.  Properties of the closed loop
+are in `hil.audit.properties_robot`.
 
-The drivers that only move bytes (SPI, SCI, PWM) have none here: their conformance tests stand beside the peripherals.
+The drivers that only move bytes (SPI, SCI, PWM) have no properties here; the peripherals' tests check them.
 """
 
 from __future__ import annotations
@@ -23,20 +24,20 @@ from hil.robot.board import SONAR_VCC_V, RobotBoard
 
 # us.c
 
-#: TFG 3.1.1: what the adjustment of the measurement leaves of the error.
+#: The error that remains after the calibration of the measurement (TFG 3.1.1).
 ERROR_CM: Final = 2.0
-#: Conversions of a reading: the text's 13; the code that takes 12 leaves the last one.
+#: The conversions of a reading: 13 in the text.  The code, which uses 12, ignores the last one.
 CONVERSIONS: Final = 13
 INCH_CM: Final = 2.54
-#: TFG 3.1.1, figure 5: slope and bias of the left sensor, for the sum of 12 conversions divided by 2.3.
+#: The slope and bias of the left sensor, for the sum of 12 conversions divided by 2.3 (TFG 3.1.1, figure 5).
 LEFT_CALIBRATION: Final = (0.0551, 4.3516)
 _SUM_PER_COUNT: Final = 12 / 2.3
-#: LV-MaxSonar-EZ: Vcc / 512 an inch; 12 bits of the reference.
+#: The counts of the converter per inch: LV-MaxSonar-EZ gives Vcc / 512 per inch; the converter has 12 bits.
 _COUNTS_PER_INCH: Final = SONAR_VCC_V / 512 / RobotBoard.vrefhi_v * 4096
 
 
 def distance_read(rig: Rig, codes: Sequence[int]) -> float:
-    """What the calibrated left sensor reads (cm) when the conversions yield `codes`."""
+    """The distance in cm that the driver computes for the calibrated left sensor if the conversions give `codes`."""
     left = rig.fw.us.US_SENSOR.LEFT
     rig.fw.us.Init_US()
     rig.fw.us.Calibrate_US(left, *LEFT_CALIBRATION)
@@ -45,8 +46,8 @@ def distance_read(rig: Rig, codes: Sequence[int]) -> float:
 
 
 def outlier_bound(rig: Rig, clean: Sequence[int], index: int, wrong: int) -> Evidence:
-    """`outlier-bound`: of 13 conversions `clean` (counts), the one at `index` is `wrong`: the distance may move by what
-    the others differ by among themselves, or by the 2 cm that the text leaves (TFG 3.1.1), whichever is more."""
+    """`outlier-bound`: of 13 conversions `clean` (counts), the one at `index` is replaced by `wrong`.  The distance may
+    change by the differences between the others, or by the 2 cm that the text allows (TFG 3.1.1), whichever is more."""
     codes = [*clean[:index], wrong, *clean[index + 1 :]]
     moved = abs(distance_read(rig, codes) - distance_read(rig, clean))
     others = [*clean[:index], *clean[index + 1 :]]
@@ -56,8 +57,8 @@ def outlier_bound(rig: Rig, clean: Sequence[int], index: int, wrong: int) -> Evi
 
 
 def distance_scale(rig: Rig, sensor: int, range_m: float) -> Evidence:
-    """`distance-scale`: a wall at `range_m` (0.16 to 6.45 m), a calibration from the data sheet (slope of Vcc/512 an
-    inch, half the inch that is cut off): the distance is right within half an inch and one step of the converter."""
+    """`distance-scale`: with a wall at `range_m` (0.16 to 6.45 m) and a calibration from the data sheet (a slope of
+    Vcc/512 per inch, and half an inch for the truncation), the distance is right within half an inch and one count."""
     rig.board.sonars.set_range_source(lambda _name, _cycles: Echo(range_m))
     rig.codes(None)
     rig.fw.us.Init_US()
@@ -81,18 +82,18 @@ def _statistic(rig: Rig, function: str, values: Sequence[float], right: float) -
 
 
 def median(rig: Rig, values: Sequence[float]) -> Evidence:
-    """`wrong-result`: of 1 to 20 float32 values, `median` gives what the definition does (Python's statistics)."""
+    """`wrong-result`: for 1 to 20 float32 values, `median` returns the median (as Python's statistics)."""
     return _statistic(rig, "median", values, statistics.median(values))
 
 
 def average(rig: Rig, values: Sequence[float]) -> Evidence:
-    """`wrong-result`: of at least one float32 value, `average` gives the arithmetic mean (Python's statistics)."""
+    """`wrong-result`: for float32 values, `average` returns the arithmetic mean (as Python's statistics)."""
     return _statistic(rig, "average", values, statistics.fmean(values))
 
 
 # GYRO.c
 
-#: L3G4200D table 4: sensitivity at 250 dps, and its change over temperature.
+#: The sensitivity at 250 dps, and its change over temperature (L3G4200D table 4).
 DPS_PER_DIGIT: Final = 8.75e-3
 RAD_S_PER_DIGIT: Final = math.radians(DPS_PER_DIGIT)
 SENSITIVITY_SHARE: Final = 0.02
@@ -100,7 +101,7 @@ Z: Final = 2
 
 
 def rate_read(rig: Rig, gyro: ScriptedGyro, axis: int, digits: int, level: int = 0) -> float:
-    """What get_GYRO reads (rad/s) of a turn of `digits` over a zero-rate level that it knows."""
+    """The rate in rad/s that get_GYRO returns for a rotation of `digits` above a zero-rate level that it knows."""
     face = rig.fw.gyro
     rig.fw.spi.Init_SPIA()
     face.Z_dc_offset = level if axis == Z else 0
@@ -110,17 +111,17 @@ def rate_read(rig: Rig, gyro: ScriptedGyro, axis: int, digits: int, level: int =
 
 
 def rotation_sign(rig: Rig, gyro: ScriptedGyro, axis: int, digits: int, level: int = 0) -> Evidence:
-    """`rotation-sign`: a turn of `digits` (8.75 mdps each, either sign, not 0) over a zero-rate level reads more than
-    half of itself with its own sign, so that no slip of the scale is taken for one of the sign (L3G4200D: two's
-    complement; both together within 16 bits, where the sensor ends)."""
+    """`rotation-sign`: for a rotation of `digits` (8.75 mdps each, with either sign, not 0) above a zero-rate level,
+    the result has the same sign and is more than half of the rotation.  So an error of the scale does not count as one
+    of the sign.  (L3G4200D: two's complement; rotation and level together fit in 16 bits.)"""
     rate = digits * RAD_S_PER_DIGIT
     read = math.copysign(1.0, digits) * rate_read(rig, gyro, axis, digits, level)
     return measured(f"a turn of {rate:+.4f} rad/s reads, in its own direction", read, "rad/s", low=abs(rate) / 2)
 
 
 def rotation_scale(rig: Rig, gyro: ScriptedGyro, axis: int, digits: int, level: int = 0) -> Evidence:
-    """`rotation-scale`: a turn of `digits` over a zero-rate level reads what it is (rad/s), within the 2 % by which the
-    sensitivity changes over temperature and half a digit (L3G4200D table 4)."""
+    """`rotation-scale`: for a rotation of `digits` above a zero-rate level, the result in rad/s is right within half a
+    digit and the 2 % by which the sensitivity changes over temperature (L3G4200D table 4)."""
     rate = digits * RAD_S_PER_DIGIT
     bound = SENSITIVITY_SHARE * abs(rate) + RAD_S_PER_DIGIT / 2
     read = rate_read(rig, gyro, axis, digits, level)
@@ -128,8 +129,8 @@ def rotation_scale(rig: Rig, gyro: ScriptedGyro, axis: int, digits: int, level: 
 
 
 def rotation_bias(rig: Rig, gyro: ScriptedGyro, level: int) -> Evidence:
-    """`rotation-bias`: at rest with a zero-rate level of `level` digits (data sheet: up to 10 degrees/s, 1143), getZ is
-    within one digit of 0 after Init_GYRO."""
+    """`rotation-bias`: at rest, with a zero-rate level of `level` digits (data sheet: up to 10 degrees/s, which are
+    1143), getZ is within one digit of 0 after Init_GYRO."""
     face = rig.fw.gyro
     gyro.set_axis(Z, level)
     face.Z_dc_offset, face.Z_Calib_b = 0, 0.0
@@ -141,9 +142,9 @@ def rotation_bias(rig: Rig, gyro: ScriptedGyro, level: int) -> Evidence:
 
 # Odometry.c
 
-#: Period of TaskODO.
+#: The period of TaskODO in ms.
 PERIOD_MS: Final = 250.0
-#: The printed text rounds nothing: what float32 leaves of 100 mm, and then some.
+#: The bound for results that are not rounded: more than the error of float32 at 100 mm.
 EXACT_MM: Final = 0.05
 EXACT_RAD: Final = 1e-4
 
@@ -157,7 +158,7 @@ class SpeedStep(NamedTuple):
 
 
 class _Reckoned:
-    """Odom_Trayect, fed with speeds period by period, beside the circle arcs that they are."""
+    """Calls Odom_Trayect with a speed for each period, and computes the circular arcs for comparison."""
 
     def __init__(self, rig: Rig, heading_rad: float, drives: Sequence[SpeedStep]) -> None:
         odometry = rig.fw.new("ODOMETRY_Trayect", X=0.0, Y=0.0, tita=heading_rad, df=0.0, dl=0.0, dr=0.0)
@@ -180,7 +181,7 @@ class _Reckoned:
 
 
 def odometry_picture(rig: Rig, title: str, heading_rad: float, drives: Sequence[SpeedStep]) -> Picture:
-    """The path that Odom_Trayect reckons, and the one driven."""
+    """The path that Odom_Trayect computes, and the path that was driven."""
     run = _Reckoned(rig, heading_rad, drives)
     lines = [Series(name, *zip(*points, strict=True)) for name, points in
              (("Odom_Trayect", run.path), ("driven", run.true))]  # fmt: skip
@@ -188,14 +189,14 @@ def odometry_picture(rig: Rig, title: str, heading_rad: float, drives: Sequence[
 
 
 def _chord_share(drives: Sequence[SpeedStep]) -> float:
-    """TFG 3.3.2 takes the arc of a step for its chord, which is shorter by the share (W T)^2 / 24."""
+    """The share by which the chord of a step is shorter than its arc: (W T)^2 / 24.  TFG 3.3.2 uses the arc."""
     return max((drive.w_rad_s * PERIOD_MS / 1000) ** 2 / 24 for drive in drives)
 
 
 def odometry_heading(rig: Rig, heading_rad: float, drives: Sequence[SpeedStep]) -> Evidence:
-    """`odometry-path`: the heading (degrees) at the end is W times the time on from that at the start (TFG 3.3.2).
+    """`odometry-path`: the heading (degrees) changes by W times the time (TFG 3.3.2).
 
-    But for whole turns, which change no direction.
+    Whole turns are ignored, because they do not change the direction.
     """
     run = _Reckoned(rig, heading_rad, drives)
     error = math.degrees(math.remainder(run.read_rad - run.heading_rad, math.tau))
@@ -203,7 +204,7 @@ def odometry_heading(rig: Rig, heading_rad: float, drives: Sequence[SpeedStep]) 
 
 
 def odometry_distance(rig: Rig, heading_rad: float, drive: SpeedStep) -> Evidence:
-    """`unit`: one period's way (mm) is V [m/s] times the period [ms], turning or not, but for the chord."""
+    """`unit`: the distance of a period (mm) is V [m/s] times the period [ms], turning or not, except for the chord."""
     run = _Reckoned(rig, heading_rad, [drive._replace(periods=1)])
     bound = EXACT_MM + run.way_mm * _chord_share([drive])
     what = f"way of a period at {drive.v_m_s:g} m/s and {drive.w_rad_s:g} rad/s"
@@ -211,7 +212,7 @@ def odometry_distance(rig: Rig, heading_rad: float, drive: SpeedStep) -> Evidenc
 
 
 def odometry_course(rig: Rig, heading_rad: float, drive: SpeedStep) -> Evidence:
-    """`odometry-path`: one period's chord points along the heading in its middle (rad), backwards too (TFG 3.3.2)."""
+    """`odometry-path`: the chord of a period has the heading of its middle (rad), also backwards (TFG 3.3.2)."""
     run = _Reckoned(rig, heading_rad, [drive._replace(periods=1)])
     (x, y), (true_x, true_y) = run.path[-1], run.true[-1]
     error = math.remainder(math.atan2(y, x) - math.atan2(true_y, true_x), math.tau)
@@ -220,7 +221,7 @@ def odometry_course(rig: Rig, heading_rad: float, drive: SpeedStep) -> Evidence:
 
 
 def odometry_path(rig: Rig, heading_rad: float, drives: Sequence[SpeedStep]) -> Evidence:
-    """`odometry-path`: a driven path ends where it ends (mm), within what chords and float32 leave: 0.1 mm a metre."""
+    """`odometry-path`: the end of a path is right (mm), within the error of chords and float32: 0.1 mm per metre."""
     run = _Reckoned(rig, heading_rad, drives)
     bound = EXACT_MM + run.way_mm * (EXACT_RAD + _chord_share(drives))
     error = math.dist(run.path[-1], run.true[-1])
@@ -229,13 +230,14 @@ def odometry_path(rig: Rig, heading_rad: float, drives: Sequence[SpeedStep]) -> 
 
 # protocol.c
 
-#: TFG 3.2.3: what the robot does.
+#: The greatest speeds of the robot (TFG 3.2.3).
 V_MAX_M_S: Final = 0.3
 W_MAX_RAD_S: Final = 1.57
-#: The coordinates of a frame are 16 bits of millimetres and end there.
+#: The largest coordinate of a frame, which has 16 bits, in mm.
 COORDINATE_MM: Final = 32767
 _NUMBER: Final = rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
-#: TFG 3.1.4: `#`, four letters, the end mark; SETR has two numbers between (console: a point, no exponent).
+#: A valid order: `#`, four letters, the end mark; SETR has two numbers before it, with a decimal point and without an
+#: exponent, as the console sends them (TFG 3.1.4).
 _WELL_FORMED: Final = re.compile(rb"#(?:(STOP|MISN|TELE|CALB|INIT)|(SETR)(%b),(%b))\r" % (_NUMBER, _NUMBER))
 _ORDERS: Final = {
     b"STOP": "O_STOP", b"MISN": "O_MISSION", b"TELE": "O_TELEMANIPULATION", b"CALB": "O_CALIBRATION",
@@ -249,8 +251,8 @@ def well_formed(frame: bytes) -> bool:
 
 
 def order_read(rig: Rig, frame: bytes) -> Evidence:
-    """`malformed-frame`: a frame as Read_Frame gives it (begin mark first, end mark last, neither inside, at most 79
-    characters) is taken for the order that it is and for no other, and a malformed one for none; no finding."""
+    """`malformed-frame`: a frame as Read_Frame returns it (start mark first, end mark last, neither inside, at most 79
+    characters) is understood as the order that it is, a malformed frame as none, and there is no finding."""
     match = _WELL_FORMED.fullmatch(frame)
     face = rig.fw.protocol.ORDER
     right = _ORDERS[match[1] or match[2]] if match else "O_ERROR"
@@ -261,8 +263,8 @@ def order_read(rig: Rig, frame: bytes) -> Evidence:
 
 
 def reference_read(rig: Rig, frame: bytes) -> Evidence:
-    """`order-range`: a well-formed SETR gives the speeds (m/s, rad/s) that it states, held within what the robot does
-    (TFG 3.2.3), to six digits.  Raises ValueError for another frame."""
+    """`order-range`: a well-formed SETR sets its speeds (m/s, rad/s), limited to the robot's range (TFG 3.2.3), to six
+    digits.  Raises ValueError for another frame."""
     match = _WELL_FORMED.fullmatch(frame)
     if match is None or match[2] is None:
         raise ValueError(f"{frame!r} is not a SETR with two numbers")
@@ -276,7 +278,7 @@ def reference_read(rig: Rig, frame: bytes) -> Evidence:
 
 
 class MonitorValues(NamedTuple):
-    """What the monitors hold: coordinates in mm, heading in rad, distances in cm (0..1217 cm: 4095 counts)."""
+    """The values of the monitors: coordinates in mm, heading in rad, distances in cm (0 to 1217 cm: 4095 counts)."""
 
     x_mm: float = 0.0
     y_mm: float = 0.0
@@ -287,7 +289,7 @@ class MonitorValues(NamedTuple):
 
 
 def frame_sent(rig: Rig, shown: MonitorValues) -> str:
-    """The frame that Send_ODO_Trayect hands to XBee.c."""
+    """The frame that Send_ODO_Trayect passes to XBee.c."""
     names = ("X", "Y", "tita", "df", "dr", "dl")
     rig.fw.xbee.Tx_Count = 0  # the one before has left
     rig.fw.protocol.Send_ODO_Trayect(rig.fw.new("ODOMETRY_Trayect", **dict(zip(names, shown, strict=True))))
@@ -295,8 +297,8 @@ def frame_sent(rig: Rig, shown: MonitorValues) -> str:
 
 
 def frame_units(rig: Rig, shown: MonitorValues) -> Evidence:
-    """`unit`: a frame carries what the monitors hold in the frame's units: mm (held at the ends of 16 bits), radians to
-    a degree (any whole turns apart: the console only takes sine and cosine, TFG annex 2), mm, cut off by less than one.
+    """`unit`: a frame has the values of the monitors in its units: mm (limited to 16 bits), radians within a degree
+    (any whole turns are allowed, because the console only uses sine and cosine, TFG annex 2), and mm, truncated.
     """
     frame = frame_sent(rig, shown)
     fields = re.fullmatch(r"#ODO (-?\d+),(-?\d+),(-?\d+),(-?\d+),(-?\d+),(-?\d+)\n\r", frame)
@@ -309,5 +311,5 @@ def frame_units(rig: Rig, shown: MonitorValues) -> Evidence:
         *(read - 10 * cm for read, cm in zip(distances, shown[3:], strict=True)),
     ]
     worst = max(map(abs, errors))
-    # float32 of 30 m in mm ends at 0.004.
+    # The error of float32 at 30 m, in mm, is 0.004.
     return measured(f"greatest error of a field of {frame[:-2]!r}", worst, "mm or degrees", high=1.005)

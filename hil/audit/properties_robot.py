@@ -1,7 +1,8 @@
-"""Properties of the whole robot: orders, stops, odometry while it drives; the rules of `emulator.rules.behaviour`.
+"""Properties of the whole robot: orders, stops, odometry.  They are the rules of `emulator.rules.behaviour`.
 
-Each is a function of a bench and one example, as those of the drivers (`hil.audit.properties`).  A bench is used again
-and again: a property runs it from where it is.  Unless said otherwise it has booted and its parts are ideal.
+A property is a function of a bench and one example, like those of the drivers (`hil.audit.properties`).  A bench is
+used many times; a property runs it from its present state.  If not said otherwise, it has booted and its parts are
+ideal.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from hil.audit.evidence import Evidence, measured
 from hil.bench import Bench
 from hil.world.robot_params import Pose
 
-#: 8N1 at 9600 baud.
+#: The time of a character, 8N1 at 9600 baud.
 CHARACTER_S: Final = 10 / 9600
 #: TFG figure 39: an order is executed before the next one can have arrived; then it waits for TaskNAVIGATION, and that
 #: for TaskSERVO, a period each.  All tasks together compute for 1.1 ms.
@@ -27,7 +28,7 @@ WHEELS_S: Final = ORDER_S + 50e-3 + 25e-3 + 1.1e-3
 #: (0.085 s, `servos.c`).
 STOPPING_M: Final = 0.3 * (WHEELS_S + 0.085)
 _SAMPLE_CYCLES: Final = 250 * CYCLES_PER_US
-#: How long nothing happens before an order counts as lost.
+#: The time without an effect after which an order counts as lost.
 _TIMEOUT_S: Final = 0.25
 _STATES: Final = {
     b"STOP": "STOP", b"MISN": "MISSION", b"TELE": "TELEMANIPULATION", b"CALB": "CALIBRATION", b"INIT": "INITIALITATION",
@@ -35,14 +36,15 @@ _STATES: Final = {
 
 
 class OrderEffect(NamedTuple):
-    """What orders change: the state, and the reference of the telemanipulation (m/s, rad/s)."""
+    """The values that orders change: the state, and the reference of the telemanipulation (m/s, rad/s)."""
 
     state: str
     v_m_s: float
     w_rad_s: float
 
     def after(self, order: bytes) -> OrderEffect:
-        """With a well-formed order obeyed: TFG 3.3.1, SETR sets both references in TELE; they are 0 in other states."""
+        """The values after a well-formed order.  SETR sets both references in TELE; they are 0 in other states (TFG
+        3.3.1)."""
         if order[1:5] == b"SETR":
             if self.state != _STATES[b"TELE"]:
                 return self
@@ -54,19 +56,19 @@ class OrderEffect(NamedTuple):
 
 
 def understood(bench: Bench) -> OrderEffect:
-    """What the robot has understood so far."""
+    """The effect of the orders that the robot has understood so far."""
     reference = bench.firmware.servidores.Telemanipulation_Reference
     return OrderEffect(bench.status().state, round(reference.V, 5), round(reference.W, 5))
 
 
 def drive(bench: Bench) -> float:
-    """The greater of the shares of the period (0..1) in which a motor is driven; 0 is neutral."""
+    """The greater of the two motors' duties (0 to 1); 0 is neutral."""
     bridges = (bench.board.left_motor.bridge, bench.board.right_motor.bridge)
     return max(abs(bridge.in1.duty - bridge.in2.duty) for bridge in bridges)
 
 
 def _sampled(bench: Bench, look: Callable[[], Any], duration_s: float) -> list[tuple[float, Any]]:
-    """Run, looking each 0.25 ms: the times (s) from now at which what is seen changed, and what it was then."""
+    """Run, and call `look` each 0.25 ms.  Returns its changes: the times in s from now, and the new values."""
     start = bench.clock.now
     end = start + round(duration_s * SYSCLK_HZ)
     seen = [(0.0, look())]
@@ -86,7 +88,7 @@ def _sampled(bench: Bench, look: Callable[[], Any], duration_s: float) -> list[t
 
 
 def _fed(bench: Bench, orders: bytes, after_s: float, timeout_s: float) -> list[tuple[float, OrderEffect]]:
-    """What was understood, by the time (s) since the last character of `orders`, which begin in `after_s`."""
+    """The effects of `orders`, which begin in `after_s`, with the times in s since their last character."""
     bench.clock.after(round(after_s * SYSCLK_HZ) + 1, lambda: bench.feed(orders))
     on_line_s = after_s + len(orders) * CHARACTER_S
     changes = _sampled(bench, lambda: understood(bench), on_line_s + timeout_s)
@@ -94,8 +96,8 @@ def _fed(bench: Bench, orders: bytes, after_s: float, timeout_s: float) -> list[
 
 
 def order_latency(bench: Bench, order: bytes, after_s: float) -> Evidence:
-    """`order-latency`: an order that changes something, begun in `after_s`, is executed within 6.25 ms of its last
-    character (TFG 3.4.3: no later than the next one can be complete), in the start-up of a bench not booted too."""
+    """`order-latency`: an order that has an effect and begins in `after_s` is executed within 6.25 ms after its last
+    character (TFG 3.4.3: before the next one can be complete), also during the start-up of a bench."""
     changes = _fed(bench, order, after_s, _TIMEOUT_S if bench.clock.now else 2.5)
     right = changes[0][1].after(order)
     latency_s = next((time_s for time_s, what in changes[1:] if what == right), math.inf)
@@ -103,7 +105,7 @@ def order_latency(bench: Bench, order: bytes, after_s: float) -> Evidence:
 
 
 def two_orders(bench: Bench, first: bytes, second: bytes, after_s: float) -> Evidence:
-    """`order-latency`: of two orders without a pause between them, the first obeyed and then the second (count)."""
+    """`order-latency`: of two orders without a pause, the robot obeys the first and then the second (count)."""
     changes = [what for _, what in _fed(bench, first + second, after_s, _TIMEOUT_S if bench.clock.now else 2.5)]
     obeyed, expected = 0, changes[0]
     for order in (first, second):
@@ -115,8 +117,8 @@ def two_orders(bench: Bench, first: bytes, second: bytes, after_s: float) -> Evi
 
 
 def wheels_obey(bench: Bench, v_m_s: float, w_rad_s: float, after_s: float) -> Evidence:
-    """`order-latency`: of a robot at rest in TELE, the PWM of a wheel changes within the 82 ms that an order, a period
-    of TaskNAVIGATION and one of TaskSERVO take, from the end of a SETR that is not 0."""
+    """`order-latency`: if the robot is at rest in TELE, the PWM of a wheel changes within 82 ms after the end of a SETR
+    that is not 0.  This is the time of an order, a period of TaskNAVIGATION and one of TaskSERVO."""
     bench.feed(b"#TELE\r#SETR0.0,0.0\r")
     bench.run_for(0.5)
     order = f"#SETR{v_m_s:.3f},{w_rad_s:.3f}\r".encode()
@@ -128,8 +130,8 @@ def wheels_obey(bench: Bench, v_m_s: float, w_rad_s: float, after_s: float) -> E
 
 
 def malformed_bytes(bench: Bench, data: bytes, good: bytes) -> Evidence:
-    """`malformed-frame`: bytes that hold no whole order change neither state nor reference nor give a finding, and the
-    `good` order behind them is obeyed (count of what is wrong)."""
+    """`malformed-frame`: bytes without a complete order change neither state nor reference and cause no finding, and
+    the `good` order after them is obeyed (count of violations)."""
     before, findings = understood(bench), len(bench.findings)
     bench.feed(data)
     bench.run_for(len(data) * CHARACTER_S + 0.02)
@@ -148,8 +150,8 @@ def _driving(bench: Bench, orders: Sequence[bytes], for_s: float) -> None:
 
 
 def stop_is_neutral(bench: Bench, orders: Sequence[bytes], after_s: float) -> Evidence:
-    """`stop-stops`: STOP, `after_s` behind any orders, has both motors neutral (share of the period) 82 ms after its
-    last character (an order, a period of TaskNAVIGATION, one of TaskSERVO), and for the second after that."""
+    """`stop-stops`: with STOP, `after_s` after any orders, both motors are neutral (duty) 82 ms after its last
+    character (an order, a period of TaskNAVIGATION, one of TaskSERVO), and stay so for a second."""
     _driving(bench, orders, after_s)
     bench.feed(b"#STOP\r")
     bench.run_for(6 * CHARACTER_S + WHEELS_S)
@@ -158,8 +160,8 @@ def stop_is_neutral(bench: Bench, orders: Sequence[bytes], after_s: float) -> Ev
 
 
 def stopping_distance(bench: Bench, orders: Sequence[bytes], after_s: float) -> Evidence:
-    """`stop-stops`: STOP, `after_s` behind any orders, has the robot at rest within 5 cm (m): 0.3 m/s (TFG 3.2.3) for
-    the 82 ms until the wheels are told and for the 85 ms of the motor's time constant."""
+    """`stop-stops`: with STOP, `after_s` after any orders, the robot is at rest within 5 cm (m).  It may drive at
+    0.3 m/s (TFG 3.2.3) for the 82 ms until the wheels get the stop, and for the motor's time constant of 85 ms."""
     _driving(bench, orders, after_s)
     bench.feed(b"#STOP\r")
     bench.run_for(6 * CHARACTER_S)
@@ -171,7 +173,7 @@ def stopping_distance(bench: Bench, orders: Sequence[bytes], after_s: float) -> 
 
 
 def stop_forgets(bench: Bench, v_m_s: float, w_rad_s: float) -> Evidence:
-    """`stop-stops`: a reference given before a STOP (TFG 3.3.1: it sets both to 0) moves nothing at the next TELE."""
+    """`stop-stops`: a reference from before a STOP, which sets it to 0 (TFG 3.3.1), has no effect in the next TELE."""
     order = f"#SETR{v_m_s:.3f},{w_rad_s:.3f}\r".encode()
     _driving(bench, (b"#TELE\r", order), 0.2)
     _driving(bench, (b"#STOP\r",), 0.5)
@@ -193,14 +195,15 @@ class ReferenceStep(NamedTuple):
 #: of ripple that an ideal gyro without its low-pass aliases.
 _HEADING_SHARE: Final = 0.02
 _HEADING_RAD_S: Final = math.radians(0.03 + 5 / 60)
-#: A wheel loses up to 1 % of its way.
+#: The share of its distance that a wheel may lose: 1 %.
 _DISTANCE_SHARE: Final = 0.01
 
 
 def odometry_follows(bench: Bench, start: Pose, legs: Sequence[ReferenceStep]) -> Evidence:
-    """`odometry-path`: after legs driven from `start`, touching nothing, the odometry has moved as the robot has (m),
-    within what the parts allow: 1 % of the way, half the way times the error of the heading, which grows evenly, and
-    where a leg begins or ends within a period of TaskODO, half that period's way times its turn."""
+    """`odometry-path`: after a drive of several legs from `start` without a contact, the odometry has moved like the
+    robot (m), within the tolerance of the parts: 1 % of the distance; half the distance times the error of the heading,
+    which grows evenly; and, if a leg begins or ends within a period of TaskODO, half the distance of that period times
+    its turn."""
     _driving(bench, (b"#STOP\r",), 0.5)
     bench.world.place(start)
     bench.run_for(0.5)

@@ -22,10 +22,11 @@ from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from hil.board import Board
 from hil.testing.waits import PollingLoop, PollingLoops
 
-#: The time between two checks of a call, and the computation after which its loop is examined: 10 ms of virtual time,
-#: less than half a second of real time.  Or the number of interrupts after which it is examined; that takes as long.
+#: The virtual time between two checks of a call.
 _CHECK_CYCLES: Final = 10 * CYCLES_PER_MS
+#: The computation after which the loop of a call is examined: 10 ms of virtual time, less than half a second here.
 _COMPUTED_CYCLES: Final = 2_000_000
+#: The number of interrupt routines after which the loop is examined.  They take about as long.
 _ROUTINES: Final = 1000
 #: The turns of a loop that are still executed after a check has found nothing that could end it.
 _TURNS: Final = 2

@@ -224,7 +224,7 @@ class PollingLoop:
             if routine in self._functions and path in self._threads.below(routine):
                 called = "" if routine == path else f", called by {routine}"
                 closed = self._reach.closed(number, running=self.running)
-                return f"the routine of {name}{called}; {closed or 'which is enabled, and has brought no end'}"
+                return f"the routine of {name}{called}; {closed or 'which is enabled, but has not ended the loop'}"
         return "no entry of PieVectTable leads to it"
 
     def _value(self, register: RegisterRef) -> str:
