@@ -33,19 +33,19 @@ class Rts(Printing):
         return round_decimal(found.group(1))
 
     def atof(self, text: Pointer | None) -> float:
-        """A decimal number as float32, correctly rounded; 0 if the text is not a number."""
+        """Convert a decimal number to float32, correctly rounded; 0 if the text is not a number."""
         characters = self._text(text, "atof")
         self._charge(60 + 40 * min(len(characters), 16))
         return self._number(characters)
 
     def atoi(self, text: Pointer | None) -> int:
-        """A decimal int; wraps at 16 bits.  A check of a wider use asks for the whole number."""
+        """Convert a decimal number to an int.  It wraps at 16 bits.  A check of a wider use gets the whole number."""
         whole = self._runtime.parsed_number = self.atol(text)
         value = whole & 0xFFFF
         return value - 0x10000 if value > 0x7FFF else value
 
     def atol(self, text: Pointer | None) -> int:
-        """A decimal long; wraps at 32 bits."""
+        """Convert a decimal number to a long.  It wraps at 32 bits."""
         characters = self._text(text, "atol")
         self._charge(30 + 12 * min(len(characters), 12))
         found = re.match(r"\s*([+-]?\d+)", characters, re.ASCII)
@@ -53,11 +53,11 @@ class Rts(Printing):
         return value - (1 << 32) if value > 0x7FFFFFFF else value
 
     def abs(self, x: int) -> int:
-        """Magnitude of an int; -32768 has none and stays."""
+        """The absolute value of an int.  -32768 stays, because 32768 does not fit."""
         return self._magnitude(x, 16, "abs")
 
     def labs(self, x: int) -> int:
-        """Magnitude of a long; -2147483648 has none and stays."""
+        """The absolute value of a long.  -2147483648 stays, because 2147483648 does not fit."""
         return self._magnitude(x, 32, "labs")
 
     def _magnitude(self, x: int, bits: int, name: str) -> int:
@@ -70,7 +70,7 @@ class Rts(Printing):
 
 
 def round_decimal(text: str) -> float:
-    """The float32 nearest to a decimal string, in one rounding (by way of a double it would round twice).
+    """The float32 that is nearest to a decimal string.  It is rounded only once; through a double it would be twice.
 
     CHOICE: a denormal result is kept as bits; the FPU flushes it when the firmware computes with it.
     """

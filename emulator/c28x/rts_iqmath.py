@@ -1,16 +1,16 @@
 """The IQmath library by the C names of its functions (`_IQ24div`, `_atoIQN`), and the compiler's own IQ functions.
 
 Modelled
-    Every function of the library in the formats 1 to 30 (1 to 29 where the library has no more), to the last bit
-    (`iq_arithmetic.py`); the compiler's `__IQmpy`, `__IQxmpy`, `__IQsat` and `__IQ`.  A product that does not fit
-    32 bits is reported (`overflow`) where the library neither saturates nor says what is lost: `_IQmpy`, `_IQrmpy`,
-    `_IQmpyIQX`.
+    All functions of the library in the formats 1 to 30 (1 to 29 if the library has no more), exact to the last bit
+    (`iq_arithmetic.py`); the compiler's `__IQmpy`, `__IQxmpy`, `__IQsat` and `__IQ`.  For functions that do not
+    saturate (`_IQmpy`, `_IQrmpy`, `_IQmpyIQX`), a product that does not fit in 32 bits is reported (`overflow`).
     CHOICE: `__IQ(A, N)` takes a float, where the compiler takes a `long double`.
 Not modelled
     IQmathCPP.h: there is no C++.
 Time
-    The benchmark in the sources of the library, with the tables in ROM of one wait state, call and return included; of
-    several, by format or path, the shortest.  Of `__IQmpy` and its kin, their instructions (`passes/costs.py`).
+    The cycles of the benchmark in the sources of the library, with call and return, and with the tables in a ROM of one
+    wait state.  If there are several, by format or path, the least is used.  For `__IQmpy` and the other functions of
+    the compiler, the cycles of their instructions (`passes/costs.py`).
 Sources
     IQmath library of C2000Ware: its header, and the benchmarks in its sources; SPRU514, "Intrinsics": `__IQxmpy` as
     the header's `_IQmpyIQX` needs it.
@@ -41,7 +41,8 @@ _OF_FORMAT: Final[Mapping[str, tuple[Callable[..., int], int, range]]] = Mapping
     "mag": (iq.magnitude, 93, ALL), "sin": (iq.sine, 47, ALL), "cos": (iq.cosine, 45, ALL),
     "sinPU": (iq.sine_of_turns, 41, ALL), "cosPU": (iq.cosine_of_turns, 39, ALL),
     "atan2": (iq.arc_tangent, 114, ALL), "atan2PU": (iq.arc_tangent_turns, 127, ALL),
-    # CHOICE: their sources have no benchmark; a square root, five products; the arc cosine calls the arc sine.
+    # CHOICE: their sources have no benchmark.  The cycles are those of a square root and five products; the arc cosine
+    # calls the arc sine.
     "asin": (iq.arc_sine, 154, _NOT_30), "acos": (iq.arc_cosine, 170, _NOT_30),
     "exp": (iq.exponential, 168, ALL), "log": (iq.logarithm, 148, ALL),
 })  # fmt: skip
@@ -95,7 +96,7 @@ class IQmath(Printing):
         return bits_float(iq.to_float_bits(a, q))
 
     def _low_word(self, call: str, value: int) -> int:
-        """The lower 32 bits of a product; reported if it does not fit."""
+        """The lower 32 bits of a product.  A product that does not fit is reported."""
         kept = iq.wrap32(value)
         if kept != value:
             message = f"{call} is {value}, which does not fit 32 bits: it becomes {kept}"
@@ -126,7 +127,10 @@ class IQmath(Printing):
         return iq.from_text(characters, q)
 
     def _to_text(self, to: Pointer | None, form: Pointer | None, a: int, q: int) -> int:
-        """`%3.5f`: at most 3 characters before the point, 5 from it on.  Returns 0; 1: too narrow; 2: not possible."""
+        """Print a number with a format such as `%3.5f`: at most 3 characters before the point, and 5 from it on.
+
+        Returns 0; 1 if the format is too narrow; 2 if it is not possible.
+        """
         given = self._text(form, "__IQNtoa")
         error, text = iq.to_text(given, a, q)
         self._charge(min(_TEXT + _CHARACTER * len(text), 800))

@@ -23,7 +23,8 @@ class Mathematics:
         self._runtime.clock.charge(cycles)
 
     def _value(self, cycles: int, function: Callable[..., float], *arguments: float) -> float:
-        """`function` of the arguments, rounded.  NaN where it is undefined; infinity on overflow and at poles."""
+        """The value of `function`, rounded.  It is NaN where the function is undefined, and infinity on overflow and at
+        poles."""
         self._charge(cycles)
         try:
             result = f32(function(*arguments))
@@ -40,31 +41,31 @@ class Mathematics:
         return result
 
     def sin(self, x: float) -> float:
-        """Sine, radians."""
+        """The sine of an angle in radians."""
         return self._value(80, math.sin, x)
 
     def cos(self, x: float) -> float:
-        """Cosine, radians."""
+        """The cosine of an angle in radians."""
         return self._value(80, math.cos, x)
 
     def tan(self, x: float) -> float:
-        """Tangent, radians."""
+        """The tangent of an angle in radians."""
         return self._value(120, math.tan, x)
 
     def asin(self, x: float) -> float:
-        """Arc sine in radians."""
+        """The arc sine in radians."""
         return self._value(140, math.asin, x)
 
     def acos(self, x: float) -> float:
-        """Arc cosine in radians."""
+        """The arc cosine in radians."""
         return self._value(140, math.acos, x)
 
     def atan(self, x: float) -> float:
-        """Arc tangent in radians."""
+        """The arc tangent in radians."""
         return self._value(100, math.atan, x)
 
     def atan2(self, y: float, x: float) -> float:
-        """Angle of (x, y), radians."""
+        """The angle of the point (x, y) in radians."""
         return self._value(120, math.atan2, y, x)
 
     def exp(self, x: float) -> float:
@@ -72,7 +73,7 @@ class Mathematics:
         return self._value(120, math.exp, x)
 
     def log(self, x: float) -> float:
-        """Natural logarithm."""
+        """The natural logarithm."""
         return self._value(120, math.log, x)
 
     def pow(self, x: float, y: float) -> float:
@@ -80,7 +81,7 @@ class Mathematics:
         return self._value(250, math.pow, x, y)
 
     def sqrt(self, x: float) -> float:
-        """Square root; negative gives NaN."""
+        """The square root; NaN for a negative number."""
         return self._value(40, math.sqrt, x)
 
     def floor(self, x: float) -> float:
@@ -97,7 +98,7 @@ class Mathematics:
         return self._value(150, math.fmod, x, y)
 
     def fabs(self, x: float) -> float:
-        """Magnitude."""
+        """The absolute value."""
         self._charge(4)
         return abs(x)
 

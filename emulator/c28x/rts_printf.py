@@ -1,13 +1,15 @@
 """`sprintf`, `snprintf` and `printf` of `stdio.h`, and `puts` and `putchar`.
 
 Modelled
-    `% [-+ #0] [width|*] [.prec|.*] [h|l|L] conv`; d i u x X o c s p f F e E g G %; arguments read by words, so that a
-    wrong width shifts those behind it (`varargs.py`); a text longer than its buffer is reported and written.
+    A conversion is `% [-+ #0] [width|*] [.prec|.*] [h|l|L] conv`, where `conv` is one of d i u x X o c s p f F e E g G
+    %.  Arguments are read by words, so a wrong width shifts the arguments after it (`varargs.py`).  A text that is
+    longer than its buffer is reported and written.
 Not modelled
-    What `printf`, `puts` and `putchar` print goes to the console of a debugger, which is not there (`unmodelled`).
-    `%n`, `%a`, `ll`, wide characters (reported as `printf-format`; printed as they stand).
+    `printf`, `puts` and `putchar` print to the console of a debugger, which does not exist here (`unmodelled`).  `%n`,
+    `%a`, `ll` and wide characters are reported (`printf-format`) and printed unchanged.
 Time
-    CHOICE, in the magnitude of the library: a call, a character, a conversion, ten times as much for a float.
+    CHOICE, in the order of magnitude of the library: cycles for a call, a character and a conversion, and ten times as
+    many for a float.
 Sources
     ISO C, fprintf; CC 6: widths.  CHOICE: a float prints the digits of its value, correctly rounded.
 """

@@ -1,7 +1,7 @@
-"""`string.h` of the run-time support library: blocks and texts.
+"""`string.h` of the run-time support library: functions on blocks of memory and on strings.
 
 Sizes are in 16-bit words; a character takes one word.  Cycles are CHOICE, in the order of magnitude of the library.
-Not modelled: `strtok`, `strspn` and their kin, `strerror`, locales.
+Not modelled: `strtok`, `strspn`, `strcspn`, `strpbrk`, `strerror`, locales.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _LARGEST: Final = 0x1C000
 
 
 class Strings(Mathematics):
-    """Blocks and texts of one image."""
+    """The functions on blocks and strings of one image."""
 
     def _text(self, p: Pointer | None, reader: str, most: int = _LONGEST) -> str:
         """The characters that the function `reader` reads: up to the NUL, `most` at most."""
@@ -68,7 +68,7 @@ class Strings(Mathematics):
         return to
 
     def _examine(self, function: str, cycles: int, to: Pointer, source: Pointer, n: int) -> None:
-        """Charge a copy of `n` words, check it, and tell the watcher of its accesses."""
+        """Charge the cycles of a copy of `n` words, check it, and pass its accesses to the detectors."""
         self._charge(cycles + 2 * n)
         self._check_size(function, "reads", source, n, to)
         self._check_size(function, "writes", to, n, source)
@@ -104,7 +104,7 @@ class Strings(Mathematics):
             self._runtime.read_through(source, 0, leaves[0][1], function)
 
     def memset(self, to: Pointer | None, value: int, n: int) -> Pointer | None:
-        """Set `n` words."""
+        """Set `n` words to `value`."""
         if to is None:
             self._runtime.findings.report("null-dereference", "memset was given NULL")
             return to
@@ -116,7 +116,7 @@ class Strings(Mathematics):
         return to
 
     def strlen(self, text: Pointer | None) -> int:
-        """Characters before the NUL."""
+        """The number of characters before the NUL."""
         length = len(self._text(text, "strlen"))
         self._charge(8 + 4 * length)
         return length
@@ -128,11 +128,11 @@ class Strings(Mathematics):
         return (first > second) - (first < second)
 
     def strcpy(self, to: Pointer | None, source: Pointer | None) -> Pointer | None:
-        """Copy a text with its NUL."""
+        """Copy a string with its NUL."""
         return self._put_text("strcpy", to, 0, source)
 
     def strcat(self, to: Pointer | None, source: Pointer | None) -> Pointer | None:
-        """Append a text with its NUL."""
+        """Append a string with its NUL."""
         return self._put_text("strcat", to, len(self._text(to, "strcat")), source)
 
     def _put_text(self, name: str, to: Pointer | None, at: int, source: Pointer | None) -> Pointer | None:

@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Final
 
-#: How long a thread with nothing to do waits before it looks around.
+#: The longest wait of a thread that has nothing to do.
 WAIT_S: Final = 0.25
 
 
@@ -17,7 +17,7 @@ WAIT_S: Final = 0.25
 class _Command:
     done: Future[Any]
     work: Callable[[], Any]
-    #: Changes the run: only while the machine is at rest.
+    #: Whether it changes the run; then it runs only while the machine is at rest.
     changes: bool
 
 

@@ -1,5 +1,7 @@
-"""Findings as they come: place, time, count; the statement, its call path, the meaning of the rule, and a way back to
-it."""
+"""The findings: a table with place, time and count, and an explanation of the chosen one.
+
+The explanation has the statement, its call path, the meaning of the rule, and a button that goes to its moment.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,7 @@ def key_of(finding: Finding) -> str:
 
 
 def row_of(rated_finding: RatedFinding, *, ahead: bool = False) -> TableRow:
-    """A row of the table.  `ahead`: the run was here later, and has gone back to before the finding."""
+    """A row of the table.  `ahead`: the run has gone back to a time before the finding."""
     finding, severity = rated_finding.finding, rated_finding.severity
     place = finding.place
     line = "" if place is None else location(place).rpartition("/")[2]
@@ -73,7 +75,7 @@ def has_words(row: TableRow, words: str) -> bool:
 
 
 class FindingsPanel:
-    """The table, and below it the finding that was chosen; `on_go_to(finding)` goes to its moment."""
+    """The table, and below it the chosen finding; `on_go_to(finding)` goes to its moment."""
 
     def __init__(self, engine: Engine, on_go_to: Callable[[Finding], None]) -> None:
         self._engine = engine

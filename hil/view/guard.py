@@ -1,11 +1,12 @@
-"""Who may talk to the page: nobody but this computer's own browser, unless told otherwise.
+"""Checks requests to the page.  By default, only a browser on this computer may connect.
 
-* The `Host` that a request names must be ours: a foreign page that had its own name resolved to 127.0.0.1 (DNS
-  rebinding) names another one.
-* An `Origin` must be ours: a page of another site may open a websocket to any address, and the browser tells who it is.
-* Listening elsewhere than on loopback, a token is needed: once in the address, then in a cookie.
+* The `Host` of a request must be the server's own.  A foreign page whose name resolves to 127.0.0.1 (DNS rebinding) has
+  another `Host`.
+* The `Origin` must be the server's own.  A page of another site may open a websocket to any address, but the browser
+  names that site.
+* If the server does not listen on loopback, a token is needed: first in the address, then in a cookie.
 
-Plain ASGI, so that web pages and websockets pass the same door.
+It is plain ASGI, so the same checks hold for web pages and websockets.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ def is_loopback(host: str) -> bool:
 
 
 class RequestGuard:
-    """Passes permitted requests on to `app`.  `token` empty: none is needed."""
+    """Passes permitted requests on to `app`.  With an empty `token`, no token is needed."""
 
     def __init__(self, app: App, host: str, port: int, token: str = "") -> None:
         self._app = app
@@ -43,11 +44,11 @@ class RequestGuard:
         self._token = token
         self._cookie = f"hil_view_{port}"
         self._names = {*LOOPBACK, host.lower(), f"[{host.lower()}]"}
-        #: Listening everywhere, every address of this computer is ours, and no name but localhost.
+        #: If it listens on all addresses, every address of this computer is permitted, and of names only localhost.
         self._any_address = not is_loopback(host)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """One request, websocket, or the server's own life cycle."""
+        """Handle a request, a websocket, or an event of the server's life cycle."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
@@ -114,7 +115,7 @@ class RequestGuard:
 
 
 def _again(first: MutableMapping[str, Any], receive: Receive) -> Receive:
-    """`receive`, with a message that was already taken put back at its head."""
+    """`receive`, which first returns a message that was taken already."""
     taken = [first]
 
     async def receiving() -> MutableMapping[str, Any]:

@@ -24,13 +24,13 @@ class SignalKind:
     """The kind of a signal."""
 
     draw: Draw
-    #: Of what is drawn on an axis; empty: nobody knows it.
+    #: The unit of a signal that is drawn on an axis; empty: it is not known.
     unit: str = ""
-    #: What is soldered there: `thermometer CS`.
+    #: The part that is connected there: `thermometer CS`.
     part: str = ""
 
 
-#: Units by the beginning of a signal's name.
+#: The beginning of a signal's name -> its unit.
 _UNITS: Final = {"duty ": "duty", "edges ": "ticks", "ADCIN": "V"}
 
 

@@ -12,18 +12,19 @@ from hil.view.kinds import Draw, SignalKind
 from hil.view.probes import Sample
 from hil.view.words import DecodedWord, text_lines
 
-#: In pixels: the picture's width until the browser tells its own; where lanes begin; height of a lane, of the times.
+#: In pixels: the width of the picture until the browser reports it, the left edge of the lanes, the heights of a lane
+#: and of the line of times.
 WIDTH: Final = 720
 LEFT: Final = 144
 LANE: Final = 24
 TIMES: Final = 18
-#: What is nearer than this in the picture cannot be told apart, and is drawn as one, paler.
+#: Edges with less than this distance, in pixels, cannot be distinguished; they are drawn as one paler block.
 MERGE: Final = 2.0
-#: A character of the words.
+#: The width of a character of the words, in pixels.
 CHARACTER: Final = 6.7
 _CSS: Final = {TaskState.RUNNING: "running", TaskState.READY: "ready", TaskState.WAITING: "waiting"}
 
-#: From cycles to a place in the picture.
+#: A function from cycles to the x coordinate in the picture.
 Place = Callable[[int], float]
 
 
@@ -36,8 +37,7 @@ def place(begin: int, end: int, width: int = WIDTH) -> Place:
 def picture(
     lanes: Sequence[tuple[str, str]], places: Iterable[float], begin: int, end: int, width: int = WIDTH
 ) -> tuple[str, int]:  # fmt: skip
-    """The picture of lanes with their names, one below the other, cursors at `places`, the times of both ends; and its
-    height."""
+    """The picture of lanes with their names, cursors at `places`, and the times of both ends; and its height."""
     height = LANE * len(lanes) + 8
     parts = []
     for row, (title, drawn) in enumerate(lanes):
@@ -72,8 +72,10 @@ def signal_lanes(
 def task_lanes(
     owners: Iterable[str], every: list[Span], begin: int, end: int, width: int = WIDTH
 ) -> list[tuple[str, str]]:  # fmt: skip
-    """Name and drawing of each task, Swi and Hwi.  Spans too short to be separated are as high as their share of the
-    time."""
+    """Name and drawing of each task, Swi and Hwi.
+
+    Spans that are too short to be drawn one by one become a block whose height is their share of the time.
+    """
     x = place(begin, end, width)
     names = list(dict.fromkeys(owners))
     drawn: dict[str, dict[str, list[str]]] = {name: {} for name in names}
@@ -91,7 +93,7 @@ def task_lanes(
 
 
 def _title(name: str, kind: SignalKind) -> str:
-    """The part that is soldered there, and the name beside it, as far as there is room."""
+    """The part that is connected to a signal, and the name of the signal if there is room."""
     if not kind.part:
         return escape(name)
     pin = name.removeprefix("byte ")
@@ -109,7 +111,7 @@ def _square(samples: list[Sample], x: Place, end: int) -> str:
     line: list[str] = []
     blocks: list[tuple[float, float]] = []
     ends = [cycles for cycles, _ in samples[1:]] + [end]
-    # Of what cannot be told apart: where it begins and ends, and how many pieces it is.
+    # Pieces that are too close to be distinguished: begin, end, and their path.
     crowd: list[tuple[float, float, str]] = []
 
     def settle() -> None:
@@ -180,9 +182,9 @@ def _fitting(versions: Sequence[str], room: int) -> str:
 
 
 def _merged(every: list[Span], x: Place) -> list[tuple[Span, float, float, float, bool]]:
-    """Spans with their places in the picture; those that nearly touch there as one.
+    """The spans with their coordinates in the picture.  Spans that nearly touch are joined to one.
 
-    With each how much of its width is filled, and whether it is several.
+    With each comes the filled part of its width, and whether several spans were joined.
     """
     last: dict[tuple[str, TaskState, bool], tuple[Span, float, float, float, bool]] = {}
     done: list[tuple[Span, float, float, float, bool]] = []

@@ -34,7 +34,7 @@ from hil.view.taps import RegisterTaps
 
 #: CHOICE: the interval of automatic checkpoints.
 CHECKPOINT_CYCLES: Final = 10 * SYSCLK_HZ
-#: How long before a finding each statement is looked at: longer than a slice.
+#: The time before a finding from which on each statement is checked.  It is longer than a slice.
 BEFORE_CYCLES: Final = SYSCLK_HZ // 100
 
 
@@ -70,7 +70,7 @@ class MachineThread:
         #: Set when it has started up, or failed to: then `error` says why.
         self.ready = threading.Event()
         self.error: BaseException | None = None
-        #: (): in this thread, it has ended with an `error`.
+        #: (): the thread has ended with an `error`; emitted in this thread.
         self.failed: Signal[[]] = Signal()
         #: Why the firmware, or the port, does not go on; empty while it does.
         self.stopped = ""
@@ -87,17 +87,17 @@ class MachineThread:
         self._running = True
         self._wanted: Step | None = None
         self._goal: int | None = None
-        #: The finding at which it shall stand.
+        #: The finding at which the run shall stop.
         self._sought: Finding | None = None
         self._arrivals: list[Future[None]] = []
         self._ended = False
-        #: Set before anybody waits for its end.
+        #: Set before another thread waits for its end.
         self._unwanted = threading.Event()
         #: Nothing may be done to the machine: the past is executed again, or a step holds it inside a slice.
         self._holding = False
-        #: What runs, holds or is executed again ends at its next look.
+        #: Whether a run, a hold or a repeated execution ends at its next check.
         self._release = False
-        #: From and to, while time is run ahead.
+        #: The first and the last cycle, while the run goes to a later time.
         self._way: tuple[int, int] | None = None
         self._thread = threading.Thread(target=self._main, name="machine", daemon=True)
 
@@ -108,7 +108,7 @@ class MachineThread:
     def join(self) -> None:
         """Wait until it has ended; `end` is the command that ends it.
 
-        A machine that is still being linked has nothing to show and nothing to close: it is left, and ends by itself.
+        A machine that is still being linked has nothing to close: it ends by itself.
         """
         if self._thread.is_alive():
             self._commands.put(self.end)
@@ -255,7 +255,7 @@ class MachineThread:
         self._reach(cycles, f"executing again up to {cycles / SYSCLK_HZ:.3f} s")
 
     def _seek(self) -> None:
-        """Make the last stretch to a finding, if one is sought and nothing else is by now."""
+        """Go the last part of the way to a finding, if one is sought and there is no other command by now."""
         sought, self._sought = self._sought, None
         if sought is None or self._goal is not None:
             return

@@ -1,4 +1,4 @@
-"""What a value of a field means, read out of the field's own description: `EPWMSYNCPER at: 0 TBPRD, 1 zero`.
+"""Reads the meaning of a field's value from the description of the field: `EPWMSYNCPER at: 0 TBPRD, 1 zero`.
 
 Descriptions name values as `0 NAME, 1 NAME` or `1 = NAME`, at their beginning or after a colon or semicolon.
 """
@@ -44,5 +44,5 @@ def named(description: str) -> tuple[NamedValues, ...]:
 
 
 def meaning(description: str, value: int) -> str:
-    """What a value means; "" if the description does not say it."""
+    """The meaning of a value; "" if the description does not give it."""
     return next((each.text for each in named(description) if each.low <= value <= each.high), "")

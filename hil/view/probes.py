@@ -1,6 +1,6 @@
-"""What the scope records: signals against time, and what the kernel did.
+"""Records for the scope: signals against time, and the events of the kernel.
 
-A signal is named as the list offers it:
+The names of signals are those of the list:
 
 | name | what | recorded |
 |---|---|---|
@@ -12,14 +12,14 @@ A signal is named as the list offers it:
 | `byte GPIO89` | a character on a serial line | each, from its start bit to its stop bit |
 | `SIMO SPI-A`, `SOMI SPI-A` | a word on the SPI, to and from the device | each, from its first to its last bit |
 | `edges GPIO20/21` | an encoder's pair A/B: its edges so far | as the shaft is moved |
-| `gate US_server` | 1 while somebody owns it | at every enter and leave |
-| `face infrared.distance_m` | what a part of the board sees, if it tells | every `period_cycles` |
-| `world v_m_s` | what the world around the board says of it, if there is one | every `period_cycles` |
+| `gate US_server` | 1 while a task owns it | at every enter and leave |
+| `face infrared.distance_m` | the value of a face of a part, if the part shows it | every `period_cycles` |
+| `world v_m_s` | a quantity of the world around the board, if there is one | every `period_cycles` |
 
-Recording looks and never touches: no register is read, no world integrated, so the run is the same with and without.
-Buffers are bounded; the oldest values give way.
+Recording does not change the run: it reads no register and does not integrate the world.  The buffers are bounded; the
+oldest values are dropped.
 
-Not recorded: voltages between the ADC's samples (to ask a device for one is to touch it), locals of functions.
+Not recorded: voltages between the samples of the ADC (because reading one may change the device), locals of functions.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ from hil.running import RunningBoard
 from hil.view.checkpoints import RewindableRun
 from hil.view.words import DecodedWord, SpiTransfer, character
 
-#: CHOICE: 5 ms between two samples resolves tasks of 20 ms; can be changed.
+#: CHOICE: 5 ms between two samples show tasks with a period of 20 ms.  The user can change it.
 PERIOD_CYCLES: Final = 5 * CYCLES_PER_MS
-#: Values kept of each signal: 100 s at 5 ms.  Events of the kernel kept: some 14 s of a mission.
+#: The values that are kept of each signal (100 s at 5 ms), and the events of the kernel (about 14 s of a mission).
 MAX_VALUES: Final = 20_000
 MAX_EVENTS: Final = 100_000
 
@@ -48,16 +48,16 @@ Sample = tuple[int, float]
 
 
 class Probes:
-    """The recorded signals of the present run.  Only for the machine's thread."""
+    """The recorded signals of the present run.  Only the machine's thread may use it."""
 
     def __init__(self) -> None:
         self.period_cycles = PERIOD_CYCLES
         self.events: deque[tuple[int, str, str]] = deque(maxlen=MAX_EVENTS)
         self._values: dict[str, deque[Sample]] = {}
-        #: Of what is words: also when each began, and what it means.
+        #: The words of signals that are words, with their times and meanings.
         self._words: dict[str, deque[DecodedWord]] = {}
         self._looks: dict[str, VariableReader] = {}
-        #: What ends to hear a wire.
+        #: The functions that stop listening to a wire.
         self._stops: dict[str, Callable[[], None]] = {}
         self._run: RewindableRun | None = None
         self._sampling = False
@@ -114,7 +114,7 @@ class Probes:
         self.period_cycles = cycles
 
     def values(self, name: str, since: int) -> list[Sample]:
-        """Samples of a signal from a time on, and the one before, which still holds there."""
+        """The samples of a signal from a time on, and the one before, whose value is still valid at that time."""
         found: list[Sample] = []
         for sample in reversed(self._values.get(name, ())):
             found.append(sample)
@@ -133,7 +133,7 @@ class Probes:
         return found[::-1]
 
     def events_between(self, begin: int, end: int) -> list[tuple[int, str, str]]:
-        """Events of the kernel up to `end`, from the last switch before `begin` on, as far as they are kept."""
+        """The kept events of the kernel up to `end`, from the last task switch before `begin` on."""
         found: list[tuple[int, str, str]] = []
         for event in reversed(self.events):
             if event[0] > end:
@@ -151,7 +151,7 @@ class Probes:
             return
         bench, board = run.bench, run.bench.board
         if name.startswith("gate "):
-            # A machine that is about to be powered up has no gates yet.
+            # Before power-up, a machine has no gates.
             if bench.clock.now and name.removeprefix("gate ") not in gates(bench).values():
                 raise ValueError(f"no gate {name.removeprefix('gate ')!r}")
             self._put(name, 0.0)
@@ -257,7 +257,7 @@ class Probes:
 
 
 def gates(bench: RunningBoard) -> dict[str, str]:
-    """Name of a gate in the trace -> the firmware object that holds its handle."""
+    """The name of a gate in the trace -> the object of the firmware with its handle."""
     found: dict[str, str] = {}
     for path, obj in bench.firmware.linked.objects.items():
         value = obj.data[0] if len(obj.data) == 1 else None
@@ -267,12 +267,12 @@ def gates(bench: RunningBoard) -> dict[str, str]:
 
 
 def is_words(name: str) -> bool:
-    """Whether a signal is words, which last, rather than values, which hold."""
+    """Whether a signal consists of words, which have a begin and an end, and not of values."""
     return name.startswith(("byte ", "SIMO ", "SOMI "))
 
 
 def pin_number(name: str) -> int:
-    """The number of `GPIOn`, -1 of another name."""
+    """The number of `GPIOn`; -1 for another name."""
     digits = name.removeprefix("GPIO")
     return int(digits) if digits != name and digits.isdecimal() else -1
 
@@ -309,13 +309,13 @@ def look_at(run: RewindableRun, name: str) -> VariableReader:
 
 
 def _spi_lines(board: Board) -> dict[str, tuple[str, int]]:
-    """Name of each line of the SPI buses -> the letter of its bus, and which of a word's two values is on it."""
+    """The name of each line of the SPI buses -> the letter of its bus, and which of a word's two values it has."""
     lines = ("SIMO", "SOMI")
     return {f"{line} {bus.name}": (x, i) for x, bus in board.spi_bus.items() for i, line in enumerate(lines)}
 
 
 def faces_of(board: Board) -> dict[str, tuple[Part, str]]:
-    """Name of each signal that is a face -> its part, and the face; those that a part tells."""
+    """The name of each signal that is a face -> its part, and the face.  Only faces whose values a part shows."""
     return {
         f"face {part.name}.{face.name}": (part, face.name)
         for part in board.parts.values()
@@ -325,7 +325,7 @@ def faces_of(board: Board) -> dict[str, tuple[Part, str]]:
 
 
 def soldered(board: Board) -> dict[str, str]:
-    """Name of a signal -> what is soldered there: `GPIO66` -> `thermometer CS`."""
+    """The name of a signal -> the part that is connected there: `GPIO66` -> `thermometer CS`."""
     inputs = {f"ADCIN{adc}{n}": wire.name for adc, wires in board.analog.items() for n, wire in enumerate(wires)}
     found: dict[str, list[str]] = {}
     for part in board.parts.values():
@@ -335,13 +335,13 @@ def soldered(board: Board) -> dict[str, str]:
 
 
 def labels(run: RewindableRun) -> dict[str, str]:
-    """Every name that can be recorded -> how a list offers it: with what the board has there."""
+    """All names that can be recorded -> their labels in the list, with the parts of the board."""
     there = soldered(run.bench.board)
     return {name: f"{name} ({there[name]})" if name in there else name for name in signals(run)}
 
 
 def signals(run: RewindableRun) -> list[str]:
-    """Every name that can be recorded: first what the board has, then what the chip has."""
+    """All names that can be recorded: first those of the board, then those of the chip."""
     bench = run.bench
     names: list[str] = list(faces_of(bench.board))
     for path, obj in bench.firmware.linked.objects.items():

@@ -1,9 +1,9 @@
 """The page's server: a socket, a guard before it, the machine in its own thread, a clean end.
 
     run_view(setup, ...)               # hil run --view
-    serve_console("/dev/ttyUSB0")      # hil console --view: the console's page, for a robot that is only a serial line
+    serve_console("/dev/ttyUSB0")      # hil console --view: the console's page, for a robot behind a serial line
 
-NiceGUI keeps its pages in the process, so a process serves one of them.
+NiceGUI stores its pages in the process, so a process serves only one of them.
 """
 
 from __future__ import annotations
@@ -26,23 +26,23 @@ from hil.world.maps import load_map
 
 HOST: Final = "127.0.0.1"
 PORT: Final = 8080
-#: How long open pages may take to say farewell, in seconds.
+#: The time that open pages have to close at the end, in seconds.
 GRACE_S: Final = 1
-#: A browser may be away this long before its page begins anew, or load it.
+#: A browser may be disconnected for this time, in seconds, before its page is built again; it may also load this long.
 RECONNECT_S: Final = 20.0
-#: A browser that vanished without a farewell is noticed after both at most: then nothing is driven by hand any more.
+#: A browser that has vanished is noticed after the sum of both times at most.  Then driving by hand ends.
 PING_S: Final = 2.0
 PONG_S: Final = 3.0
-#: How often a serial port is looked at.
+#: The time between two reads of a serial port.
 TURN_S: Final = 0.05
 
 PrintLine = Callable[[str], None]
-#: Told what ends the server; returns nothing.
+#: A function that gets the function that ends the server.
 OnStop = Callable[[Callable[[], None]], None]
 
 
 def listen(host: str, port: int) -> socket.socket:
-    """The socket of the page; port 0 takes a free one.  Raises ValueError where nothing can be listened to."""
+    """Open the socket of the page; port 0 selects a free port.  Raises ValueError if that is not possible."""
     try:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
     except OSError as error:
@@ -71,11 +71,10 @@ def run_view(
     read: Mapping[str, Any] | None = None,
     policy: Policy | None = None,
 ) -> Engine:
-    """`hil run --view`: a board and its page, until somebody ends it; what it came to can still be read afterwards.
+    """Run a board and its page until the user ends it (`hil run --view`).  The result can be read afterwards.
 
-    `read` is what was read of files for the setup before (`RunningBoard.read`); `policy` weighs the findings
-    (None: by their rules).  Raises ValueError before it starts, and what ends the machine's thread: nobody looks at a
-    machine that is not there.
+    `read` is what was read from files for the setup (`RunningBoard.read`).  `policy` weighs the findings (None: by
+    their rules).  Raises ValueError before the start, and the exception that ends the machine's thread.
     """
     require("nicegui")
     engine = Engine(setup, pace=pace, orders=orders, open_port=open_port, read=read, policy=policy)
@@ -100,7 +99,7 @@ def run_view(
 def serve_view(
     engine: Engine, door: socket.socket, host: str, *, print_line: PrintLine = print, on_stop: OnStop | None = None
 ) -> None:
-    """Start an emulated board and serve its page, until somebody ends it."""
+    """Start an emulated board and serve its page until the user ends it."""
     from hil.view.page import machine_page
 
     _serve(lambda: machine_page(engine), door, host, print_line, on_stop, begin=engine.start)
@@ -111,7 +110,7 @@ def serve_console(
 ) -> SerialPortLine:
     """Serve the console's page for the robot behind a serial port (device name or pyserial URL), then stop the robot.
 
-    The line that was, for what passed.  Raises PortError or ValueError, one line, if port or address cannot be opened.
+    Returns the line, with its log.  Raises PortError or ValueError, one line, if port or address cannot be opened.
     """
     require("nicegui")
     from nicegui import app as nicegui_app

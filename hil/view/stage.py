@@ -1,8 +1,8 @@
 """The surroundings of a board in the view: a world with a robot, or nothing.
 
-A board names the package of its stage (`Board.view`).  It has two modules.  `stage` has a class `Stage` (a
-`StageProtocol`), made of each machine and living in its thread.  `panels` has a class `Panels` (a `PanelsProtocol`),
-made of the engine for each page.  Without a stage there is only the board, and the page shows its parts instead.
+A board names the package of its stage (`Board.view`).  The package has two modules.  `stage` has a class `Stage` (a
+`StageProtocol`), which is created for each machine, in its thread.  `panels` has a class `Panels` (a `PanelsProtocol`),
+which is created for each page.  Without a stage, the page shows the parts of the board instead.
 """
 
 from __future__ import annotations
@@ -17,62 +17,62 @@ if TYPE_CHECKING:
     from hil.view.engine import Engine
     from hil.view.snapshot import Snapshot
 
-#: Something that is done to the world from outside, with plain values.
+#: An action on the world from outside, with plain values as arguments.
 Hand = Callable[..., None]
 
 
 class StageProtocol(Protocol):
-    """The world of one machine.  Everything is looked at without touching it."""
+    """The world of one machine.  Looking at it does not change the run."""
 
-    #: What can be done to it, by name.
+    #: The actions on the world, by name.
     hands: Mapping[str, Hand]
-    #: What the scope can record of it, sampled: `world v_m_s`.
+    #: The quantities that the scope can sample: `world v_m_s`.
     signals: Mapping[str, Callable[[], float]]
-    #: Units of these, and of variables of the firmware whose names tell none.
+    #: The units of these quantities, and of variables of the firmware whose names have no unit.
     units: Mapping[str, str]
-    #: What happened in it that is worth a mark: cycle and words.
+    #: The events that get a mark: cycle and text.
     happened: Sequence[tuple[int, str]]
 
     def look(self) -> Any:
-        """What the page sees of it at one moment, some 20 a second: never changed afterwards."""
+        """A snapshot for the page, about 20 a second.  It never changes afterwards."""
 
     def trails(self) -> Any:
         """The long paths, which are updated only four times a second."""
 
     def tell(self) -> Mapping[str, Any]:
-        """What a trace records of it, by name (`hil.instruments.scene`), as plain data."""
+        """The values for a trace, by name (`hil.instruments.scene`), as plain data."""
 
 
 class PanelsProtocol(Protocol):
     """The panels that a stage adds to the page of every board."""
 
-    #: Keys and what they do, for the list.
+    #: The keys and their meanings, for the list.
     keys: Sequence[tuple[str, str]]
     actions: Mapping[str, Callable[[], Any]]
-    #: Tabs that stand before all others: title -> what makes the content.
+    #: The tabs before all others: title -> the function that builds the content.
     tabs: Mapping[str, Callable[[], None]]
 
     def top(self) -> None:
         """The controls at the top of the page, such as STOP."""
 
     def picture(self) -> None:
-        """The picture, in the place of the parts."""
+        """Add the picture, in the place of the parts."""
 
     def status(self, now: Snapshot) -> Sequence[tuple[str, str]]:
-        """What it is doing, as tiles of the head line: titles, which stay the same, and values."""
+        """The state as tiles of the head line: titles, which stay the same, and values."""
 
     def update(self, now: Snapshot) -> None:
-        """20 times a second."""
+        """Update the panel, 20 times a second."""
 
     def key(self, name: str, down: bool) -> bool:
-        """A key, before all others see it; whether it was taken."""
+        """Handle a key before all others.  Returns whether it was used."""
 
     def leave(self) -> None:
-        """The page is closed."""
+        """Handle that the page was closed."""
 
 
 def stage_of(machine: RunningBoard) -> StageProtocol | None:
-    """The world that a machine stands in; None: there is only the board."""
+    """The world of a machine; None: there is only the board."""
     package = machine.board.view
     if package is None:
         return None
@@ -81,7 +81,7 @@ def stage_of(machine: RunningBoard) -> StageProtocol | None:
 
 
 def panels_of(package: str | None, engine: Engine) -> PanelsProtocol | None:
-    """What a page shows of the stage of a board."""
+    """The panels of a board's stage; None: the board has no stage."""
     if package is None:
         return None
     panels: PanelsProtocol = import_module(f"{package}.panels").Panels(engine)

@@ -1,4 +1,4 @@
-"""One step: on to the next statement, register access, task switch or frame.
+"""One step: the run goes on to the next statement, register access, task switch, frame or finding.
 
 | step | where it stops | exact |
 |---|---|---|
@@ -8,11 +8,11 @@
 | frame | after the last byte of a frame has left | at the CPU's next charge |
 | finding | where something is found for the first time, in the middle of its statement | yes |
 
-Statements, accesses and findings *hold*: the firmware stands in the middle of a slice, between two statements of one
-charge, where nothing can be done to it from outside without the run depending on where it stood.  What is asked for
-meanwhile is done at the slice's end.  The others end the slice: the robot is at rest.
+Statements, accesses and findings *hold* the firmware in the middle of a slice, between two statements.  An input at
+this point would make the run depend on the step, so inputs wait until the end of the slice.  The other steps end the
+slice; then the robot is at rest.
 
-The image is linked with `CompileOptions.steps`: before each statement the firmware tells its place and its locals.
+The image is linked with `CompileOptions.steps`: before each statement, the firmware reports its place and its locals.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ MAX_TEXT: Final = 60
 
 
 class Step(Enum):
-    """What to stop at."""
+    """The kind of a step: the event at which it stops."""
 
     STATEMENT = "statement"
     ACCESS = "register access"
@@ -48,22 +48,22 @@ class Step(Enum):
 
 @dataclass(frozen=True, slots=True)
 class StepEnd:
-    """Where a step ended."""
+    """The end of a step."""
 
     text: str
     place: Place | None
     task: str
     cycles: int
-    #: Who called the function, the nearest first.
+    #: The callers of the function, the nearest first.
     callers: tuple[Place, ...] = ()
-    #: Locals of the C function, as it declares them.
+    #: The locals of the C function: name and value.
     locals: tuple[tuple[str, str], ...] = ()
-    #: Registers that were written last, the latest first: path, word, how long before in us.
+    #: The registers that were written last, the latest first: path, word, and the time since in us.
     registers: tuple[tuple[str, int, float], ...] = ()
 
 
 class Stepper:
-    """Steps of one machine.  `hold(where)` waits until the person goes on; `rest(where)` has the slice end."""
+    """Makes the steps of one machine.  `hold(where)` waits until the user goes on; `rest(where)` ends the slice."""
 
     def __init__(
         self, bench: RunningBoard, taps: RegisterTaps, hold: Callable[[StepEnd], None], rest: Callable[[StepEnd], None]
@@ -74,7 +74,7 @@ class Stepper:
         self._rest = rest
         self._position = bench.findings.position
         self._kind: Step | None = None
-        #: The call whose statement began last, and its locals then.
+        #: The call whose statement began last, and its locals at that time.
         self._begun: tuple[Calls | None, Mapping[str, Any]] = (None, {})
         self._listening = False
         #: The only finding to stop at; None: any.
@@ -105,7 +105,7 @@ class Stepper:
             self._bench.board.trace.listen(self._event)
 
     def disarm(self) -> None:
-        """Stop at nothing."""
+        """Stop at no event."""
         self._kind = None
         self._position.hold = None
         self._begun = (None, {})
@@ -116,7 +116,7 @@ class Stepper:
             self._taps.set()
 
     def frame_sent(self) -> None:
-        """A frame has left."""
+        """End the step if it waits for a frame: a frame was sent."""
         if self._kind is Step.FRAME:
             self._ended("a frame was sent")
 
@@ -152,7 +152,7 @@ class Stepper:
         self._rest(StepEnd(text, None, findings.context(), self._bench.clock.now))
 
     def _where(self, text: str, place: Place | None = None, callers: Sequence[Place] = ()) -> StepEnd:
-        """Where the firmware stands; `place` and `callers` override what its position says."""
+        """The present place of the firmware; `place` and `callers` replace those of its position."""
         findings, position = self._bench.findings, self._position
         if place is None:
             place, *callers = findings.path(position.at, position.calls)

@@ -1,7 +1,8 @@
 """Colours and sizes of the page, for light and dark.
 
-The page does without Tailwind: in the browser it looks at every change of the page and writes its style sheet anew,
-at 20 Hz most of a core.  Of its names those that are used stand here, with its meaning.
+The page does not use Tailwind.  In the browser, Tailwind checks each change of the page and writes its style sheet
+again; with 20 updates a second, this takes most of a core.  Its class names that are used are defined here, with the
+same meaning.
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ UTILITIES: Final = """
 .w-40 { width:160px; } .w-44 { width:176px; } .w-52 { width:208px; } .w-56 { width:224px; } .w-64 { width:256px; }
 """
 
-#: The light that was chosen, or the system's, before anything is painted; and the key of STOP, which is also the key
-#: that presses a button which happens to have the focus: here it only stops (Enter presses).
+#: Sets the chosen theme, or that of the system, before the first paint.  It also prevents that Space, the key of STOP,
+#: presses the button that has the focus: here it only stops (Enter presses).
 HEAD: Final = """<script>
   function hilShowLight() {
     let chosen = null;
@@ -59,7 +60,7 @@ HEAD: Final = """<script>
   }, true);
 </script>"""
 
-#: Colours by what they mean, on white and on dark.
+#: The colours by their meanings, for the light and the dark theme.
 LIGHT: Final = """color-scheme:light;
   --ink:#17202b; --soft:#52606d; --paper:#ffffff; --panel:#f4f6f8; --line:#cfd6dd; --wall:#2f3944;
   --true:#08736e; --odo:#1d57b8; --cloud:#b93a0a; --beam:#b98500; --real:#6b21a8; --post:#7d8894; --loaded:#6d7a18;
@@ -72,10 +73,10 @@ DARK: Final = """color-scheme:dark;
   --run:#4bd28f; --wait:#f0b44a; --bad:#ff8a80; --mark:#4a3f12; --focus:#7fb0ff;
   --line-0:#7fb0ff; --line-1:#ff9a70; --line-2:#3ecfc4; --line-3:#c9a4f7; --line-4:#f0c04a; --line-5:#ff8a80;
   --line-6:#c7d66a; --line-7:#a3b0bd;"""
-#: Lines of a chart: `var(--line-0)` and so on, to be told apart in light and dark.
+#: The number of colours for the lines of a chart: `var(--line-0)` and so on.
 LINES: Final = 8
 
-#: Words, tiles and source as every page shows them.
+#: The style of words, tiles and source on every page.
 WORDS: Final = """
 .heard { position:absolute; width:1px; height:1px; overflow:hidden; clip-path:inset(50%); margin:0; }
 .tile { border:1px solid var(--line); border-radius:6px; background:var(--panel); padding:2px 8px; min-width:60px;
@@ -95,7 +96,7 @@ WORDS: Final = """
 .code { background:var(--paper); border:1px solid var(--line); border-radius:4px; padding:4px; overflow-x:auto; }
 .code div { white-space:pre; } .code .here { background:var(--mark); font-weight:600; }
 """
-#: What `arena_drawing.py` draws, in a window that is zoomed and shifted.
+#: The style of the arena, which `arena_drawing.py` draws.
 ARENA: Final = """
 .arena { background:var(--paper); border:1px solid var(--line); border-radius:6px; overflow:hidden; position:relative;
   flex:1 1 0; min-height:260px; }

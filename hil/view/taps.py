@@ -1,7 +1,7 @@
-"""Who touches a register: the taps (`emulator.registers.taps`) behind "last writer" and "step to the next register
-access".  While they are off they cost nothing.
+"""Accesses to registers, for "last writer" and "step to the next register access" (`emulator.registers.taps`).
 
-Not seen: what a peripheral itself changes in its registers (flags, counters, results); that is no write of the CPU.
+The taps cost nothing while they are off.  They do not see what a peripheral itself changes in its registers (flags,
+counters, results), because that is no write of the CPU.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from emulator.c28x.sites import Place
 from emulator.registers.cell import Cell
 from hil.running import RunningBoard
 
-#: `step(register, "read" or "write", word)`: the access is about to happen; of a read the word is not known, 0.
+#: `step(register, "read" or "write", word)` is called before the access.  For a read, the word is 0.
 Accessed = Callable[[Cell, str, int], None]
 
 
@@ -22,28 +22,28 @@ class LastWriter:
     """The last writer of a register."""
 
     cycles: int
-    #: None where no firmware stood behind the write: the kernel's or the start-up's own.
+    #: The statement of the firmware.  None: the kernel or the start-up code wrote the register.
     place: Place | None
     task: str
     word: int
 
 
 class RegisterTaps:
-    """All registers of a chip.  `writers` is kept while `recording`; `step` is told every access while it is set."""
+    """The taps on all registers of a chip.  `writers` is updated while `recording`; `step` gets each access if set."""
 
     def __init__(self, bench: RunningBoard) -> None:
         self._cpu = bench.board.cpu
         self._clock = bench.clock
         self._findings = bench.findings
         self._registers = [register for block in bench.board.blocks.values() for register in block]
-        #: As it is recorded: time, number of the statement, task, word.
+        #: The last write of each register: time, number of the statement, task, word.
         self.writers: dict[Cell, tuple[int, int, str, int]] = {}
         self.recording = False
         self.step: Accessed | None = None
         self._on = self._reads = False
 
     def set(self, *, recording: bool | None = None, step: Accessed | None = None) -> None:
-        """What is wanted from now on; `recording` None leaves it as it is."""
+        """Set what is recorded from now on.  With `recording` None, that setting stays."""
         if recording is not None:
             self.recording = recording
         self.step = step

@@ -1,4 +1,4 @@
-"""Time: run, pause, step, pace, where it stands, and back to an earlier moment."""
+"""The time: run, pause, step, pace, the place of the last step, and going back to an earlier moment."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ NOWHERE: Final = "Not inside a statement. Step, or go to a finding: its source, 
 
 
 class TimeBar:
-    """Buttons of the time, at the top of the page."""
+    """The buttons for the time, at the top of the page."""
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
@@ -57,14 +57,14 @@ class TimeBar:
         (self._engine.pause if self._engine.snapshot.mode is Mode.RUNNING else self._engine.resume)()
 
     def step(self, kind: Step) -> None:
-        """One step."""
+        """Make a step."""
         self._engine.step(kind)
 
     def _pace(self, key: str) -> None:
         self._engine.set_pace(None if key == "max" else float(key))
 
     def update(self, now: Snapshot) -> None:
-        """20 times a second."""
+        """Update the panel, 20 times a second."""
         label = "Pause" if now.mode is Mode.RUNNING else "Run"
         if self._run.text != label:
             self._run.text = label
@@ -78,7 +78,7 @@ class TimeBar:
 
 
 class TimePanel:
-    """Where it stands, and the moments to go back to."""
+    """The place of the last step, and the moments to which one can go back."""
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
@@ -114,7 +114,7 @@ class TimePanel:
         self._engine.note(str(self._label.value or "remembered"))
 
     def update(self, now: Snapshot) -> None:
-        """While the panel is in sight."""
+        """Update the panel while it is visible."""
         text = f"{now.ahead} inputs of the earlier run lie ahead and will be done again" if now.ahead else ""
         if self._ahead.text != text:
             self._ahead.text = text
@@ -130,9 +130,9 @@ class TimePanel:
 
 
 class WherePanel:
-    """Where the last step stopped: statement, callers, locals, registers that were written last.
+    """The place of the last step: statement, callers, locals, and the registers that were written last.
 
-    `text_before` stands there before there is such a place.
+    `text_before` is shown while there is no such place.
     """
 
     def __init__(self, text_before: str = "") -> None:
@@ -143,7 +143,7 @@ class WherePanel:
             ui.label(text_before).classes("soft")
 
     def update(self, now: Snapshot) -> None:
-        """While it is in sight."""
+        """Update the panel while it is visible."""
         if now.where != self._shown:
             self._shown = now.where
             self._box.clear()
@@ -173,6 +173,6 @@ def _values(title: str, lines: list[str]) -> None:
 
 
 def _paces(pace: float | None) -> tuple[dict[str, str], str]:
-    """The paces on offer, and the present one: that of the command line may be any number."""
+    """The paces of the list, and the present pace, which may be any number of the command line."""
     key = "max" if pace is None else f"{pace:g}"
     return ({key: f"{key} x"} if key not in PACES else {}) | PACES, key

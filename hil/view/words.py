@@ -1,7 +1,7 @@
 """Words on serial lines and buses, as a logic analyser decodes them.
 
-The bytes of an SPI transfer are told by register where its device is a sensor whose first byte is RW, MS and six bits
-of address (`emulator.devices.l3g4200d_spi`), and which names its registers.
+The bytes of an SPI transfer get the names of registers if the device is a sensor that names its registers, and whose
+first byte is RW, MS and six bits of address (`emulator.devices.l3g4200d_spi`).
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ READ: Final = 0x80
 STEP: Final = 0x40
 ADDRESS: Final = 0x3F
 _CR: Final = 0x0D
-#: A line ends where nothing follows for this many characters.
+#: A line ends if nothing follows for the time of this number of characters.
 PAUSE: Final = 3
 
 
 @dataclass(frozen=True, slots=True)
 class DecodedWord:
-    """One word: its cycles, its value, and what it means, if that is known."""
+    """A word: its cycles, its value, and its meaning, if that is known."""
 
     begin: int
     end: int
@@ -48,11 +48,11 @@ class SpiTransfer:
         self._address = 0
 
     def end(self) -> None:
-        """A chip select has risen."""
+        """End the transfer: a chip select has risen."""
         self._command = None
 
     def meanings(self, simo: int, bits: int) -> tuple[str, str]:
-        """What the next word, of `bits`, means on SIMO and on SOMI; empty where it means nothing, or nobody knows."""
+        """The meanings of the next word, of `bits`, on SIMO and on SOMI; empty if there is none, or it is not known."""
         device = next((device for select, device in self._devices if select.level == 0), None)
         if device is None or bits != 8:
             return "", ""
@@ -67,13 +67,13 @@ class SpiTransfer:
 
 
 def character(value: int) -> str:
-    """A byte of a serial line: itself, if it can be read."""
+    """The text of a byte of a serial line: the character itself, if it is printable."""
     named = {0x0D: "CR", 0x0A: "LF", 0x09: "TAB", 0x20: "SP"}
     return named.get(value) or (chr(value) if 0x20 < value < 0x7F else f"{value:02X}")
 
 
 def text_lines(words: Iterable[DecodedWord]) -> list[DecodedWord]:
-    """Bytes of a serial line as lines of text: up to a CR, or to a pause.  `value` is the number of bytes."""
+    """The bytes of a serial line as lines of text, up to a CR or a pause.  `value` is the number of bytes."""
     done: list[DecodedWord] = []
     held: list[DecodedWord] = []
 

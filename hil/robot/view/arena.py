@@ -1,7 +1,7 @@
-"""The arena: what is there, what the robot believes, what the sonars say; with hands on robot and obstacles.
+"""The arena: the world, the robot and its odometry, the sonars.  The user can move the robot and obstacles.
 
-One picture of layers, each sent only when it changes: grid and walls once, the robot 20 times a second, ways four times
-a second, and of a long way only its end.
+The picture has layers, and a layer is sent only when it changes: grid and walls once, the robot 20 times a second,
+paths four times a second.  Of a long path, only the end is sent.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ from hil.view.line import LineLog
 from hil.view.snapshot import Snapshot
 from hil.world.robot_params import Pose
 
-#: Points of a stroke that are sent again when it grows.
+#: The most points of a path that are sent again when it grows.
 OPEN_POINTS: Final = 200
 #: CHOICE: the most points of a cloud that are still readable as a picture.
 MAX_POINTS: Final = 6000
-#: Slices of the page's 20 Hz between two looks at ways and clouds.
+#: Page updates (20 a second) between two updates of paths and clouds.
 SLOW: Final = 5
 TURN_RAD: Final = pi / 12.0
 HANDS: Final = "drag the robot or an obstacle; add or remove an obstacle"
 
 
 class GrowingPath:
-    """A growing row of points in two layers: what is finished is sent again only when some more is."""
+    """A growing path in two layers.  The layer of the finished part is sent only when that part grows."""
 
     def __init__(self, window: Window, shape: Callable[[Viewport, Sequence[Point]], str]) -> None:
         self._shape = shape
@@ -45,7 +45,7 @@ class GrowingPath:
         self._shown: tuple[int, Point | None] = (0, None)
 
     def show(self, view: Viewport, points: Sequence[Point]) -> None:
-        """Draw what is new."""
+        """Draw the new points."""
         now = (len(points), points[-1] if points else None)
         if now == self._shown:
             return
@@ -62,12 +62,12 @@ class GrowingPath:
 
 
 class PointCloud:
-    """Points that frames make, in the frame the robot starts in, by whole radians as the thesis console has them."""
+    """The points that the frames show, in the robot's own frame.  Headings are whole radians, as in the console."""
 
     def __init__(self, log: LineLog) -> None:
         self._log = log
         self._epoch = log.epoch
-        self._next = log.frame_count - MAX_POINTS // 3  # of a long run, what would be drawn
+        self._next = log.frame_count - MAX_POINTS // 3  # of a long run, only the points that are drawn
         self.points: list[Point] = []
         self.way: list[Point] = []
 
@@ -83,19 +83,19 @@ class PointCloud:
             at = (frame.x_mm / 1e3, frame.y_mm / 1e3)
             if not self.way or self.way[-1] != at:
                 self.way.append(at)
-        # Seldom and much at once: what is left must be drawn anew.
+        # Drop many points at once, because the others must then be drawn again.
         for points in (self.points, self.way):
             if len(points) > MAX_POINTS:
                 del points[: -MAX_POINTS // 2]
 
 
 def believed_path(frames: Sequence[OdometryFrame]) -> list[Point]:
-    """Where the frames say the robot was."""
+    """The positions of the robot in the frames."""
     return [(frame.x_mm / 1e3, frame.y_mm / 1e3) for frame in frames]
 
 
 def loaded(view: Viewport, frames: Sequence[OdometryFrame], pose: Pose) -> str:
-    """A trajectory from a file, which begins at `pose`; of a long one each so-manyth frame."""
+    """Draw a trajectory from a file, which begins at `pose`.  Of a long one, frames are left out evenly."""
     some = frames[:: 1 + 3 * len(frames) // MAX_POINTS]
     points = [point for frame in some for point in sonar_points(frame)]
     return draw.dots(view, place(points, *pose), "cloud-loaded") + draw.path(
@@ -142,7 +142,7 @@ class ArenaPanel:
         legend()
 
     def _hands(self) -> None:
-        """What is done to robot and obstacles: buttons on the picture."""
+        """Add the buttons that move the robot and change obstacles."""
         with ui.row().classes("tools hands no-wrap items-center gap-1"):
             self._choice = ui.toggle(
                 ["drag", "add", "remove"], value="drag", on_change=lambda e: self._choose(str(e.value))
@@ -162,12 +162,12 @@ class ArenaPanel:
         self._diameter.visible = tool == "add"
 
     def show_loaded(self, frames: list[OdometryFrame]) -> None:
-        """A trajectory from a file, under the present one."""
+        """Show a trajectory from a file, below the present one."""
         self._old_dots.content = loaded(self._view, frames, self._trails.start)
 
     @property
     def _scene(self) -> Scene:
-        """What was seen last."""
+        """The latest scene."""
         scene: Scene = self._engine.snapshot.scene
         return scene
 
@@ -177,7 +177,7 @@ class ArenaPanel:
         return trails
 
     def update(self, now: Snapshot) -> None:
-        """20 times a second."""
+        """Update the panel, 20 times a second."""
         view = self._view
         scene: Scene = now.scene
         if now.changes != self._changes:
@@ -270,7 +270,7 @@ class ArenaPanel:
             self._hand.content = draw.obstacles(self._view, [Obstacle("", x, y, self._grip.radius_m)])
         else:
             status = self._scene.status
-            if turning:  # with Shift the robot looks where the mouse is
+            if turning:  # with Shift, the robot turns towards the mouse
                 self._heading = atan2(y - status.y_m, x - status.x_m)
                 self._target = (status.x_m, status.y_m)
             held = Pose(*self._target, self._heading)
@@ -303,7 +303,7 @@ class ArenaPanel:
 
 
 class FrameMap:
-    """The picture of a robot that is only a line: what its frames say."""
+    """The map of a robot of which only the serial line is known.  It is drawn from the frames."""
 
     def __init__(self, log: LineLog) -> None:
         self._cloud = PointCloud(log)
@@ -327,13 +327,13 @@ class FrameMap:
         self._looked(window.seen)
 
     def show_loaded(self, frames: list[OdometryFrame]) -> None:
-        """A trajectory from a file."""
+        """Show a trajectory from a file."""
         self._loaded = frames
         self._fit([*believed_path(frames), *(point for frame in frames for point in sonar_points(frame))])
         self._draw_loaded()
 
     def update(self) -> None:
-        """20 times a second."""
+        """Update the panel, 20 times a second."""
         self._turn = (self._turn + 1) % SLOW
         if self._turn:
             return
@@ -352,7 +352,7 @@ class FrameMap:
         _set(self._grid, draw.grid(self._view, seen))
 
     def _fit(self, points: Sequence[Point]) -> None:
-        """The map grows with what is on it."""
+        """Extend the map so that it contains all points."""
         left, top, width, height = self._held
         inner = [self._view.to_picture(*point) for point in points]
         if all(left <= x <= left + width and top <= y <= top + height for x, y in inner):
@@ -366,7 +366,7 @@ class FrameMap:
 
 
 def tool(text: str, meaning: str, do: Callable[[], None]) -> ui.button:
-    """A small button on the picture."""
+    """Add a small button on the picture."""
     button = ui.button(text, on_click=do).props(f'no-caps dense outline size=sm aria-label="{meaning}"')
     with button:
         ui.tooltip(meaning)
@@ -374,13 +374,13 @@ def tool(text: str, meaning: str, do: Callable[[], None]) -> ui.button:
 
 
 def legend() -> None:
-    """What the colours mean."""
+    """Add the legend of the colours."""
     with ui.row().classes("gap-x-4 gap-y-0 soft legend"):
         for colour, text in draw.LEGEND:
             ui.html(f'<span class="key" style="border-color:var({colour})"></span>{text}', sanitize=False)
 
 
 def _set(layer: Any, content: str) -> None:
-    """Send a layer only if it is another."""
+    """Send a layer only if its content has changed."""
     if layer.content != content:
         layer.content = content

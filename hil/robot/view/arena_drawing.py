@@ -1,4 +1,4 @@
-"""The arena as SVG: text out of numbers, nothing else.  Colours are classes of the page's style sheet (`style.py`)."""
+"""Draws the arena as SVG text.  Colours are classes of the page's style sheet (`style.py`)."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ Point = tuple[float, float]
 WIDTH: Final = 1000
 HEIGHT: Final = 640
 MARGIN: Final = 34
-#: Between two lines of the grid.
+#: The possible distances between two lines of the grid.
 STEPS_M: Final = (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100)
-#: Buttons on the picture take so much of its upper edge; the grid's numbers so much of the left and the lower one.
+#: The height of the buttons at the upper edge; the width and height of the numbers at the left and the lower edge.
 TOOLS_PX: Final = 40
 NUMBERS_PX: Final = (38, 18)
-#: An obstacle is taken within this of its edge; a robot that is drawn small within so many pixels.
+#: An obstacle can be dragged within this distance of its edge, and a small robot within this number of pixels.
 GRIP_M: Final = 0.05
 GRIP_PX: Final = 16
 ARROW_PX: Final = 16
 BODY: Final = RobotParams()
-#: What its colours mean: the colour, text.
+#: The legend: colours and their meanings.
 LEGEND: Final = (
     ("--true", "robot and path"), ("--odo", "odometry"), ("--beam", "measured by the sonars"),
     ("--real", "true ray and echo"), ("--cloud", "points in the frames"),
@@ -36,22 +36,22 @@ LEGEND: Final = (
 
 @dataclass(frozen=True, slots=True)
 class Beam:
-    """A sonar in the world's frame: where it stands and looks, what the firmware measured, what a ray hits."""
+    """A sonar in the world's frame: its pose, the distance that the firmware measured, and the true distances."""
 
     name: str
     x_m: float
     y_m: float
     heading_rad: float
     measured_m: float
-    #: First wall or post straight ahead; the sonar's range if there is none.
+    #: The distance to the first wall or post straight ahead; the sonar's range if there is none.
     ray_m: float
-    #: What the sound comes back from first, off the axis too; None: nothing answers.
+    #: The distance to the object that returns the first echo, which may be off the axis; None: there is no echo.
     echo_m: float | None
 
 
 @dataclass(frozen=True, slots=True)
 class Obstacle:
-    """A round thing."""
+    """A round obstacle."""
 
     name: str
     x_m: float
@@ -61,7 +61,7 @@ class Obstacle:
 
 @dataclass(frozen=True, slots=True)
 class VisibleArea:
-    """What is in sight, in units of the picture; `unit` is how many of them a pixel is."""
+    """The visible area, in units of the picture; `unit` is the size of a pixel in these units."""
 
     x: float = 0.0
     y: float = 0.0
@@ -70,13 +70,13 @@ class VisibleArea:
     unit: float = 1.0
 
     def holds(self, x: float, y: float) -> bool:
-        """Whether a point of the picture is in sight."""
+        """Whether a point of the picture is visible."""
         return self.x <= x <= self.x + self.width and self.y <= y <= self.y + self.height
 
 
 @dataclass(frozen=True, slots=True)
 class Viewport:
-    """Metres to picture: `scale` units a metre, the world's (left, top) at the picture's margin."""
+    """Converts metres to units of the picture: `scale` units per metre; (left, top) is the origin of the picture."""
 
     left_m: float
     top_m: float
@@ -84,7 +84,7 @@ class Viewport:
 
     @classmethod
     def around(cls, points: Iterable[Point], least_m: float = 2.0) -> Viewport:
-        """Everything in sight, in the middle."""
+        """The viewport that shows all points, in the middle."""
         xs, ys = zip(*points, strict=True)
         width, height = max(max(xs) - min(xs), least_m), max(max(ys) - min(ys), least_m * HEIGHT / WIDTH)
         scale = min((WIDTH - 2 * MARGIN) / width, (HEIGHT - 2 * MARGIN) / height)
@@ -92,21 +92,21 @@ class Viewport:
         return cls(x - WIDTH / 2 / scale, y + HEIGHT / 2 / scale, scale)
 
     def to_picture(self, x_m: float, y_m: float) -> Point:
-        """Where a point of the world is drawn."""
+        """The point of the picture for a point of the world."""
         return (x_m - self.left_m) * self.scale, (self.top_m - y_m) * self.scale
 
     def to_world(self, x: float, y: float) -> Point:
-        """Which point of the world was clicked."""
+        """The point of the world for a point of the picture."""
         return self.left_m + x / self.scale, self.top_m - y / self.scale
 
     def extent(self, points: Iterable[Point]) -> tuple[float, float, float, float]:
-        """Left, top, width and height of what holds all points, with a margin."""
+        """The left, top, width and height of the rectangle around all points, with a margin."""
         xs, ys = zip(*(self.to_picture(*point) for point in points), strict=True)
         return min(xs) - MARGIN, min(ys) - MARGIN, max(xs) - min(xs) + 2 * MARGIN, max(ys) - min(ys) + 2 * MARGIN
 
 
 def grid(view: Viewport, seen: VisibleArea) -> str:
-    """Lines each metre (or less or more often) through all that is in sight, with their numbers at its edges."""
+    """The lines of the grid in the visible area, with their numbers at its edges."""
     pixels_per_m = view.scale / seen.unit
     step = next(s for s in STEPS_M if s * pixels_per_m >= 64 or s == STEPS_M[-1])
     x0, y1 = view.to_world(seen.x, seen.y)
@@ -120,7 +120,7 @@ def grid(view: Viewport, seen: VisibleArea) -> str:
     for index in range(int(y0 // step), int(y1 // step) + 2):
         _, y = view.to_picture(0, index * step)
         lines.append(f"M{seen.x:.1f} {y:.1f}h{seen.width:.1f}")
-        # Or it stands on those along the lower edge, or below the buttons.
+        # Otherwise it would be on the numbers of the lower edge, or below the buttons.
         if seen.y + (TOOLS_PX + 12) * seen.unit < y < seen.y + seen.height - 20 * seen.unit:
             texts.append((seen.x + 4 * seen.unit, y - 3 * seen.unit, index * step))
     numbers = "".join(f'<text x="{x:.1f}" y="{y:.1f}">{value:g} m</text>' for x, y, value in texts)
@@ -128,7 +128,7 @@ def grid(view: Viewport, seen: VisibleArea) -> str:
 
 
 def walls(view: Viewport, segments: Iterable[Wall]) -> str:
-    """Walls."""
+    """The walls."""
     parts = []
     for a, b in segments:
         (ax, ay), (bx, by) = view.to_picture(*a), view.to_picture(*b)
@@ -137,7 +137,7 @@ def walls(view: Viewport, segments: Iterable[Wall]) -> str:
 
 
 def obstacles(view: Viewport, posts: Iterable[Obstacle]) -> str:
-    """Posts and obstacles."""
+    """The posts and obstacles."""
     parts = []
     for post in posts:
         x, y = view.to_picture(post.x_m, post.y_m)
@@ -150,9 +150,9 @@ def obstacles(view: Viewport, posts: Iterable[Obstacle]) -> str:
 
 
 def robot(view: Viewport, pose: Pose, css: str, *, bumper: bool = False, unit: float = 1.0) -> str:
-    """The body, its wheels and an arrow where it looks, which is seen however small the body is.
+    """The body, its wheels and an arrow for its heading.  The arrow is visible however small the body is.
 
-    `unit` is how many units of the picture a pixel is.
+    `unit` is the size of a pixel in units of the picture.
     """
     x, y = view.to_picture(pose.x_m, pose.y_m)
     s = view.scale
@@ -170,9 +170,9 @@ def robot(view: Viewport, pose: Pose, css: str, *, bumper: bool = False, unit: f
 
 
 def out_of_sight(view: Viewport, pose: Pose, seen: VisibleArea, text: str) -> str:
-    """What lies beyond the edge: an arrow at the edge that points there, and how far it is; nothing if it is in sight.
+    """An arrow at the edge that points to a pose outside of the visible area, with the distance; else empty.
 
-    The distance is that from the middle of what is in sight.
+    The distance is measured from the middle of the visible area.
     """
     x, y = view.to_picture(pose.x_m, pose.y_m)
     if seen.holds(x, y):
@@ -197,7 +197,7 @@ def out_of_sight(view: Viewport, pose: Pose, seen: VisibleArea, text: str) -> st
 
 
 def beams(view: Viewport, sonars: Iterable[Beam], unit: float = 1.0) -> str:
-    """Each sonar: the cone up to what was measured, the ray to what stands there, the point that answers."""
+    """The beams of the sonars: the cone up to the measured distance, the true ray, and the echo."""
     parts = []
     cross = 4.5 * unit
     for beam in sonars:
@@ -228,7 +228,7 @@ def _arc(x: float, y: float, r: float, turn: float, half: float) -> str:
 
 
 def path(view: Viewport, points: Sequence[Point], css: str) -> str:
-    """A trajectory."""
+    """A path as a line."""
     if len(points) < 2:
         return ""
     drawn = " ".join(f"{x:.1f},{y:.1f}" for x, y in (view.to_picture(*p) for p in points))
@@ -236,7 +236,7 @@ def path(view: Viewport, points: Sequence[Point], css: str) -> str:
 
 
 def dots(view: Viewport, points: Sequence[Point], css: str) -> str:
-    """A cloud of points: one path of strokes without length."""
+    """A cloud of points.  It is one SVG path of strokes without length."""
     if not points:
         return ""
     drawn = "".join(f"M{x:.1f} {y:.1f}h0" for x, y in (view.to_picture(*p) for p in points))

@@ -1,4 +1,4 @@
-"""The page of a robot that is only a serial line: `hil console --view`."""
+"""The page of a robot behind a serial line: `hil console --view`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hil.view.page import UPDATE_S, Page, heard
 
 
 def console_page(line: RobotLine) -> None:
-    """Orders and what the frames say."""
+    """Build the page: the orders, and a map from the frames."""
     ui.page_title(f"Robot at {line.address} - c2000-hil")
     page = Page(KEYS, lambda name, down: console.key(name, down))
     with ui.element("section").classes("top").props('aria-label="orders"'):

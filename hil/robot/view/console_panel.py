@@ -1,4 +1,4 @@
-"""The console: the orders of the thesis console, frames as they arrive, trajectory files.  It knows only a line."""
+"""The console: the orders of the thesis console, the received frames, trajectory files.  It uses only a line."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from hil.recording.trajectory import HEADINGS, parse_trajectory
 from hil.robot.view.tele import BrowserTele
 from hil.view.line import LogEntry, RobotLine
 
-#: The console's own name for its file (reference: annex 2).
+#: The name of the thesis console's file (reference: annex 2).
 FILE: Final = "trayectoria.txt"
-#: Each is an element of the page, and all of them are gone through 20 times a second.
+#: Each line is an element of the page, and each of the 20 updates a second goes through all elements.
 MAX_LINES: Final = 100
 MAX_UPLOAD: Final = 4_000_000
 HELP: Final = (
@@ -28,18 +28,18 @@ UNDRIVEN: Final = "Telemanipulation is off"
 
 
 def file_of(frames: list[OdometryFrame]) -> bytes:
-    """Frames as the thesis console writes them: a line of headings, six numbers a line."""
+    """A file of frames, as the thesis console writes it: a line of headings, then six numbers in each line."""
     return "\n".join([HEADINGS, *(frame.line for frame in frames), ""]).encode("ascii")
 
 
 def ended_by_others(entries: list[LogEntry]) -> bool:
-    """Whether another order came after the last `#TELE`, from whatever button, page or port: it ends the driving."""
+    """Whether another order came after the last `#TELE`, from any button, page or port.  It ends driving by hand."""
     orders = [entry.text for entry in entries if entry.to_robot and not entry.text.startswith("#SETR")]
     return bool(orders) and orders[-1] != "#TELE"
 
 
 class ConsolePanel:
-    """`on_loaded(frames)` is told the points of a file that was opened."""
+    """The panel.  `on_loaded(frames)` is called with the points of a loaded file."""
 
     def __init__(self, line: RobotLine, on_loaded: Callable[[list[OdometryFrame]], None]) -> None:
         self._line = line
@@ -92,7 +92,7 @@ class ConsolePanel:
         self._failure = ui.label().style("color:var(--bad)")
 
     def send(self, data: bytes) -> None:
-        """Bytes to the robot; what was to follow an earlier order has been overtaken."""
+        """Send bytes to the robot.  A reference that was to follow an earlier order is dropped."""
         if data:
             if self._late is not None:
                 self._late.cancel()
@@ -100,7 +100,7 @@ class ConsolePanel:
             self._line.write(data)
 
     def mission(self) -> None:
-        """Drive the mission."""
+        """Order a mission."""
         self.leave_tele()
         self.send(order("mission"))
 
@@ -122,12 +122,12 @@ class ConsolePanel:
             self.stop()
 
     def leave_tele(self) -> None:
-        """Whatever is driven by hand stands still."""
+        """Stop the robot if it is driven by hand."""
         self.send(self.tele.end())
 
     @property
     def actions(self) -> Mapping[str, Callable[[], None]]:
-        """What keys do besides driving."""
+        """Key -> action, except for driving."""
         return {
             keys.STOP.browser: self.stop, keys.MISSION.browser: self.mission, keys.TELE.browser: self.toggle_tele,
             keys.REST.browser: self.tele.rest, keys.LEAVE.browser: self.end_tele, keys.SET.browser: self._ask_reference,
@@ -136,11 +136,11 @@ class ConsolePanel:
         }  # fmt: skip
 
     def key(self, name: str, down: bool) -> bool:
-        """A key; whether it was ours."""
+        """Handle a key for driving.  Returns whether it was one."""
         return self.tele.on and self.tele.key(name, down, time.monotonic())
 
     def update(self) -> None:
-        """20 times a second."""
+        """Update the panel, 20 times a second."""
         if self._line.flowing:
             self.send(self.tele.tick(time.monotonic()))
         reference = f"V {self.tele.v_m_s:+.2f} m/s   W {self.tele.w_rad_s:+.2f} rad/s"
@@ -156,7 +156,7 @@ class ConsolePanel:
         elif log.count == self._next:
             _text(self._failure, self._line.failure)
             return
-        # A line may bring more in this time than a page can show.
+        # More lines may have come since the last update than a page can show.
         entries = log.entries_since(max(self._next, log.count - MAX_LINES))
         for entry in entries:
             self._log.push(f"{entry.time_s:9.3f} s  {'->' if entry.to_robot else '<-'}  {entry.text}")
@@ -179,7 +179,7 @@ class ConsolePanel:
         except ValueError as error:
             ui.notify(str(error), type="warning")
             return
-        # As the console does: telemanipulation first, or the robot takes no reference.
+        # Telemanipulation comes first, as in the console; otherwise the robot accepts no reference.
         self.tele.end()
         self.send(order("tele"))
         self._late = ui.timer(0.5, lambda: self.send(data), once=True)
@@ -209,6 +209,6 @@ class ConsolePanel:
 
 
 def _text(element: ui.label | ui.button, text: str) -> None:
-    """Send a text only if it is another."""
+    """Send a text only if it has changed."""
     if element.text != text:
         element.text = text

@@ -14,7 +14,7 @@ KEYS: Final = listed()
 
 
 def mission_and_stop(console: Callable[[], ConsolePanel]) -> None:
-    """The two buttons that everybody must find."""
+    """Add the two big buttons."""
     with ui.row().classes("orders no-wrap gap-2"):
         ui.button("MISSION", color="positive", on_click=lambda: console().mission()).classes("big").mark("mission")
         ui.button("STOP", color="negative", on_click=lambda: console().stop()).classes("big").mark("stop")

@@ -1,4 +1,4 @@
-"""What the page of the emulated robot has besides that of any board: arena, console, two buttons, keys, a status."""
+"""The parts of the page that only the emulated robot has: arena, console, two buttons, keys, a status."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ class Panels:
 
     @property
     def actions(self) -> Mapping[str, Callable[[], Any]]:
-        """What keys do."""
+        """Key -> action."""
         return self._console.actions
 
     def top(self) -> None:
-        """The two buttons that everybody must find."""
+        """Add the two big buttons."""
         mission_and_stop(lambda: self._console)
 
     def picture(self) -> None:
-        """The arena."""
+        """Add the arena."""
         heard("Arena")
         self._arena = ArenaPanel(self._engine)
 
@@ -43,7 +43,7 @@ class Panels:
         self._console = ConsolePanel(self._engine.line, self._arena.show_loaded)
 
     def status(self, now: Snapshot) -> Sequence[tuple[str, str]]:
-        """State, pose, distances."""
+        """The state, the pose and the distances."""
         scene: Scene = now.scene
         status = scene.status
         front, right, left = status.distances_cm
@@ -55,14 +55,14 @@ class Panels:
         )  # fmt: skip
 
     def update(self, now: Snapshot) -> None:
-        """20 times a second."""
+        """Update the panel, 20 times a second."""
         self._arena.update(now)
         self._console.update()
 
     def key(self, name: str, down: bool) -> bool:
-        """While it is driven by hand, arrows are the driver's."""
+        """Handle a key.  During driving by hand, the arrow keys drive."""
         return self._console.key(name, down)
 
     def leave(self) -> None:
-        """Nobody drives by hand any more."""
+        """End driving by hand."""
         self._console.leave_tele()

@@ -1,7 +1,7 @@
-"""What the page sees of the robot in its world: made by the machine's own thread, never changed afterwards.
+"""Snapshots of the robot in its world, for the page.  The machine's thread makes them, and they never change.
 
-Everything is looked at without touching it: stored words and objects, no register read, no integration of the world.
-A look must not change the run.
+A snapshot must not change the run.  So it uses only stored words and objects, reads no register and does not integrate
+the world.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from hil.world.path import Path, Point
 from hil.world.robot_params import Pose
 from hil.world.sonar_rays import MAX_RANGE_M
 
-#: Points of a path that are shown; more are thinned.
+#: The most points of a path that are shown.  Of a longer path, points are left out.
 MAX_POINTS: Final = 3000
 STEP_M: Final = 0.005
 
@@ -28,7 +28,7 @@ class Scene:
     """The robot and its surroundings at one moment."""
 
     status: Status
-    #: Where the firmware believes to be, in the world's frame; None: it keeps that elsewhere.
+    #: The odometry of the firmware, in the world's frame; None: the firmware stores it in another object.
     believed: Pose | None
     bumper: bool
     beams: tuple[Beam, ...]
@@ -38,7 +38,7 @@ class Scene:
 
 @dataclass(frozen=True, slots=True)
 class Trails:
-    """Paths in the world's frame, in metres; `start` is where the robot was put down."""
+    """The paths in the world's frame, in metres; `start` is the pose of the robot at power-up."""
 
     true: tuple[tuple[float, float], ...]
     believed: tuple[tuple[float, float], ...]
@@ -46,7 +46,7 @@ class Trails:
 
 
 def scene_of(bench: Bench) -> Scene:
-    """What there is now."""
+    """The present scene."""
     return Scene(
         bench.status(), believed_pose(bench), bench.world.bumper_pressed, beams_of(bench), obstacles_of(bench),
         tuple(bench.walls),
@@ -54,12 +54,12 @@ def scene_of(bench: Bench) -> Scene:
 
 
 def start_pose(bench: Bench) -> Pose:
-    """Where the robot's own frame lies in the world: the pose at power-up."""
+    """The origin of the robot's own frame in the world: its pose at power-up."""
     return Pose(*bench.map.start)
 
 
 def beams_of(bench: Bench) -> tuple[Beam, ...]:
-    """The sonars; of those that the robot's firmware does not know nothing is measured."""
+    """The sonars.  One that the firmware does not know has no measured distance."""
     world, pose = bench.world, bench.world.pose
     ranges_cm = zip(("FRONT", "RIGHT", "LEFT"), bench.status().distances_cm, strict=True)
     measured = {name: range_cm for name, range_cm in ranges_cm if isfinite(range_cm)}
@@ -74,9 +74,9 @@ def beams_of(bench: Bench) -> tuple[Beam, ...]:
 
 
 def believed_pose(bench: Bench) -> Pose | None:
-    """Where the firmware believes to be (servidores.c: ROBOT_Odometry_T, in mm and rad), in the world's frame.
+    """The odometry of the firmware (servidores.c: ROBOT_Odometry_T, in mm and rad), in the world's frame.
 
-    None: a servidores.c of somebody else's may keep it elsewhere.
+    None: the user's own servidores.c may store it in another object.
     """
     start = start_pose(bench)
     known = bench.firmware.linked.objects.get("servidores.ROBOT_Odometry_T")
@@ -91,7 +91,7 @@ def believed_pose(bench: Bench) -> Pose | None:
 
 
 def trace_values(bench: Bench) -> dict[str, Any]:
-    """The scene as a trace has it: names and values of `hil.instruments.scene`, to a tenth of a millimetre."""
+    """The scene for a trace: names and values of `hil.instruments.scene`, rounded to a tenth of a millimetre."""
     scene = scene_of(bench)
     status = scene.status
     tells: dict[str, Any] = {
@@ -116,12 +116,12 @@ def _rounded(*values: float) -> list[float]:
 
 
 def obstacles_of(bench: Bench) -> tuple[Obstacle, ...]:
-    """Everything round."""
+    """All round obstacles."""
     return tuple(Obstacle(post.name, post.x_m, post.y_m, post.radius_m) for post in bench.world.posts)
 
 
 def trails_of(bench: Bench) -> Trails:
-    """The whole paths, thinned to what is shown; a longer path has the points of the shorter one first."""
+    """The whole paths, with at most `MAX_POINTS` points.  When a path grows, its first points stay the same."""
     start = start_pose(bench)
     true = tuple((x, y) for _, x, y, _ in thinned(bench.world.path))
     cosine, sine = cos(start.heading_rad), sin(start.heading_rad)
@@ -135,5 +135,5 @@ def trails_of(bench: Bench) -> Trails:
 
 
 def thinned(path: Path) -> list[Point]:
-    """No more points of a path than are shown."""
+    """At most `MAX_POINTS` points of a path."""
     return path.points(every=1 + len(path) // MAX_POINTS)

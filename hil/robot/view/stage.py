@@ -1,4 +1,4 @@
-"""The world of the robot, as the view has it: hands on robot and obstacles, signals for the scope, what is seen."""
+"""The world of the robot for the view: actions on robot and obstacles, signals for the scope, snapshots."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from hil.robot.view.scene import Scene, Trails, scene_of, trace_values, trails_o
 from hil.view.stage import Hand
 from hil.world.robot_params import Pose
 
-#: What is recorded of the true robot.
+#: The recorded quantities of the true robot.
 QUANTITIES: Final = ("v_m_s", "w_rad_s", "x_m", "y_m", "heading_rad")
-#: Units of what is recorded, and of the firmware's variables: those of the thesis' text.
+#: The units of these quantities, and of the firmware's variables (from the text of the thesis).
 _UNITS: Final = {
     "m": "world x_m, world y_m",
     "m/s": "world v_m_s, servidores.ROBOT_Reference.V, servidores.Telemanipulation_Reference.V, "
@@ -52,7 +52,7 @@ class Stage:
         self.units: Mapping[str, str] = {name: unit for unit, names in _UNITS.items() for name in names.split(", ")}
 
     def place(self, x_m: float, y_m: float, heading_rad: float) -> None:
-        """Lift the robot and put it down at rest."""
+        """Move the robot to another pose, at rest."""
         world = self._bench.world
         world.sync_now()
         world.place(Pose(x_m, y_m, heading_rad))
@@ -62,7 +62,7 @@ class Stage:
             self.happened.append((self._bench.clock.now, "bump"))
 
     def look(self) -> Scene:
-        """What there is now."""
+        """The present scene."""
         return scene_of(self._bench)
 
     def trails(self) -> Trails:
@@ -70,7 +70,7 @@ class Stage:
         return trails_of(self._bench)
 
     def tell(self) -> Mapping[str, Any]:
-        """The scene as plain data."""
+        """The scene as plain data for a trace."""
         return trace_values(self._bench)
 
     def _quantity(self, name: str) -> float:

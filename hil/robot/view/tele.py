@@ -1,8 +1,9 @@
-"""Driving by hand: what arrow keys and the stick make of V and W, and the orders that follow.
+"""Driving by hand: arrow keys and the stick change V and W, and orders follow.
 
-As the thesis console does it: `#TELE`, then `#SETRv,w` ten times a second; an arrow that is held changes V by 0.01 m/s
-or W by 0.03 rad/s at each of them, one key at a time.  Otherwise than there, leaving stops the robot and begins the
-next drive at rest, and a key whose release was never seen (another window took it) counts as released.
+It works as in the thesis console: `#TELE`, then `#SETRv,w` ten times a second.  With each of them, an arrow key that is
+held changes V by 0.01 m/s or W by 0.03 rad/s, one key at a time.  There are two differences: the end of driving stops
+the robot, and the next drive begins at rest; and a key counts as released if its release was never seen, because
+another window got it.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from hil.client.orders import order, set_reference
 PERIOD_S: Final = 0.1
 #: Browsers repeat a held key after half a second at the latest.
 FORGET_S: Final = 0.8
-#: The stick at its edge.  CHOICE: the speed of the firmware's mission, and a quarter turn in less than 2 s.
+#: The speeds with the stick at its edge.  CHOICE: the speed of a mission, and a quarter turn in less than 2 s.
 STICK_V_M_S: Final = 0.2
 STICK_W_RAD_S: Final = 1.0
 
@@ -26,7 +27,7 @@ _KEYS: Final = {
 
 
 class BrowserTele:
-    """Times are seconds of any clock that only goes forward."""
+    """The state of driving by hand.  Times are in seconds of any monotonic clock."""
 
     def __init__(self) -> None:
         self.on = False
@@ -37,7 +38,7 @@ class BrowserTele:
         self._due_s = 0.0
 
     def begin(self, now_s: float) -> bytes:
-        """The order that begins; the first reference follows half a second later, as the console waits."""
+        """The order that starts driving.  The first reference follows half a second later, as in the console."""
         self.on = True
         self.v_m_s = self.w_rad_s = 0.0
         self._key = None
@@ -45,7 +46,7 @@ class BrowserTele:
         return order("tele")
 
     def end(self) -> bytes:
-        """What leaves the robot standing; nothing if it was not driven."""
+        """The order that stops the robot; empty if it was not driven."""
         if not self.on:
             return b""
         self.on = False
@@ -53,7 +54,7 @@ class BrowserTele:
         return set_reference(0.0, 0.0)
 
     def key(self, name: str, down: bool, now_s: float) -> bool:
-        """A key went down (or repeats) or up.  Whether it is one of ours."""
+        """Handle a key that was pressed (or repeats) or released.  Returns whether it is a key for driving."""
         if name not in _KEYS:
             return False
         if down:
@@ -63,16 +64,16 @@ class BrowserTele:
         return True
 
     def stick(self, right: float, up: float) -> None:
-        """The stick's place, -1..1 each; (0, 0) when it is let go."""
+        """Set the position of the stick, -1 to 1 each; (0, 0) when it is released."""
         self.v_m_s = round(STICK_V_M_S * max(-1.0, min(1.0, up)), 3)
         self.w_rad_s = round(STICK_W_RAD_S * max(-1.0, min(1.0, -right)), 3) + 0.0  # never -0.0
 
     def rest(self) -> None:
-        """V and W zero, still in telemanipulation."""
+        """Set V and W to zero.  Telemanipulation goes on."""
         self.v_m_s = self.w_rad_s = 0.0
 
     def tick(self, now_s: float) -> bytes:
-        """The order that is due, b"" if none."""
+        """The order that is due; b"" if there is none."""
         if not self.on or now_s < self._due_s:
             return b""
         self._due_s = now_s + PERIOD_S

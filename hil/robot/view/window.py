@@ -1,4 +1,4 @@
-"""A window on a picture of layers: zoom, shift, follow, in the browser; hands on what is drawn, told to the page."""
+"""A window on a picture of layers.  The browser zooms, shifts and follows; the page gets the user's gestures."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hil.robot.view.arena_drawing import HEIGHT, NUMBERS_PX, TOOLS_PX, WIDTH, Po
 
 @dataclass(frozen=True, slots=True)
 class PointerGestures:
-    """Done with the mouse or a finger: `take`, `drag`, `drop`, `leave` of what has a grip, `tap` of anything else."""
+    """A gesture with the mouse or a finger: `take`, `drag`, `drop`, `leave` of an element with a grip, else `tap`."""
 
     what: str
     x: float
@@ -23,9 +23,10 @@ class PointerGestures:
 
 
 class Window(Element, component="layers.js"):
-    """Layers that fill it, each an SVG by itself: a robot that moves leaves the cloud unpainted.
+    """Layers that fill the window.  Each is an SVG of its own, so a moving robot does not repaint the cloud.
 
-    `on_hand(hand)`; `on_seen(seen)` after each zoom and shift; `on_shifted()` when somebody begins to shift it.
+    It calls `on_hand(hand)` for each gesture, `on_seen(seen)` after each zoom and shift, and `on_shifted()` when the
+    user begins to shift it.
     """
 
     def __init__(
@@ -50,25 +51,25 @@ class Window(Element, component="layers.js"):
             self.on("shifted", lambda _: on_shifted())
 
     def layer(self) -> ui.html:
-        """One more, above all others."""
+        """Add a layer above all others."""
         with self:
             return ui.html(tag="svg", sanitize=False).classes("layer").props("aria-hidden=true")
 
     def show(self, extent: tuple[float, float, float, float]) -> None:
-        """There is more to be seen; it is in sight unless somebody has zoomed or shifted."""
+        """Set the extent of the picture.  All of it is visible, unless the user has zoomed or shifted."""
         self._props["extent"] = extent
         self.update()
 
     def fit(self) -> None:
-        """Everything in sight."""
+        """Show the whole picture."""
         self.run_method("fit")
 
     def zoom(self, factor: float) -> None:
-        """About the middle."""
+        """Zoom about the middle."""
         self.run_method("zoom", factor)
 
     def centre(self, at: Point) -> None:
-        """Have a point of the picture in the middle."""
+        """Move a point of the picture to the middle."""
         self.run_method("centre", *at)
 
     def _looked(self, e: events.GenericEventArguments) -> None:
