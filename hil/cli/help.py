@@ -1,8 +1,12 @@
-"""How the help of a command reads: options in groups, examples and other lists one below the other."""
+"""How the help of a command reads: options in groups, examples and other lists one below the other.  And what none of
+its options takes: a number that is not finite.
+"""
 
 from __future__ import annotations
 
 import re
+from copy import copy
+from math import isfinite
 from typing import Any, Final
 
 from typer.core import TyperArgument, TyperCommand, TyperOption
@@ -45,6 +49,9 @@ class Command(TyperCommand):
             for each in options:
                 each.rich_help_panel = _GROUP_OF.get(each.name or "")
             self.params.sort(key=lambda each: _ORDER.index(getattr(each, "rich_help_panel", None) or ""))
+        for parameter in self.params:
+            if parameter.type.name.startswith("float"):
+                parameter.type = finite(parameter.type)
         self._grouped = len(options) > MAX_UNGROUPED
         self.help = with_lists(self.help or "")
 
@@ -64,6 +71,20 @@ class Command(TyperCommand):
         if self._grouped and isinstance(option, TyperOption):
             option.rich_help_panel = "Output"
         return option
+
+
+def finite(numbers: Any) -> Any:
+    """The same type of an option, without the infinities and NaN, which `float` reads too."""
+    kind = copy(numbers)
+
+    def convert(value: Any, param: Any, context: Any) -> Any:
+        number = numbers.convert(value, param, context)
+        if not isfinite(number):
+            kind.fail(f"{value} is not a finite number.", param, context)
+        return number
+
+    kind.convert = convert
+    return kind
 
 
 def with_lists(text: str) -> str:

@@ -83,3 +83,17 @@ def test_prose_is_joined_and_lists_are_kept() -> None:
     text = "What it\n  does.\n\n\n\n[bold]Examples[/bold]\n    hil x\n    hil y\n"
     indent = "[bold][/bold]  "
     assert with_lists(text) == f"What it does.\n\n\b[bold]Examples[/bold]\n{indent}hil x\n{indent}hil y"
+
+
+def test_no_option_takes_an_infinity_or_nan(capsys: pytest.CaptureFixture[str]) -> None:
+    numbers = [
+        (name, param.opts[0])
+        for name, command in commands.COMMANDS.items()
+        for param in command.whole.params
+        if isinstance(param, TyperOption) and param.type.name.startswith("float")
+    ]
+    assert ("run", "--for") in numbers
+    for name, option in numbers:
+        for number in ("inf", "nan", "-inf"):
+            assert invoke([name, option, number]) == 2
+            assert re.search(rf"'{option}': {number} is not (a finite number|in the range)", capsys.readouterr().err)
