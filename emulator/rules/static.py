@@ -259,14 +259,16 @@ semaphore.
     _rule(
         "mixed-logic",
         Severity.WARNING,
-        "The result of a comparison is an operand of a bitwise operator.",
+        "The result of a comparison or of ! is an operand of a bitwise operator.",
         """
-A test of several flags looks only at bit 0.
+A test of several flags looks only at bit 0, or all flags are cleared instead of one.
 
 In C, `flags & MASK == MASK` compares first: `MASK == MASK` is 1, so `flags & 1` is left. Two comparisons that are
 combined by `&` or `|` are not reported.
 
-**Fix:** parentheses around the mask: `(flags & MASK) == MASK`.
+`flags &= !MASK` clears all flags: `!MASK` is 0 for every mask. It is reported for a constant that is not 0 or 1.
+
+**Fix:** parentheses around the mask: `(flags & MASK) == MASK`; `~MASK` for the other bits.
 """,
         "ISO C 6.5.8 to 6.5.12 (precedence); CERT EXP00-C",
     ),

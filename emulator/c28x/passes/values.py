@@ -329,6 +329,9 @@ class ValueChecks(ConstantChecks):
             case Binary(op="&" | "|" | "^", right=right) if _compared_mask(right):
                 text = source_text(e)
                 self.report_here("mixed-logic", f"{text}: the comparison comes first and gives 0 or 1", text)
+            case Binary(op="&" | "|" | "^", left=a, right=b) if mask := _not_of_mask(a) or _not_of_mask(b):
+                text = f"!{source_text(mask)}"
+                self.report_here("mixed-logic", f"{text} is 0: ~ inverts the bits of a mask", text)
             case Binary(op="*" | "/", left=left, right=Const(value=8) as right) if _size(left) and not _size(right):
                 text = source_text(e)
                 self.report_here("octet", f"{text}: sizeof counts words of 16 bits here, not octets", text)
@@ -387,6 +390,16 @@ def _compared_mask(e: Expr) -> bool:
         case Compare(op="==" | "!=", left=left):
             return isinstance(bare(left), Const)
     return False
+
+
+def _not_of_mask(e: Expr) -> Expr | None:
+    """The constant of an operand `!MASK`, if it is neither 0 nor 1; None: there is none."""
+    for part in _chain(e):
+        inner = part.source if isinstance(part, Const) and part.source is not None else part
+        if isinstance(inner, Not):
+            mask = bare(inner.operand)
+            return mask if isinstance(mask, Const) and mask.value not in (0, 1) else None
+    return None
 
 
 def _negative_source(e: Expr) -> bool:

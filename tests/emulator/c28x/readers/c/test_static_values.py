@@ -111,3 +111,21 @@ def test_what_a_header_defines_is_looked_at_in_the_header() -> None:
 def test_a_quotient_of_sizes_is_a_number_of_elements_whatever_the_size_of_one(text: str, octets: bool) -> None:
     source = f"struct eight {{ int v[8]; }};\nstruct eight table[2];\nint f(int n)\n{{\n    return {text};\n}}\n"
     assert (("octet", 5) in findings_of(source)) == octets
+
+
+@pytest.mark.parametrize(
+    ("statement", "wrong"),
+    [
+        ("x &= !MASK;", True),
+        ("x = x & !(MASK | 1);", True),
+        ("x |= !MASK;", True),
+        ("x &= ~MASK;", False),
+        ("x &= !x;", False),
+        ("x &= !ON;", False),
+        ("x &= !OFF;", False),
+        ("if (x && !MASK) x = 1;", False),
+    ],
+)
+def test_the_not_of_a_mask_is_told(statement: str, wrong: bool) -> None:
+    head = "#define MASK 0x10u\n#define ON 1\n#define OFF 0\nunsigned f(unsigned x)\n{\n"
+    assert (("mixed-logic", 6) in findings_of(f"{head}    {statement}\n    return x;\n}}\n")) == wrong
