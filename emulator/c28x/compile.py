@@ -20,6 +20,7 @@ from emulator.c28x.passes.costs import Costs
 from emulator.c28x.passes.flow import Flow
 from emulator.c28x.passes.guards import Guards
 from emulator.c28x.passes.intervals import annotate_bounds
+from emulator.c28x.passes.pulses import pulses
 from emulator.c28x.passes.stamps import Stamps
 from emulator.c28x.passes.taken import mark_copy_and_clear
 from emulator.c28x.program import Program
@@ -48,6 +49,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
     stamps = Stamps(modules, entries)
     suspicions = stamps.suspicions()
     findings = check(modules, dict(objects), stamps, entries) if options.static else []
+    cut_pulses = pulses(modules, entries)
     names_compared = compared(f for module in modules for f in module.functions)
     names_limited = limited(f for module in modules for f in module.functions)
     costs = Costs(float_division(options.float_division))
@@ -64,7 +66,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
             frame.lay_out(function, options.room, residue=options.residue)
             Guards(
                 function, watch=options.watch, ieee=options.ieee, room=options.room, compared=names_compared,
-                limited=names_limited, stamps=suspicions,
+                limited=names_limited, stamps=suspicions, pulses=cut_pulses,
             ).run()  # fmt: skip
             costs.leave(function)
             mark_copy_and_clear(function)

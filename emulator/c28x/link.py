@@ -244,6 +244,7 @@ class Linked:
             "_c_overflow": runtime.overflow, "_c_float_to_int": runtime.float_to_int,
             "_c_float_argument": runtime.float_argument, "_c_stamps": runtime.stamps, "_c_past": runtime.past,
             "_c_turn": runtime.turn, "_c_extended": runtime.extended, "_c_parsed": runtime.parsed,
+            "_c_pulse": runtime.pulse,
             "_c_divide_floats": runtime.divide_floats, "_c_divide_ints": runtime.divide_ints,
             "_c_modulo_ints": runtime.modulo_ints, "_c_shift": runtime.shift,
             "_c_endless": runtime.endless, "_c_loop_limit": runtime.loop_limit,

@@ -44,6 +44,8 @@ from emulator.clock import CYCLES_PER_US, Clock
 LOOP_LIMIT_S: Final = 0.2
 #: How many awaited stamps are remembered for one comparison.
 _STAMPS: Final = 64
+#: A longer time between two captures is reported at the third use.  One may come from an edge that was missed.
+WRONG_PULSES: Final = 3
 #: CHOICE: a float passed for an integer parameter that never reaches this value was not meant as an integer.
 _FEW: Final = 10
 FILLS: Final = ("zero", "ones", "nan", "random:SEED", "stack", "trap")
@@ -199,6 +201,10 @@ class Runtime:
         self.signatures: dict[Any, FunctionType] = {}
         self.called_as: dict[tuple[Any, int], Any] = {}
         self._register_at, self._blames_unmodelled, self._driven = register_at, blames_unmodelled, driven
+        #: An object -> the site at which it has kept 16 bits of a longer time between two captures, and that time.
+        self.cut_pulses: dict[str, tuple[RuntimeSite, int]] = {}
+        #: How many of them were used as a wider number.
+        self.wrong_pulses = 0
         #: The number in the text that `atoi` has read last.
         self.parsed_number = 0
         #: Checks of library functions that read or write through a pointer.
@@ -949,6 +955,21 @@ class Runtime:
             site = self.sites[number]
             message = f"{site.name} has read {whole}, which does not fit an int: it becomes {value}, and then"
             self.hit(site, "widened-late", f"{message} a {site.widened}", whole)
+        return value
+
+    def pulse(self, value: int, number: int) -> int:
+        """A time between two captures, of which an object keeps 16 bits, or that object where it is used wider."""
+        site = self.sites[number]
+        if site.kind == "cut":
+            self.cut_pulses.pop(site.text, None)
+            if value > 0xFFFF:
+                self.cut_pulses[site.text] = site, value
+        elif site.text in self.cut_pulses:
+            cut, whole = self.cut_pulses.pop(site.text)
+            self.wrong_pulses += value == whole & 0xFFFF  # else it has another value by now
+            if value == whole & 0xFFFF and self.wrong_pulses >= WRONG_PULSES:
+                kept = f"{site.text} keeps {value} of it, which is used as a wider number then"
+                self.hit(cut, "widened-late", f"{cut.name} is {whole}: {kept}", whole)
         return value
 
     def quantity(self, value: int, number: int) -> int:

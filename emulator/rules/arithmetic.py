@@ -42,6 +42,9 @@ bits and is right.
 
 The same happens to a number in a text: `long value = atoi(text)` reads 70000 as 4464, because `atoi` returns an `int`.
 
+So does a long pulse: `Uint16 width = fall - rise;` keeps 16 of 32 bits of the time between two captures of an eCAP. It
+is reported when such a width is used as a wider number for the third time.
+
 Two cases are not reported: a difference of two unsigned variables that wraps to a small number, because programs
 compute elapsed counts in that way; and a result that is cast to its own type, because the cast says that the wrap is
 intended.

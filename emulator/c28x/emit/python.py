@@ -954,8 +954,8 @@ class PythonWriter:
         text = self.value(operand)
         if e.sign is not None:
             text = f"(_t if (_t := {text}) <= 127 else _c_octet(_t, {self.number(e.sign)}))"
-        if e.guard is not None and e.guard.kind == "parsed":
-            text = f"_c_parsed({text}, {self.number(e.guard)})"
+        if e.guard is not None and e.guard.kind in ("parsed", "pulse"):
+            text = f"_c_{e.guard.kind}({text}, {self.number(e.guard)})"
         match target, source:
             case FloatType(), IntType(bits=bits):
                 return f"({text} + 0.0)" if bits <= 16 else f"_c_f32({text} + 0.0)"
@@ -983,7 +983,7 @@ class PythonWriter:
     def convert_int(self, text: str, e: Convert, target: IntType) -> str:
         if e.guard is not None and e.guard.kind == "past":
             return f"(_t if (_t := {self.masked(text, target)}) >= 0 else _c_past(_t, {self.number(e.guard)}))"
-        if e.guard is not None and e.guard.kind != "parsed":
+        if e.guard is not None and e.guard.kind not in ("parsed", "pulse"):
             octet = e.guard.kind == "octet"
             low, high = octet_range(target) if octet else (target.low, target.high)
             helper = "_c_octet" if octet else "_c_narrowed"

@@ -20,6 +20,7 @@ Kinds of guards:
 | `unwritten` | loads | the object was written before |
 | `index`, `deep`, `pointer`, `member` | accesses to an object | they stay inside |
 | `poll`, `endless` | loops | they end |
+| `pulse` | differences of captures that 16 bits keep, and their wider uses | no bits were lost |
 | `parsed` | results of `atoi` that are widened | the text holds no larger number |
 | `extended` | comparisons for equality of a 32-bit number with one that was cut to an `int` | the cut lost no sign |
 | `stamps`, `past` | comparisons of stamps (pass `stamps`), the time since one | the counter has not wrapped between |
@@ -129,12 +130,12 @@ class Guards:
 
     `watch`: the image is watched; `ieee`: float division follows IEEE; `room`: path of an array -> its length, instead
     of that of its type; `compared`: variables that occur in a comparison or a subscript; `limited`: unsigned variables
-    that some function limits; `stamps`: the suspicions of pass `stamps`.
+    that some function limits; `stamps`: the suspicions of pass `stamps`; `pulses`: the result of pass `pulses`.
     """
 
     def __init__(
         self, function: Function, *, watch: bool, ieee: bool, room: Mapping[str, int], compared: Set[Variable],
-        limited: Set[Variable], stamps: Mapping[int, str],
+        limited: Set[Variable], stamps: Mapping[int, str], pulses: Mapping[int, str],
     ) -> None:  # fmt: skip
         self.function = function
         self.watch = watch
@@ -143,6 +144,7 @@ class Guards:
         self.compared = compared
         self.limited = limited
         self.stamps = stamps
+        self.pulses = pulses
         self.where = function.where
         self.frame = StackFrame(
             function.path,
@@ -522,6 +524,12 @@ class Guards:
     def convert(self, e: Convert) -> None:
         target, operand = e.ctype, e.operand
         source = operand.ctype
+        if id(e) in self.pulses and e.guard is None:
+            self.value(operand)
+            kind = "cut" if isinstance(source, IntType) and source.bits == 32 else "read"
+            text = self.pulses[id(e)]
+            e.guard = Guard("pulse", self.site(source, source_text(operand), at=e.where, kind=kind, text=text))
+            return
         if isinstance(source, IntType) and (
             isinstance(target, FloatType) or (isinstance(target, IntType) and target.bits > source.bits)
         ):

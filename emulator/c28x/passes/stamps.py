@@ -54,6 +54,8 @@ DEADLINE: Final = 2
 #: Free-running counter registers, and functions that return such a count.
 _REGISTERS: Final = frozenset({"TIM", "TSCTR", "IPCCOUNTERL", "IPCCOUNTERH"})
 _FUNCTIONS: Final = frozenset({"Clock_getTicks", "Timestamp_get32"})
+#: The capture registers of the eCAPs.
+CAPTURES: Final = frozenset({"CAP1", "CAP2", "CAP3", "CAP4"})
 #: What can hold a stamp: a variable, a member of a structure type, the target of a parameter, the result of a function.
 Key = tuple[Any, ...]
 
@@ -61,8 +63,11 @@ Key = tuple[Any, ...]
 class Stamps:
     """The stamps of one image."""
 
-    def __init__(self, modules: Iterable[Module], entries: frozenset[str]) -> None:
-        """`entries`: functions (`module.name`) that the board itself calls."""
+    def __init__(
+        self, modules: Iterable[Module], entries: frozenset[str], registers: frozenset[str] = _REGISTERS
+    ) -> None:
+        """`entries`: functions (`module.name`) that the board itself calls; `registers`: those that give stamps."""
+        self.registers = registers
         modules = list(modules)
         self.functions = [function for module in modules for function in module.functions]
         starts = [e for module in modules for variable in module.variables for e in different(variable.initial or ())]
@@ -154,7 +159,7 @@ class Stamps:
             case Convert(operand=operand) | Unary(operand=operand):
                 return self.kind(operand) if isinstance(e.ctype, IntType) else NONE
             case RegisterLoad(register=RegisterRef(register=name, field=None)):
-                return STAMP if name in _REGISTERS else NONE
+                return STAMP if name in self.registers else NONE
             case RegisterLoad(register=RegisterRef(block=block)) if block.startswith("CpuTimer"):
                 return NONE
             case Call(function=function):
