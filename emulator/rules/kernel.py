@@ -206,6 +206,19 @@ or takes the address of the posting function: then anything could post it.
 """, "BIOS, Semaphore_pend, Event_pend, Mailbox_pend: BIOS_WAIT_FOREVER",
     ),
     _rule(
+        "always-timeout", Severity.WARNING, "A wait with a time-out always times out: no statement posts it.", """
+The program tests whether a wait was answered, and it never is. What it does for the answer never happens.
+
+No function of the program posts the semaphore or the event, or sends to the mailbox, and no wait for it was answered in
+the run. `Semaphore_pend(pause, 10);` as a pause, with a result that nothing uses, is not reported.
+
+The check is made at the end of a run. Nothing is reported if the program passes the handle on, keeps it in a structure,
+or takes the address of the posting function: then anything could post it.
+
+**Fix:** post it where the event is seen, or remove the wait.
+""", "BIOS, Semaphore_pend, Event_pend, Mailbox_pend: timeout",
+    ),
+    _rule(
         "message-cut", Severity.ERROR, "A mailbox is smaller than the structure that it carries.", """
 The last members of a received message have values that nobody sent.
 

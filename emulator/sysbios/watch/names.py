@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from emulator.c28x.link import Linked
-from emulator.c28x.tree import Call, Const, Convert, Function, FunctionRef, Load, LValue, Stmt, Variable
-from emulator.c28x.tree_queries import bare, different, parts, within
+from emulator.c28x.tree import Call, Const, Convert, Evaluate, Function, FunctionRef, Load, LValue, Stmt, Variable
+from emulator.c28x.tree_queries import bare, different, parts, statements, within
 
 #: Paths of file-scope objects.  None stands for objects that the source does not name.
 Paths = set[str | None]
@@ -61,6 +61,13 @@ class HandleNames:
         passed, objects = self.passed(function), self.objects(handle)
         # If no file-scope object holds the handle now, any of them may have held it before.
         return None in passed or bool(passed & objects) or bool(passed and not objects)
+
+    def idle_calls(self, function: str) -> set[tuple[str, int]]:
+        """File and line of the calls of `function` whose result nothing uses."""
+        return {
+            (s.where.file, s.where.line) for f in self.functions for s in statements(f.body)
+            if isinstance(s, Evaluate) and isinstance(call := bare(s.value), Call) and call.function.name == function
+        }  # fmt: skip
 
     def callers(self, function: str, handle: Any) -> list[str]:
         """The paths of the functions that can call `function` for `handle`, also where the source does not tell."""

@@ -4,7 +4,8 @@ In such a deadlock a task pends on a semaphore while it holds a gate, and the on
 for that gate.  `gates.py` finds cycles of gates alone.
 
 A task that still waits without a timeout at the end of a run is `never-posted` if no statement of the program ends
-such a wait.  Part of a program, without its `main`, gets no such finding: the rest may post.
+such a wait.  A wait with a timeout whose result the program tests is `always-timeout`, if no wait for that object ever
+ended by a post.  Part of a program, without its `main`, gets no such finding: the rest may post.
 """
 
 from __future__ import annotations
@@ -59,6 +60,12 @@ class Standstill:
         #: The Clocks that were created, and those of them that `Clock_create` did not start.
         self._clocks: dict[ClockObject, StatementNumber] = {}
         self._idle: dict[ClockObject, StatementNumber] = {}
+        #: Waits with a timeout that came to its end: the thread, the function and the object, by the statement.
+        self._timed_out: dict[StatementNumber, tuple[Thread, str, Any]] = {}
+        #: What a wait with a timeout has got.
+        self._answered: set[Any] = set()
+        for function in ("Semaphore_pend", "Event_pend", "Mailbox_pend"):
+            calls.after(function, callback=partial(self._ended, function))
         calls.before("Semaphore_pend", callback=self._pending)
         calls.after("Semaphore_pend", callback=self._pended)
         for function in ENDS:
@@ -96,6 +103,13 @@ class Standstill:
     def _waited(self, *_arguments: Any) -> None:
         self._waits.pop(self._threads.current, None)
 
+    def _ended(self, function: str, result: int, what: Any, *arguments: Any) -> None:
+        timeout = arguments[-1] & self._threads.kernel.tasks.timeout_mask
+        if result:
+            self._answered.add(what)
+        elif timeout not in (0, WAIT_FOREVER) and self._threads.current.is_task:
+            self._timed_out.setdefault(self._locator.here(), (self._threads.current, function, what))
+
     def _created(self, clock: ClockObject | None, *_arguments: Any) -> None:
         if clock is None:
             return
@@ -125,6 +139,17 @@ class Standstill:
             self._findings.report_at(
                 place, "never-posted", f"{thread} waits in {function} for {name} without a timeout, and no statement "
                 f"calls {end} for it", object=name, how="dynamic", task=thread.name,
+            )  # fmt: skip
+        for statement, (thread, function, what) in self._timed_out.items():
+            place = self._locator.place(statement)
+            if place is None or what in self._answered or self._names.brings(what):
+                continue
+            if self._names.could(ENDS[function], what) or place[:2] in self._names.idle_calls(function):
+                continue
+            name = self._names.of(what)
+            self._findings.report_at(
+                place, "always-timeout", f"{thread} tests whether {function} gets {name}, and no statement calls "
+                f"{ENDS[function]} for it: each wait times out", object=name, how="dynamic", task=thread.name,
             )  # fmt: skip
         for clock, statement in self._idle.items():
             place = self._locator.place(statement)

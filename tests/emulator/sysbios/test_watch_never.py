@@ -79,7 +79,7 @@ TRIGGERED = """Swi_Params s;
     s.trigger = 3;
     soon = Swi_create(beat, &s, NULL);
     if (Done == 7) Swi_andn(soon, {});"""
-RULES = ("never-posted", "clock-not-started", "post-lost", "endless-poll")
+RULES = ("always-timeout", "never-posted", "clock-not-started", "post-lost", "endless-poll")
 
 
 def told(tmp_path: Path, text: str) -> list[tuple[str, str]]:
@@ -158,6 +158,29 @@ def test_what_may_come_still_is_not(tmp_path: Path, was: str, now: str) -> None:
             "Flag = 0;", "Flag = 0; Task_sleep(1);"
         )
     assert not told(tmp_path, text)
+
+
+#: The worker waits for so long that the tick comes once within.
+TIMED = RIGHT.replace(
+    "Semaphore_pend(ready, BIOS_WAIT_FOREVER);", "if (!Semaphore_pend(ready, 20))\n            continue;"
+)
+
+
+@pytest.mark.parametrize(("was", "now", "found"), [
+    ("", "", False),
+    ("Semaphore_post(ready);", "", True),
+    ("Semaphore_post(ready);", "if (Done == 7) Semaphore_post(ready);", False),
+    # It is a pause, and was given once.
+    ("if (!Semaphore_pend(ready, 20))\n            continue;", "Semaphore_pend(other, 20);", False),
+    ("if (!Semaphore_pend(ready, 20))\n            continue;", "(void)Semaphore_pend(other, 20);", False),
+    ("ready = Semaphore_create(0, NULL, NULL);", "ready = Semaphore_create(1, NULL, NULL);", False),
+])  # fmt: skip
+def test_a_wait_that_always_times_out_is_told(tmp_path: Path, was: str, now: str, found: bool) -> None:
+    text = TIMED.replace(was, now) if was else TIMED
+    if "create(1" in now:
+        text = text.replace("Semaphore_post(ready);", "")
+    at = "if (!Semaphore_pend(ready, 20))"
+    assert [place for rule, place in told(tmp_path, text) if rule == "always-timeout"] == [at] * found
 
 
 def test_a_part_of_a_program_is_told_nothing(tmp_path: Path) -> None:
