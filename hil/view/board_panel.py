@@ -83,7 +83,7 @@ class FaceRow:
                 ui.label(face.name).style("flex:2 1 12em")
             self._now = ui.label().style("flex:1 1 6em").classes("value").mark(f"now-{part.name}-{face.name}")
             if not settable:
-                ui.label("seen only").classes("soft").style("flex:3 1 8em")
+                ui.label("read only").classes("soft").style("flex:3 1 8em")
                 return
             if isfinite(face.low) and isfinite(face.high):
                 self._slider = (

@@ -38,12 +38,13 @@ class FaultsPanel:
         ui.label(HELP).classes("soft")
         with ui.row().classes("items-end gap-2"):
             self._kind = (
-                ui.select(offered, value=offered[0], label="what breaks", with_input=True, on_change=self._other)
-                .props("dense").classes("w-64").mark("fault")
+                ui.select(
+                    offered, value=offered[0], label="what breaks", with_input=True, on_change=self._show_parameters,
+                ).props("dense").classes("w-64").mark("fault")
             )  # fmt: skip
             ui.button("Break it", on_click=self._break).props("no-caps dense").mark("break")
-        self._about = ui.column().classes("w-full gap-1").mark("parameters")
-        self._other()
+        self._parameters = ui.column().classes("w-full gap-1").mark("parameters")
+        self._show_parameters()
         ui.label("Mounted").classes("head")
         self._none = ui.label("nothing is broken on purpose").classes("soft")
         self._mounted = ui.column().classes("w-full gap-1").mark("mounted")
@@ -52,12 +53,12 @@ class FaultsPanel:
                 for name, why in unsuitable.items():
                     ui.label(f"{name}: {why}").classes("soft")
 
-    def _other(self) -> None:
+    def _show_parameters(self) -> None:
         kind = FAULTS.get(str(self._kind.value))
         if kind is None:
             return
-        self._about.clear()
-        with self._about:
+        self._parameters.clear()
+        with self._parameters:
             watched = self._engine.setup.watch or not kind.watch
             ui.label(kind.sentence if watched else f"{kind.sentence} {UNWATCHED}")
             self._fields = {parameter.name: _field(parameter) for parameter in kind.parameters}
@@ -91,7 +92,7 @@ class FaultRow:
         with ui.row().classes("items-center gap-3 w-full no-wrap"):
             with ui.column().classes("gap-0").style("flex:1 1 auto;min-width:0"):
                 ui.label(fault).classes("mono")
-                self._told = ui.label().classes("soft").mark(f"fired-{index}")
+                self._outcome = ui.label().classes("soft").mark(f"fired-{index}")
             self._remove = (
                 ui.button("Remove", on_click=lambda: engine.act("mend", float(index)))
                 .props("no-caps dense outline").mark(f"mend-{index}")
@@ -101,7 +102,7 @@ class FaultRow:
         """Show how often it has fired, and its first access."""
         text = f"{phase.value}; {str(fired).removeprefix(f'{self.fault}: ')}"
         if text != self._text:
-            self._text = self._told.text = text
+            self._text = self._outcome.text = text
         if self._remove.visible is (phase is Phase.REMOVED):
             self._remove.visible = phase is not Phase.REMOVED
 

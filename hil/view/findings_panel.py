@@ -94,7 +94,7 @@ class FindingsPanel:
                 ui.input(placeholder="search", on_change=self._filter)
                 .props('dense clearable aria-label="search findings"').classes("w-40").mark("search-findings")
             )  # fmt: skip
-        self._told = ui.label("nothing found yet").classes("soft")
+        self._note = ui.label("nothing found yet").classes("soft")
         with ui.element("div").classes("scrolled w-full"):
             self._table = Rows(COLUMNS, self._chosen, name=1, sortable=True).classes("findings").mark("findings")
         self._where = WherePanel()
@@ -105,9 +105,9 @@ class FindingsPanel:
         self._where.update(now)
         self._turn = (self._turn + 1) % EVERY
         if self._turn == 1 or len(self._shown) != len(self._engine.known_findings):
-            self._fill()
+            self._refresh()
 
-    def _fill(self) -> None:
+    def _refresh(self) -> None:
         self._shown = self._engine.known_findings
         self._rated = worst_first(rated(self._shown, self._engine.policy))
         self._filter()
@@ -130,21 +130,21 @@ class FindingsPanel:
             text = "nothing of this kind" if self._rated else "nothing found yet"
         else:
             text = f"{ahead} of them are ahead: the run has gone back" if ahead else ""
-        if self._told.text != text:
-            self._told.text = text
-            self._told.visible = bool(text)
+        if self._note.text != text:
+            self._note.text = text
+            self._note.visible = bool(text)
 
     def show(self, finding: Finding) -> None:
         """Choose a finding, also one later than the present time."""
         self._table.choose(key_of(finding))
-        self._tell(finding)
+        self._explain(finding)
 
     def _chosen(self, key: str) -> None:
         finding = next((each for each in self._shown if key_of(each) == key), None)
         if finding is not None:
-            self._tell(finding)
+            self._explain(finding)
 
-    def _tell(self, finding: Finding) -> None:
+    def _explain(self, finding: Finding) -> None:
         rule = RULES.get(finding.rule)
         self._detail.clear()
         with self._detail:

@@ -80,7 +80,7 @@ def task_lanes(
     names = list(dict.fromkeys(owners))
     drawn: dict[str, dict[str, list[str]]] = {name: {} for name in names}
     drawn |= {name: {} for name in sorted({each.lane for each in every} - drawn.keys())}
-    for each, a, b, busy, many in _merged(every, x):
+    for each, a, b, busy, many in _joined(every, x):
         inset = 0 if each.state is TaskState.RUNNING else 5
         full = 15 - inset
         high = max(1.0, full * busy / max(b - a, 0.4)) if many else full
@@ -112,67 +112,67 @@ def _square(samples: list[Sample], x: Place, end: int) -> str:
     blocks: list[tuple[float, float]] = []
     ends = [cycles for cycles, _ in samples[1:]] + [end]
     # Pieces that are too close to be distinguished: begin, end, and their path.
-    crowd: list[tuple[float, float, str]] = []
+    close_pieces: list[tuple[float, float, str]] = []
 
-    def settle() -> None:
-        if len(crowd) > 2:
-            blocks.append((crowd[0][0], crowd[-1][1]))
+    def draw_close_pieces() -> None:
+        if len(close_pieces) > 2:
+            blocks.append((close_pieces[0][0], close_pieces[-1][1]))
         else:
-            line.extend(piece for _, _, piece in crowd)
-        crowd.clear()
+            line.extend(piece for _, _, piece in close_pieces)
+        close_pieces.clear()
 
     for (cycles, value), until in zip(samples, ends, strict=False):
         a, b, y = x(cycles), x(until), 4 if value else 17
-        piece = f"{'V' if line or crowd else f'M{a:.1f} '}{y}H{b:.1f}"
+        piece = f"{'V' if line or close_pieces else f'M{a:.1f} '}{y}H{b:.1f}"
         if b - a < MERGE:
-            crowd.append((a, b, piece))
+            close_pieces.append((a, b, piece))
             continue
-        many = len(crowd) > 2
-        settle()
+        many = len(close_pieces) > 2
+        draw_close_pieces()
         # After a block the line begins anew.
         line.append(f"M{a:.1f} {y}H{b:.1f}" if many else piece)
-    settle()
+    draw_close_pieces()
     shaded = f'<path class="level many" d="{"".join(_box(a, b, 4, 13) for a, b in blocks)}"/>' if blocks else ""
     return shaded + (f'<path class="level" d="{"".join(line)}"/>' if line else "")
 
 
 def _words(words: list[DecodedWord], x: Place, *, as_text: bool) -> str:
     """Words as boxes with their meanings, as far as there is room; bytes close together as the text of their line."""
-    said: list[tuple[float, float, tuple[str, ...]]]
+    labelled: list[tuple[float, float, tuple[str, ...]]]
     if as_text and words and x(words[0].end) - x(words[0].begin) < 2 * CHARACTER:
-        said = [(x(line.begin), x(line.end), (line.meaning,)) for line in text_lines(words)]
+        labelled = [(x(line.begin), x(line.end), (line.meaning,)) for line in text_lines(words)]
     elif as_text:
-        said = [(x(word.begin), x(word.end), (word.meaning, f"{word.value:02X}")) for word in words]
+        labelled = [(x(word.begin), x(word.end), (word.meaning, f"{word.value:02X}")) for word in words]
     else:
-        said = [(x(word.begin), x(word.end), _spoken(word)) for word in words]
+        labelled = [(x(word.begin), x(word.end), _texts_of_word(word)) for word in words]
     boxes: list[str] = []
-    crowd: list[tuple[float, float]] = []
+    close_pieces: list[tuple[float, float]] = []
     texts: list[str] = []
-    for a, b, versions in said:
+    for a, b, versions in labelled:
         if b - a < MERGE:
-            if crowd and a - crowd[-1][1] < MERGE:
-                crowd[-1] = crowd[-1][0], b
+            if close_pieces and a - close_pieces[-1][1] < MERGE:
+                close_pieces[-1] = close_pieces[-1][0], b
             else:
-                crowd.append((a, b))
+                close_pieces.append((a, b))
             continue
         slant = min(3.0, (b - a) / 4)
         boxes.append(f"M{a:.1f} 10.5l{slant:.1f} -7H{b - slant:.1f}l{slant:.1f} 7l-{slant:.1f} 7H{a + slant:.1f}z")
-        text = _fitting(versions, int((b - a - 6) / CHARACTER))
+        text = _first_fitting(versions, int((b - a - 6) / CHARACTER))
         if text:
             texts.append(f'<text class="word" x="{a + 4:.1f}" y="14.5">{escape(text)}</text>')
-    parts = [f'<path class="busy" d="{"".join(_box(a, b, 4, 13) for a, b in crowd)}"/>'] if crowd else []
+    parts = [f'<path class="busy" d="{"".join(_box(a, b, 4, 13) for a, b in close_pieces)}"/>'] if close_pieces else []
     if boxes:
         parts.append(f'<path class="bus" d="{"".join(boxes)}"/>')
     return "".join([*parts, *texts])
 
 
-def _spoken(word: DecodedWord) -> tuple[str, ...]:
+def _texts_of_word(word: DecodedWord) -> tuple[str, ...]:
     """The texts for a word of a bus, the longest first."""
     value = f"{word.value:02X}"
     return (f"{value} {word.meaning}", word.meaning, value) if word.meaning else (value,)
 
 
-def _fitting(versions: Sequence[str], room: int) -> str:
+def _first_fitting(versions: Sequence[str], room: int) -> str:
     """The first text that fits; of a text that is too long its beginning."""
     for text in versions:
         if len(text) <= room:
@@ -181,7 +181,7 @@ def _fitting(versions: Sequence[str], room: int) -> str:
     return f"{longest[: room - 1]}\N{HORIZONTAL ELLIPSIS}" if len(versions) == 1 and room > 3 else ""
 
 
-def _merged(every: list[Span], x: Place) -> list[tuple[Span, float, float, float, bool]]:
+def _joined(every: list[Span], x: Place) -> list[tuple[Span, float, float, float, bool]]:
     """The spans with their coordinates in the picture.  Spans that nearly touch are joined to one.
 
     With each comes the filled part of its width, and whether several spans were joined.

@@ -20,15 +20,15 @@ class LinePanel:
         self._line = line
         self._epoch = line.log.epoch
         self._next = 0
-        with ui.row().classes("gap-2 items-end w-full"):
+        with ui.row().classes("gap-2 items-center w-full"):
             ui.label("Serial line").classes("head")
-            self._text = ui.input("to the board").props("dense").classes("w-56").mark("send")
+            self._text = ui.input("to the board").props("dense stack-label").classes("w-56").mark("send")
             self._text.on("keydown.enter", self._send)
             self._end = ui.select(ENDS, value="\r", label="then").props("dense").classes("w-24").mark("end")
             ui.button("Send", on_click=self._send).props("no-caps dense outline")
             ui.space()
             self._counts = ui.label().classes("soft value")
-        self._log = ui.log(max_lines=MAX_LINES).classes("w-full mono").style("height:260px").mark("log")
+        self._log = ui.log(max_lines=MAX_LINES).classes("w-full mono log").mark("log")
 
     def update(self, _now: object = None) -> None:
         """Update the panel, 20 times a second."""

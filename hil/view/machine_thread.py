@@ -92,13 +92,13 @@ class MachineThread:
         self._arrivals: list[Future[None]] = []
         self._ended = False
         #: Set before another thread waits for its end.
-        self._unwanted = threading.Event()
+        self._end_wanted = threading.Event()
         #: Nothing may be done to the machine: the past is executed again, or a step holds it inside a slice.
         self._holding = False
         #: Whether a run, a hold or a repeated execution ends at its next check.
         self._release = False
         #: The first and the last cycle, while the run goes to a later time.
-        self._way: tuple[int, int] | None = None
+        self._travel_range: tuple[int, int] | None = None
         self._thread = threading.Thread(target=self._main, name="machine", daemon=True)
 
     def start(self) -> None:
@@ -112,7 +112,7 @@ class MachineThread:
         """
         if self._thread.is_alive():
             self._commands.put(self.end)
-            self._unwanted.set()
+            self._end_wanted.set()
             if hasattr(self, "run"):
                 self._thread.join(timeout=20.0)
 
@@ -128,7 +128,7 @@ class MachineThread:
                     self._seek()
                     self._arrive()
                 elif (self._running or self._wanted is not None) and not self.stopped:
-                    self._stretch()
+                    self._run_until_command()
                 else:
                     self._serve(wait=True)
         except BaseException as error:
@@ -148,7 +148,7 @@ class MachineThread:
         if run.stage is None:
             self.line.log.ends = LINE_ENDS
         self._take(run)
-        if self._unwanted.is_set():
+        if self._end_wanted.is_set():
             return
         self._reach(run.bench.start_up_cycles, "start-up")
         self.run.plan(self._orders)
@@ -187,7 +187,7 @@ class MachineThread:
 
     # Running
 
-    def _stretch(self) -> None:
+    def _run_until_command(self) -> None:
         """Run until a command asks for something else."""
         self.showing.where = None
         if self._wanted is not None:
@@ -212,8 +212,8 @@ class MachineThread:
     def _tick(self, session: Session) -> None:
         """Called after each slice, with the machine at rest."""
         now = self.run.clock.now
-        if self._way is not None:
-            begin, end = self._way
+        if self._travel_range is not None:
+            begin, end = self._travel_range
             self.showing.progress = min(0.999, (now - begin) / max(1, end - begin))
         self._serve()
         self._publish_when_due()
@@ -302,13 +302,13 @@ class MachineThread:
         self.showing.message, self.showing.progress = "running ahead at full speed", 0.0
         session = self._open_session(None)
         self._running = True
-        self._way = (self.run.clock.now, cycles)
+        self._travel_range = (self.run.clock.now, cycles)
         try:
             session.run((cycles - self.run.clock.now) / SYSCLK_HZ)
         except (FirmwareStopped, PortError) as reason:
             self._stop(reason)
         finally:
-            self._way = None
+            self._travel_range = None
             self._running = False
             self.showing.progress, self.showing.message = 1.0, ""
         self._publish()

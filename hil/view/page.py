@@ -30,7 +30,7 @@ UPDATE_S: Final = 0.05
 #: A pace that is reached to this share is kept.
 PACE_KEPT: Final = 0.95
 #: So many updates more without the pace than with it, and it is said: a second.
-UNKEPT: Final = 20
+MAX_LATE_UPDATES: Final = 20
 _CHIP: Final = {Mode.RUNNING: "run", Mode.STOPPED: "bad"}
 KEYS: Final = (
     ("p", "run, pause"), ("n", "step to the next statement"), ("r", "step to the next register access"),
@@ -115,7 +115,7 @@ class BoardPage:
         self._engine, self._stage = engine, stage
         self._always: list[Callable[[Snapshot], None]] = []
         with ui.element("section").classes("top").props('aria-label="robot, state, findings"'):
-            heard(f"{engine.kind.__name__}, emulated", 1)
+            hidden_heading(f"{engine.kind.__name__}, emulated", 1)
             if stage is not None:
                 stage.top()
             self._always.append(_Head(engine, stage, self._show_findings).update)
@@ -130,7 +130,9 @@ class BoardPage:
             build = self._panels()
             self._tabs = Tabs(build, "panels")
             # A second set of panels, where there is room for it: of those that can stand there twice.
-            self._twice = {title: make for title, make in build.items() if stage is None or title not in stage.tabs}
+            self._second_panels = {
+                title: make for title, make in build.items() if stage is None or title not in stage.tabs
+            }
             self._second: Tabs | None = None
             self._beside = ui.element("div").classes("beside")
         ui.on("hil-wide", self._show_second)
@@ -149,7 +151,7 @@ class BoardPage:
             board = _board_panel(self._engine)
             self._always.append(board.update)
             if board.has_pc:
-                with ui.column().classes("panel w-full gap-1"):
+                with ui.column().classes("panel w-full gap-1 fills"):
                     self._always.append(LinePanel(self._engine.line).update)
 
     def _panels(self) -> dict[str, Callable[[], Any]]:
@@ -182,7 +184,7 @@ class BoardPage:
         """Build the second panel once there is room for it: elements out of sight would be updated too."""
         if self._second is None:
             with self._beside:
-                self._second = Tabs(self._twice, "more panels", chosen="Findings").classed("second")
+                self._second = Tabs(self._second_panels, "more panels", chosen="Findings").classed("second")
 
     def update(self) -> None:
         """Update the panel, 20 times a second."""
@@ -210,7 +212,7 @@ class Tabs:
             ):
                 for title, make in build.items():
                     with ui.tab_panel(title).classes("p-1 gap-2"):
-                        heard(title)
+                        hidden_heading(title)
                         panel = make()
                         if panel is not None:
                             self.panels[title] = panel
@@ -236,7 +238,7 @@ class Tabs:
             panel.update(now)
 
 
-def heard(text: str, level: int = 2) -> None:
+def hidden_heading(text: str, level: int = 2) -> None:
     """A heading for screen readers, where others see a tab, a picture or a window title."""
     ui.html(escape(text), sanitize=False, tag=f"h{level}").classes("heard")
 
@@ -253,7 +255,7 @@ class _Head:
         self._engine, self._stage = engine, stage
         self._counted = -1
         #: Of the last updates, how many more found the pace unkept than kept.
-        self._unkept = 0
+        self._late_updates = 0
         self._mode = ui.label().classes("chip").props("role=status").mark("mode")
         self._tiles: dict[str, ui.label] = {}
         with ui.element("div").classes("tiles").mark("status"):
@@ -285,9 +287,9 @@ class _Head:
             self._set_tile(title, value)
         kept = now.mode is not Mode.RUNNING or now.pace is None or now.reached >= PACE_KEPT * now.pace
         # It comes and goes slowly: what stands beside it shall not jump at each hiccup.
-        self._unkept = max(self._unkept - 1, 0) if kept else min(self._unkept + 1, UNKEPT)
-        if self._unkept in (0, UNKEPT) and self._pace.visible is not bool(self._unkept):
-            self._pace.visible = bool(self._unkept)
+        self._late_updates = max(self._late_updates - 1, 0) if kept else min(self._late_updates + 1, MAX_LATE_UPDATES)
+        if self._late_updates in (0, MAX_LATE_UPDATES) and self._pace.visible is not bool(self._late_updates):
+            self._pace.visible = bool(self._late_updates)
         if self._pace.visible:
             self._set_tile("pace", f"{now.reached:.2f}, {now.lag_ms:.0f} ms late")
         findings = self._engine.findings

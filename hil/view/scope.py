@@ -32,7 +32,7 @@ from hil.view.words import DecodedWord
 
 EVERY: Final = 5
 #: The tasks of a long span are looked at once in so many times.
-ROUNDS: Final = 4
+LOOKS_PER_TASK_LOOK: Final = 4
 #: A panel that was not updated for so long was out of sight.
 HIDDEN_S: Final = 0.5
 #: Points that are drawn of a signal; more are thinned to the extremes of each column.
@@ -152,8 +152,8 @@ class ScopePanel:
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
-        self._turn = self._round = 0
-        self._waiting: Future[ScopeSpan] | None = None
+        self._turn = self._look_count = 0
+        self._pending_look: Future[ScopeSpan] | None = None
         self._look: ScopeSpan | None = None
         self._names: list[str] = []
         self._end: int | None = None
@@ -162,9 +162,9 @@ class ScopePanel:
         #: When the panel was updated last, on the monotonic clock: out of sight it is not.
         self._updated_s = 0.0
         #: What chart and lanes show.
-        self._charted: Any = None
-        self._drawn: Any = None
-        self._laned: Any = None
+        self._chart_key: Any = None
+        self._drawn_key: Any = None
+        self._lanes_key: Any = None
         #: Where the pointer is in the picture, 0..1; where it took hold, and the end of the picture then.
         self._pointer: float | None = None
         self._grip: tuple[float, int] | None = None
@@ -182,7 +182,7 @@ class ScopePanel:
                 on_change=lambda e: self._period(e.value),
             ).props("dense").classes("w-28")
             with ui.row().classes("items-center gap-1 no-wrap"):
-                self._still = ui.switch("hold").props("dense").mark("still").tooltip("hold the picture")
+                self._hold = ui.switch("hold").props("dense").mark("still").tooltip("hold the picture")
                 ui.button("earlier", on_click=lambda: self._shift(-1)).props("no-caps dense flat")
                 ui.button("later", on_click=lambda: self._shift(1)).props("no-caps dense flat")
         self._chosen = ui.row().classes("gap-1").mark("signals")
@@ -222,8 +222,8 @@ class ScopePanel:
         elif not self._offered and self._labels.done() and not self._labels.cancelled():
             self._offered = True
             self._tree.offer(self._labels.result(), self._engine.blocks)
-        if self._waiting is not None and self._waiting.done():
-            answer, self._waiting = self._waiting, None
+        if self._pending_look is not None and self._pending_look.done():
+            answer, self._pending_look = self._pending_look, None
             if not answer.cancelled() and answer.exception() is None:
                 self._look = answer.result()
                 if list(self._look.kinds) != self._names:  # another page has chosen
@@ -232,18 +232,18 @@ class ScopePanel:
         now_s, before_s = time.monotonic(), self._updated_s
         self._updated_s = now_s
         if now_s - before_s > HIDDEN_S:  # it comes into sight: what it showed then is old
-            self._turn, self._round = EVERY - 1, ROUNDS - 1
+            self._turn, self._look_count = EVERY - 1, LOOKS_PER_TASK_LOOK - 1
         self._turn = (self._turn + 1) % EVERY
-        if self._turn == 0 and self._waiting is None:
+        if self._turn == 0 and self._pending_look is None:
             engine, cycles = self._engine, round(float(self._span.value) * SYSCLK_HZ)
-            if self._still.value and self._end is None and self._look is not None:
+            if self._hold.value and self._end is None and self._look is not None:
                 self._end = self._look.end
-            elif not self._still.value:
+            elif not self._hold.value:
                 self._end = None
             end = self._end
-            self._round = (self._round + 1) % ROUNDS
-            live = float(self._span.value) <= LIVE_S or self._round == 0
-            self._waiting = engine.submit(lambda run: look(run, engine.probes, end, cycles, with_spans=live))
+            self._look_count = (self._look_count + 1) % LOOKS_PER_TASK_LOOK
+            live = float(self._span.value) <= LIVE_S or self._look_count == 0
+            self._pending_look = engine.submit(lambda run: look(run, engine.probes, end, cycles, with_spans=live))
 
     def _draw(self) -> None:
         now = self._look
@@ -256,11 +256,11 @@ class ScopePanel:
             self._draw_lanes(self._lanes_look)
         a, b = cursors = self._cursor_cycles(now)
         drawn = (now.begin, now.end, cursors, tuple(now.values), self._width)
-        if (drawn, self._pointer) == self._charted:
+        if (drawn, self._pointer) == self._chart_key:
             return
-        self._charted = drawn, self._pointer
-        if drawn != self._drawn:
-            self._drawn = drawn
+        self._chart_key = drawn, self._pointer
+        if drawn != self._drawn_key:
+            self._drawn_key = drawn
             self._draw_chart(now, cursors)
         times = {"A": a, "B": b}
         if self._pointer is not None:
@@ -287,9 +287,9 @@ class ScopePanel:
     def _draw_lanes(self, now: ScopeSpan) -> None:
         cursors = self._cursor_cycles(now)
         key = (now.begin, now.end, cursors, tuple(now.values), self._width)
-        if key == self._laned:
+        if key == self._lanes_key:
             return
-        self._laned = key
+        self._lanes_key = key
         rows = [
             *signal_lanes(now.kinds, now.values, now.words, now.begin, now.end, self._width),
             *task_lanes(now.owners, now.spans or [], now.begin, now.end, self._width),
@@ -303,7 +303,7 @@ class ScopePanel:
     def _tick(self, name: str, on: bool) -> None:
         probes = self._engine.probes
         self._engine.submit(lambda _run: probes.add(name) if on else probes.remove(name))
-        self._waiting = None  # it would tell what was recorded before
+        self._pending_look = None  # it would tell what was recorded before
         self._show_names([*self._names, name] if on else [each for each in self._names if each != name])
 
     def _show_names(self, names: list[str]) -> None:
@@ -323,7 +323,7 @@ class ScopePanel:
         now = self._look
         if now is None:
             return
-        self._still.value = True
+        self._hold.value = True
         self._end = max(0, now.end + way * (now.end - now.begin) // 2)
 
     # Mouse or finger, on chart and lanes
@@ -362,7 +362,7 @@ class ScopePanel:
 
     def _show(self, end: int) -> None:
         """Freeze the picture at a span that ends at a time, and draw it at once."""
-        self._still.value = True
+        self._hold.value = True
         self._end = min(max(0, end), self._engine.snapshot.cycles)
         self._turn = EVERY - 1
 

@@ -150,7 +150,8 @@ body { background:var(--paper); color:var(--ink); font-size:13px; }
 button.tile { cursor:pointer; }
 .main { display:flex; gap:12px; width:100%; flex:1 1 0; min-height:0; align-items:stretch; }
 .left { display:flex; flex-direction:column; gap:4px; flex:1 1 54%; min-width:0; }
-.parts { flex:1 1 0; overflow-y:auto; flex-wrap:nowrap; }
+.parts { flex:1 1 0; overflow-y:auto; flex-wrap:nowrap; } .parts .fills { flex:1 0 300px; flex-wrap:nowrap; }
+.parts .panel { flex-shrink:0; }
 .scrub .bar { position:relative; flex:1 1 0; min-width:0; padding:0 6px; }
 .scrub svg { display:block; width:100%; height:17px; }
 .scrub svg { cursor:pointer; } .scrub .reach { fill:transparent; } .scrub .known { fill:var(--post); }

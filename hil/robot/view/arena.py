@@ -28,9 +28,9 @@ OPEN_POINTS: Final = 200
 #: CHOICE: the most points of a cloud that are still readable as a picture.
 MAX_POINTS: Final = 6000
 #: Page updates (20 a second) between two updates of paths and clouds.
-SLOW: Final = 5
+PATH_UPDATES: Final = 5
 TURN_RAD: Final = pi / 12.0
-HANDS: Final = "drag the robot or an obstacle; add or remove an obstacle"
+TOOLS_HELP: Final = "drag the robot or an obstacle; add or remove an obstacle"
 
 
 class GrowingPath:
@@ -40,8 +40,8 @@ class GrowingPath:
         self._shape = shape
         self._finished = window.layer()
         self._growing = window.layer()
-        self._sealed = 0
-        self._mark: Point | None = None
+        self._finished_count = 0
+        self._finished_end: Point | None = None
         self._shown: tuple[int, Point | None] = (0, None)
 
     def show(self, view: Viewport, points: Sequence[Point]) -> None:
@@ -50,12 +50,14 @@ class GrowingPath:
         if now == self._shown:
             return
         self._shown = now
-        if self._sealed and (len(points) < self._sealed or points[self._sealed - 1] != self._mark):
-            self._sealed = 0
+        if self._finished_count and (
+            len(points) < self._finished_count or points[self._finished_count - 1] != self._finished_end
+        ):
+            self._finished_count = 0
             self._finished.content = ""
-        tail = points[max(0, self._sealed - 1) :]
+        tail = points[max(0, self._finished_count - 1) :]
         if len(tail) > OPEN_POINTS:
-            self._sealed, self._mark = len(points), points[-1]
+            self._finished_count, self._finished_end = len(points), points[-1]
             self._finished.content = self._shape(view, points)
             tail = points[-1:]
         self._growing.content = self._shape(view, tail)
@@ -121,7 +123,9 @@ class ArenaPanel:
         self._cloud = PointCloud(engine.line.log)
         self._newest: list[Point] = []
         with ui.element("div").classes("arena w-full hand-drag").mark("arena") as self._box:
-            self._window = window = Window(view.extent(corners), self._touched, self._looked, self._follow_no_more)
+            self._window = window = Window(
+                view.extent(corners), self._on_gesture, self._draw_grid, self._follow_no_more
+            )
             self._grid = window.layer()
             window.layer().content = draw.walls(view, self._scene.walls)
             self._beams = window.layer()
@@ -131,24 +135,24 @@ class ArenaPanel:
             self._believed = GrowingPath(window, lambda view, points: draw.path(view, points, "trail-odo"))
             self._posts = window.layer()
             self._robot = window.layer()
-            self._hand = window.layer()
-            self._hands()
+            self._held_layer = window.layer()
+            self._add_tools()
             with ui.row().classes("tools no-wrap gap-1"):
                 tool("+", "nearer", lambda: window.zoom(1.4))
                 tool("\N{MINUS SIGN}", "farther", lambda: window.zoom(1 / 1.4))
                 tool("fit", "everything in sight", self._fit)
                 self._follow = tool("follow", "keep the robot in the middle", self._follow_or_not).mark("follow")
-        self._looked(window.seen)
+        self._draw_grid(window.seen)
         legend()
 
-    def _hands(self) -> None:
+    def _add_tools(self) -> None:
         """Add the buttons that move the robot and change obstacles."""
         with ui.row().classes("tools hands no-wrap items-center gap-1"):
             self._choice = ui.toggle(
                 ["drag", "add", "remove"], value="drag", on_change=lambda e: self._choose(str(e.value))
-            ).props(f'dense no-caps size=sm aria-label="{HANDS}"').mark("tool")  # fmt: skip
+            ).props(f'dense no-caps size=sm aria-label="{TOOLS_HELP}"').mark("tool")  # fmt: skip
             with self._choice:
-                ui.tooltip(HANDS)
+                ui.tooltip(TOOLS_HELP)
             tool("\N{ANTICLOCKWISE OPEN CIRCLE ARROW}", "turn the robot left by 15°", lambda: self._rotate(TURN_RAD))
             tool("\N{CLOCKWISE OPEN CIRCLE ARROW}", "turn the robot right by 15°", lambda: self._rotate(-TURN_RAD))
             self._diameter = (
@@ -195,11 +199,11 @@ class ArenaPanel:
             self._robot.content = shown
             if self._following:
                 self._window.centre(view.to_picture(pose.x_m, pose.y_m))
-        self._turn = (self._turn + 1) % SLOW
+        self._turn = (self._turn + 1) % PATH_UPDATES
         if self._turn == 0:
-            self._slow()
+            self._update_paths()
 
-    def _slow(self) -> None:
+    def _update_paths(self) -> None:
         trails = self._trails
         self._true.show(self._view, trails.true)
         self._believed.show(self._view, trails.believed)
@@ -212,7 +216,7 @@ class ArenaPanel:
 
     # The window
 
-    def _looked(self, seen: draw.VisibleArea) -> None:
+    def _draw_grid(self, seen: draw.VisibleArea) -> None:
         _set(self._grid, draw.grid(self._view, seen))
 
     def _fit(self) -> None:
@@ -232,7 +236,7 @@ class ArenaPanel:
 
     # Hands
 
-    def _touched(self, hand: PointerGestures) -> None:
+    def _on_gesture(self, hand: PointerGestures) -> None:
         x, y = self._view.to_world(hand.x, hand.y)
         if hand.what == "take":
             self._press(x, y)
@@ -257,7 +261,7 @@ class ArenaPanel:
             self._add(x, y)
         elif self._tool == "remove":
             if near is not None:
-                self._do("remove", near.name)
+                self._act("remove", near.name)
         elif near is not None:
             self._grip, self._moving = near, "obstacle"
         else:
@@ -267,38 +271,38 @@ class ArenaPanel:
     def _drag(self, x: float, y: float, *, turning: bool) -> None:
         self._target = (x, y)
         if self._moving == "obstacle" and self._grip is not None:
-            self._hand.content = draw.obstacles(self._view, [Obstacle("", x, y, self._grip.radius_m)])
+            self._held_layer.content = draw.obstacles(self._view, [Obstacle("", x, y, self._grip.radius_m)])
         else:
             status = self._scene.status
             if turning:  # with Shift, the robot turns towards the mouse
                 self._heading = atan2(y - status.y_m, x - status.x_m)
                 self._target = (status.x_m, status.y_m)
             held = Pose(*self._target, self._heading)
-            self._hand.content = draw.robot(self._view, held, "held", unit=self._window.seen.unit)
+            self._held_layer.content = draw.robot(self._view, held, "held", unit=self._window.seen.unit)
 
     def _drop(self) -> None:
         x, y = self._target
         if self._moving == "robot":
-            self._do("place", x, y, self._heading)
+            self._act("place", x, y, self._heading)
         elif self._grip is not None:
-            self._do("move", self._grip.name, x, y)
+            self._act("move", self._grip.name, x, y)
         self._let_go()
 
     def _let_go(self) -> None:
         self._moving, self._grip = "", None
-        self._hand.content = ""
+        self._held_layer.content = ""
 
     def _add(self, x: float, y: float) -> None:
         taken = {post.name for post in self._scene.obstacles}
         number = next(n for n in range(1, 10_000) if f"obstacle {n}" not in taken)
-        self._do("add", f"obstacle {number}", x, y, float(self._diameter.value or 0.2))
+        self._act("add", f"obstacle {number}", x, y, float(self._diameter.value or 0.2))
         self._choice.value = "drag"
 
     def _rotate(self, by_rad: float) -> None:
         status = self._scene.status
-        self._do("place", status.x_m, status.y_m, status.heading_rad + by_rad)
+        self._act("place", status.x_m, status.y_m, status.heading_rad + by_rad)
 
-    def _do(self, what: str, *values: str | float) -> None:
+    def _act(self, what: str, *values: str | float) -> None:
         self._engine.act(what, *values)
 
 
@@ -314,7 +318,7 @@ class FrameMap:
         self._loaded: list[OdometryFrame] = []
         self._turn = 0
         with ui.element("div").classes("arena w-full").mark("map"):
-            self._window = window = Window(self._held, on_seen=self._looked)
+            self._window = window = Window(self._held, on_seen=self._draw_grid)
             self._grid = window.layer()
             self._dots = GrowingPath(window, lambda view, points: draw.dots(view, points, "cloud"))
             self._way = GrowingPath(window, lambda view, points: draw.path(view, points, "trail-odo"))
@@ -324,7 +328,7 @@ class FrameMap:
                 tool("+", "nearer", lambda: window.zoom(1.4))
                 tool("\N{MINUS SIGN}", "farther", lambda: window.zoom(1 / 1.4))
                 tool("fit", "everything in sight", window.fit)
-        self._looked(window.seen)
+        self._draw_grid(window.seen)
 
     def show_loaded(self, frames: list[OdometryFrame]) -> None:
         """Show a trajectory from a file."""
@@ -334,7 +338,7 @@ class FrameMap:
 
     def update(self) -> None:
         """Update the panel, 20 times a second."""
-        self._turn = (self._turn + 1) % SLOW
+        self._turn = (self._turn + 1) % PATH_UPDATES
         if self._turn:
             return
         self._cloud.update()
@@ -348,7 +352,7 @@ class FrameMap:
             shown = draw.robot(self._view, pose, "ghost", unit=seen.unit)
             _set(self._robot, shown + draw.out_of_sight(self._view, pose, seen, "robot"))
 
-    def _looked(self, seen: draw.VisibleArea) -> None:
+    def _draw_grid(self, seen: draw.VisibleArea) -> None:
         _set(self._grid, draw.grid(self._view, seen))
 
     def _fit(self, points: Sequence[Point]) -> None:

@@ -8,7 +8,7 @@ from hil.robot.view.arena import FrameMap
 from hil.robot.view.console_panel import ConsolePanel
 from hil.robot.view.orders import KEYS, mission_and_stop
 from hil.view.line import RobotLine
-from hil.view.page import UPDATE_S, Page, heard
+from hil.view.page import UPDATE_S, Page, hidden_heading
 
 
 def console_page(line: RobotLine) -> None:
@@ -16,7 +16,7 @@ def console_page(line: RobotLine) -> None:
     ui.page_title(f"Robot at {line.address} - c2000-hil")
     page = Page(KEYS, lambda name, down: console.key(name, down))
     with ui.element("section").classes("top").props('aria-label="orders"'):
-        heard("Robot at a serial line", 1)
+        hidden_heading("Robot at a serial line", 1)
         mission_and_stop(lambda: console)
         ui.label(f"robot at {line.address}").classes("value")
         page.corner()

@@ -24,7 +24,7 @@ HELP: Final = (
     "In telemanipulation, a held arrow key changes V by 0.01 m/s or W by 0.03 rad/s ten times a second; let go, the "
     "robot drives on. The stick sets both; let go, it stops. Set V, W holds until another order."
 )
-UNDRIVEN: Final = "Telemanipulation is off"
+TELE_OFF: Final = "Telemanipulation is off"
 
 
 def file_of(frames: list[OdometryFrame]) -> bytes:
@@ -46,10 +46,10 @@ class ConsolePanel:
         self._on_loaded = on_loaded
         self.tele = BrowserTele()
         #: The reference that follows the `#TELE` of "Set V, W".
-        self._late: ui.timer | None = None
+        self._delayed_reference: ui.timer | None = None
         self._epoch = line.log.epoch
         self._next = 0
-        self._driven = False
+        self._stick_on = False
         with ui.row().classes("gap-4 items-center no-wrap w-full"):
             self._stick = ui.joystick(
                 color="#2a6bd1", size=120, mode="static", position={"left": "50%", "top": "50%"},
@@ -61,7 +61,7 @@ class ConsolePanel:
                         ui.button("Telemanipulation", on_click=self.toggle_tele).props("no-caps").mark("tele")
                     )
                     ui.button("V = W = 0", on_click=lambda: self.tele.rest()).props("no-caps outline").mark("rest")
-                self._reference = ui.label(UNDRIVEN).classes("value")
+                self._reference = ui.label(TELE_OFF).classes("value")
                 ui.label(HELP).classes("soft wide")
         with ui.row().classes("gap-2 items-end"):
             self._v = ui.number("V, m/s", value=0.1, step=0.05).props("dense stack-label").classes("w-20").mark("v")
@@ -94,9 +94,9 @@ class ConsolePanel:
     def send(self, data: bytes) -> None:
         """Send bytes to the robot.  A reference that was to follow an earlier order is dropped."""
         if data:
-            if self._late is not None:
-                self._late.cancel()
-                self._late = None
+            if self._delayed_reference is not None:
+                self._delayed_reference.cancel()
+                self._delayed_reference = None
             self._line.write(data)
 
     def mission(self) -> None:
@@ -130,7 +130,8 @@ class ConsolePanel:
         """Key -> action, except for driving."""
         return {
             keys.STOP.browser: self.stop, keys.MISSION.browser: self.mission, keys.TELE.browser: self.toggle_tele,
-            keys.REST.browser: self.tele.rest, keys.LEAVE.browser: self.end_tele, keys.SET.browser: self._ask_reference,
+            keys.REST.browser: self.tele.rest, keys.LEAVE.browser: self.end_tele,
+            keys.SET.browser: self._focus_reference,
             keys.CALIBRATE.browser: lambda: self.send(order("calibrate")),
             keys.INIT.browser: lambda: self.send(order("init")),
         }  # fmt: skip
@@ -144,10 +145,10 @@ class ConsolePanel:
         if self._line.flowing:
             self.send(self.tele.tick(time.monotonic()))
         reference = f"V {self.tele.v_m_s:+.2f} m/s   W {self.tele.w_rad_s:+.2f} rad/s"
-        _text(self._reference, reference if self.tele.on else UNDRIVEN)
-        if self.tele.on is not self._driven:
-            self._driven = self.tele.on
-            self._stick.classes(remove="off") if self._driven else self._stick.classes("off")
+        _text(self._reference, reference if self.tele.on else TELE_OFF)
+        if self.tele.on is not self._stick_on:
+            self._stick_on = self.tele.on
+            self._stick.classes(remove="off") if self._stick_on else self._stick.classes("off")
         _text(self._tele_button, "End telemanipulation" if self.tele.on else "Telemanipulation")
         log = self._line.log
         if log.epoch != self._epoch:
@@ -167,7 +168,7 @@ class ConsolePanel:
         damaged = f", {log.malformed} damaged {frames}" if log.malformed else ""
         _text(self._counts, f"{log.bytes_from_robot} B in, {log.bytes_to_robot} B out{damaged}")
 
-    def _ask_reference(self) -> None:
+    def _focus_reference(self) -> None:
         self._v.run_method("focus")
 
     def _set(self) -> None:
@@ -182,7 +183,7 @@ class ConsolePanel:
         # Telemanipulation comes first, as in the console; otherwise the robot accepts no reference.
         self.tele.end()
         self.send(order("tele"))
-        self._late = ui.timer(0.5, lambda: self.send(data), once=True)
+        self._delayed_reference = ui.timer(0.5, lambda: self.send(data), once=True)
 
     def _send_raw(self) -> None:
         try:

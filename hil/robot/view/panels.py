@@ -10,7 +10,7 @@ from hil.robot.view.console_panel import ConsolePanel
 from hil.robot.view.orders import KEYS, mission_and_stop
 from hil.robot.view.scene import Scene
 from hil.view.engine import Engine
-from hil.view.page import heard
+from hil.view.page import hidden_heading
 from hil.view.snapshot import Snapshot
 
 
@@ -36,7 +36,7 @@ class Panels:
 
     def picture(self) -> None:
         """Add the arena."""
-        heard("Arena")
+        hidden_heading("Arena")
         self._arena = ArenaPanel(self._engine)
 
     def _build_console(self) -> None:

@@ -31,7 +31,7 @@ def panel() -> Any:
     )
     panel._lanes = SimpleNamespace(props={}, content="")
     panel._reading = SimpleNamespace(content="")
-    panel._charted = panel._drawn = panel._laned = panel._lanes_look = panel._pointer = panel._end = None
+    panel._chart_key = panel._drawn_key = panel._lanes_key = panel._lanes_look = panel._pointer = panel._end = None
     return panel
 
 
@@ -175,13 +175,13 @@ def test_the_wheel_zooms_about_the_pointer(panel: Any, turned: int, span_s: floa
 
     chosen: list[float] = []
     panel._span = SimpleNamespace(value=1.0, set_options=lambda _options, value: chosen.append(value))
-    panel._still = SimpleNamespace(value=False)
+    panel._hold = SimpleNamespace(value=False)
     panel._engine = SimpleNamespace(snapshot=SimpleNamespace(cycles=100 * SYSCLK_HZ))
     panel._look = ScopeSpan(10 * SYSCLK_HZ, 11 * SYSCLK_HZ, {}, None, ())
     # In the middle of the lanes, at 10.5 s: that stays in the middle.
     panel._wheel(SimpleNamespace(args=[(LEFT + (WIDTH - LEFT) / 2) / WIDTH, 0, turned]))
     assert chosen == [pytest.approx(span_s)]
-    assert panel._still.value
+    assert panel._hold.value
     assert panel._end == pytest.approx((10.5 + span_s / 2) * SYSCLK_HZ)
     # Turned on before the picture came: about the same place.
     panel._span.value = chosen[0]
