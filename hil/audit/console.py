@@ -147,9 +147,9 @@ def _obeys_set(bench: Bench, _desk: Desk) -> Evidence:
 
 
 def _highest_speed(_bench: Bench, desk: Desk) -> Evidence:
-    told = [float(data.removeprefix(b"#SETR").partition(b",")[0]) for _, data in desk.wire if b"#SETR" in data]
+    speeds_m_s = [float(data.removeprefix(b"#SETR").partition(b",")[0]) for _, data in desk.wire if b"#SETR" in data]
     what = "speed that the robot is told, after 6 s of the arrow"
-    return measured(what, max(told, default=0.0), "m/s", low=V_MOST_M_S, high=V_MOST_M_S)
+    return measured(what, max(speeds_m_s, default=0.0), "m/s", low=V_MOST_M_S, high=V_MOST_M_S)
 
 
 def _turn(bench: Bench, _desk: Desk) -> Evidence:

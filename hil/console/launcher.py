@@ -78,8 +78,8 @@ class Process:
         if not status or self.asked_to_end:
             return ""
         how = f"was killed by signal {-status}" if status < 0 else f"ended with status {status}"
-        said = _last_line(self.output)
-        return f"{self.app.path.name} {how}" + (f": {said}" if said else "") + f" (its output: {self.output})"
+        last_line = _last_line(self.output)
+        return f"{self.app.path.name} {how}" + (f": {last_line}" if last_line else "") + f" (its output: {self.output})"
 
 
 class ByteCarrier(Protocol):

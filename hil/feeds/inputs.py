@@ -198,13 +198,13 @@ class _FedShaft:
         self._edge = floor(self._angle_rad / _EDGE_RAD)
         # It begins where the encoder stands: only what it turns from there counts.
         self._shaft.angle_rad = self._angle_rad - self._edge * _EDGE_RAD
-        self._deaf = self._pins.looked_at.connect(self._advance)
+        self._stop_listening = self._pins.looked_at.connect(self._advance)
         self._event: Event | None = self._clock.after(_SAMPLE_CYCLES, self._sample)
 
     def end(self) -> None:
         """Return to the motor's shaft, from the present count of the encoder."""
         self._advance()
-        self._deaf()
+        self._stop_listening()
         self._clock.cancel(self._event)
         self._motor.encoder = self._pins
 

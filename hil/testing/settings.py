@@ -208,25 +208,25 @@ def for_c(item: pytest.Item) -> dict[str, Any]:
     Raises ValueError for a folder that does not exist, and for an unknown ABI.
     """
     marker = nearest(item, "firmware")
-    said = dict(marker.kwargs) if marker is not None else {}
-    given: dict[str, Any] = {}
+    arguments = dict(marker.kwargs) if marker is not None else {}
+    settings: dict[str, Any] = {}
     for key, ini, folder in (("include", "hil_include", item.path.parent), ("defines", "hil_defines", None)):
-        value = said.get(key)
+        value = arguments.get(key)
         if value is None:
             value, folder = item.config.getini(ini) or (), folder and item.config.rootpath
         texts = [value] if isinstance(value, str) else list(value)
         if not all(isinstance(text, str | Path) for text in texts):
             raise ValueError(f"marker firmware({key}={value!r}): expected a list of texts")
         if texts:
-            given[key] = [folder / text for text in texts] if folder else texts
-    for path in given.get("include", ()):
+            settings[key] = [folder / text for text in texts] if folder else texts
+    for path in settings.get("include", ()):
         if not path.is_dir():
             raise ValueError(f"firmware(include=): there is no folder {path}")
-    if "abi" in said:
-        if said["abi"] not in ("coff", "eabi"):
-            raise ValueError(f"marker firmware(abi={said['abi']!r}): coff or eabi")
-        given["abi"] = said["abi"]
-    return given
+    if "abi" in arguments:
+        if arguments["abi"] not in ("coff", "eabi"):
+            raise ValueError(f"marker firmware(abi={arguments['abi']!r}): coff or eabi")
+        settings["abi"] = arguments["abi"]
+    return settings
 
 
 def strict(config: pytest.Config) -> bool:

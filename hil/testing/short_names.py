@@ -28,12 +28,17 @@ def give_short_names(config: pytest.Config) -> None:
     """Add the fixtures with short names.  Those of a conftest.py override them."""
     plugins = config.pluginmanager.get_plugins()
     others = {name for plugin in plugins for name in _fixtures(plugin)}
-    ours = {f"hil_{name}": name for name in SHORT}
-    said = {ours[n]: value.__doc__ for plugin in plugins for n, value in _named(plugin).items() if n in ours}
+    short_of_long = {f"hil_{name}": name for name in SHORT}
+    docstrings = {
+        short_of_long[n]: value.__doc__
+        for plugin in plugins
+        for n, value in _named(plugin).items()
+        if n in short_of_long
+    }
     taken: list[str] = [name for name in SHORT if name in others]
     config.stash[TAKEN] = taken
     names = ModuleType("c2000_hil_short_names")
-    vars(names).update({name: _short(name, said[name]) for name in SHORT if name not in others})
+    vars(names).update({name: _short(name, docstrings[name]) for name in SHORT if name not in others})
     config.pluginmanager.register(names, names.__name__)
 
 
@@ -48,7 +53,7 @@ def register_markers(config: pytest.Config) -> None:
             config.addinivalue_line("markers", f"{name}: short for hil_{name}")
 
 
-def _short(name: str, said: str) -> Callable[..., Any]:
+def _short(name: str, docstring: str) -> Callable[..., Any]:
     """The fixture `name`, which returns the value of the fixture `hil_name`."""
     long = f"hil_{name}"
 
@@ -56,7 +61,7 @@ def _short(name: str, said: str) -> Callable[..., Any]:
         return values[long]
 
     give.__signature__ = Signature([Parameter(long, Parameter.KEYWORD_ONLY)])  # type: ignore[attr-defined]
-    give.__doc__ = said
+    give.__doc__ = docstring
     return pytest.fixture(name=name)(give)
 
 

@@ -21,7 +21,7 @@ from hil.view.snapshot import Snapshot
 STEPS: Final = 200
 #: CHOICE: for this time after the user moved a slider, the run does not set it back.
 HOLD_S: Final = 0.5
-HELP: Final = "A value that you set here stays until you set it again. It replaces what the world would give."
+HELP: Final = "A value that you set here stays until you set it again, even if a world would change it."
 NO_FACES: Final = "There is nothing to set here: no part of this board has a value that can be set."
 
 

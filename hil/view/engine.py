@@ -72,11 +72,11 @@ class Engine:
         """End the thread and release the machine."""
         self._machine.join()
 
-    def on_error(self, told: Callable[[], None]) -> None:
+    def on_error(self, listener: Callable[[], None]) -> None:
         """Call `told`, in any thread, when the thread ends with an `error`; at once if it has."""
-        self._machine.failed.connect(told)
+        self._machine.failed.connect(listener)
         if self.error is not None:
-            told()
+            listener()
 
     # Commands
 

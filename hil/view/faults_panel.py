@@ -64,9 +64,9 @@ class FaultsPanel:
             self._fields = {parameter.name: _field(parameter) for parameter in kind.parameters}
 
     async def _break(self) -> None:
-        said = [f"{name}={field.value}" for name, field in self._fields.items() if field.value not in (None, "")]
+        arguments = [f"{name}={field.value}" for name, field in self._fields.items() if field.value not in (None, "")]
         try:
-            fault = parse(f"{self._kind.value}:{','.join(said)}")
+            fault = parse(f"{self._kind.value}:{','.join(arguments)}")
             await asyncio.wrap_future(self._engine.act("break", str(fault)))
         except ValueError as error:
             ui.notify(str(error), type="warning")

@@ -35,11 +35,11 @@ def named(description: str) -> tuple[NamedValues, ...]:
     values = []
     for at, match in enumerate(found):
         until = found[at + 1].start() if at + 1 < len(found) else len(description)
-        said = _END.split(description[match.end() : until])[0].strip()
+        text = _END.split(description[match.end() : until])[0].strip()
         low, high = int(match[2]), int(match[4] or match[2])
         if match[3] in (" to ", "-"):
-            said = f"{low}{match[3]}{high} {said}"
-        values.append(NamedValues(low, high, said))
+            text = f"{low}{match[3]}{high} {text}"
+        values.append(NamedValues(low, high, text))
     return tuple(values)
 
 

@@ -73,5 +73,5 @@ class Rows(Element, component="rows.js"):
 
 def _plain(cell: TableCell) -> dict[str, Any]:
     """A cell for the browser, without empty values."""
-    said = {"text": cell.text, "more": cell.more, "css": cell.css, "title": cell.title, "order": cell.order}
-    return {name: value for name, value in said.items() if value not in ("", None) or name == "text"}
+    entries = {"text": cell.text, "more": cell.more, "css": cell.css, "title": cell.title, "order": cell.order}
+    return {name: value for name, value in entries.items() if value not in ("", None) or name == "text"}

@@ -86,9 +86,9 @@ def run_view(
 
     if engine.kind.bench is not None:
         load_map(setup.world)  # a wrong map is said here, not on the page
-    with contextlib.closing(listen(host, port)) as door:
+    with contextlib.closing(listen(host, port)) as listening:
         try:
-            serve_view(engine, door, host, print_line=print_line, on_stop=ends)
+            serve_view(engine, listening, host, print_line=print_line, on_stop=ends)
         finally:
             engine.close()
     if engine.error is not None:
@@ -97,12 +97,12 @@ def run_view(
 
 
 def serve_view(
-    engine: Engine, door: socket.socket, host: str, *, print_line: PrintLine = print, on_stop: OnStop | None = None
+    engine: Engine, listening: socket.socket, host: str, *, print_line: PrintLine = print, on_stop: OnStop | None = None
 ) -> None:
     """Start an emulated board and serve its page until the user ends it."""
     from hil.view.page import machine_page
 
-    _serve(lambda: machine_page(engine), door, host, print_line, on_stop, begin=engine.start)
+    _serve(lambda: machine_page(engine), listening, host, print_line, on_stop, begin=engine.start)
 
 
 def serve_console(
@@ -119,9 +119,9 @@ def serve_console(
 
     line = SerialPortLine(port_url)
     try:
-        with contextlib.closing(listen(host, port)) as door:
+        with contextlib.closing(listen(host, port)) as listening:
             nicegui_app.timer(TURN_S, line.turn)
-            _serve(lambda: console_page(line), door, host, print_line, on_stop)
+            _serve(lambda: console_page(line), listening, host, print_line, on_stop)
     finally:
         line.close()
     return line
@@ -132,7 +132,7 @@ def _nothing() -> None:
 
 
 def _serve(
-    build: Callable[[], Any], door: socket.socket, host: str, print_line: PrintLine, on_stop: OnStop | None,
+    build: Callable[[], Any], listening: socket.socket, host: str, print_line: PrintLine, on_stop: OnStop | None,
     begin: Callable[[], None] = _nothing,
 ) -> None:  # fmt: skip
     """Serve until the server is told to stop; `begin` is called when it has started."""
@@ -156,7 +156,7 @@ def _serve(
         def capture_signals(self) -> Iterator[None]:
             yield
 
-    number = door.getsockname()[1]
+    number = listening.getsockname()[1]
     token = "" if is_loopback(host) else secrets.token_urlsafe(16)
     app = FastAPI(openapi_url=None)
     ui.run_with(
@@ -189,4 +189,4 @@ def _serve(
         on_stop(stop)
     shown = f"[{host}]" if ":" in host else host
     print_line(f"view: http://{shown}:{number}/" + (f"?token={token}" if token else ""))
-    server.run(sockets=[door])
+    server.run(sockets=[listening])

@@ -79,7 +79,7 @@ class Stepper:
         self._listening = False
         #: The only finding to stop at; None: any.
         self.sought: Finding | None = None
-        self._deaf: Callable[[], None] | None = None
+        self._stop_listening: Callable[[], None] | None = None
 
     @property
     def armed(self) -> bool:
@@ -98,8 +98,8 @@ class Stepper:
             self._taps.set(step=self._accessed)
         elif kind is Step.FINDING:
             self._position.hold = self._began
-            if self._deaf is None:
-                self._deaf = self._bench.findings.found.connect(self._found)
+            if self._stop_listening is None:
+                self._stop_listening = self._bench.findings.found.connect(self._found)
         elif not self._listening:
             self._listening = True
             self._bench.board.trace.listen(self._event)
@@ -109,9 +109,9 @@ class Stepper:
         self._kind = None
         self._position.hold = None
         self._begun = (None, {})
-        if self._deaf is not None:
-            self._deaf()
-            self._deaf = None
+        if self._stop_listening is not None:
+            self._stop_listening()
+            self._stop_listening = None
         if self._taps.step is not None:
             self._taps.set()
 

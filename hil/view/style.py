@@ -102,12 +102,12 @@ ARENA: Final = """
   flex:1 1 0; min-height:260px; }
 .window { position:absolute; inset:0; touch-action:pan-y; cursor:grab; user-select:none; }
 :is(.hand-add, .hand-remove) .window { cursor:crosshair; }
-.hand-remove .window .grip { cursor:pointer; }
+.hand-drag .grip { cursor:move; } .hand-remove .grip { cursor:pointer; }
 /* Each layer is painted by itself: a robot that moves leaves the cloud alone.  Lines are as wide at any zoom. */
 .window .layer { position:absolute; inset:0; width:100%; height:100%; will-change:transform; pointer-events:none; }
 .window .layer * { vector-effect:non-scaling-stroke; }
 .window text { font-size:calc(11px * var(--unit, 1)); }
-.window .grip { pointer-events:auto; cursor:move; touch-action:none; fill:transparent; fill-opacity:0; stroke:none; }
+.window .grip { pointer-events:auto; touch-action:none; fill:transparent; fill-opacity:0; stroke:none; }
 .window .away path { fill:var(--odo); } .window .away text { fill:var(--ink); font-weight:600; }
 .grid path { stroke:var(--line); stroke-width:1; fill:none; } .grid text { fill:var(--soft); }
 .wall { stroke:var(--wall); stroke-width:4; stroke-linecap:round; fill:none; }
@@ -174,7 +174,8 @@ button.tile { cursor:pointer; }
 .rows th, .rows td { padding:3px 6px; font-size:12px; line-height:1.45; overflow-wrap:anywhere; vertical-align:top; }
 .rows td { border-top:1px solid var(--line); } .rows.findings :is(td, th):last-child { white-space:nowrap; }
 .rows tbody tr:has(button) { cursor:pointer; } .rows tbody tr:has(button):hover { background:var(--line); }
-.rows .whole { white-space:nowrap; } .rows .chosen { background:var(--mark); }
+.registers .whole, .fields .whole, .moments .whole { white-space:nowrap; }
+.rows .chosen { background:var(--mark); }
 .moved { background:var(--mark); border-radius:3px; padding:0 3px; } .not-reset { font-weight:700; }
 .link { all:unset; cursor:pointer; text-decoration:underline; text-decoration-color:var(--line); }
 .side { flex:1 1 46%; min-width:0; display:flex; flex-direction:column; gap:4px; padding:4px; }

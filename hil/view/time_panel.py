@@ -101,7 +101,7 @@ class TimePanel:
         self._where = WherePanel(NOWHERE)
         ui.label("Moments").classes("head")
         with ui.element("div").classes("scrolled w-full"):
-            self._moments = Rows(("time", "what follows, or its name"), self._go_to).mark("moments")
+            self._moments = Rows(("time", "what follows, or its name"), self._go_to).classes("moments").mark("moments")
 
     def _go(self) -> None:
         time_s = self._to.value

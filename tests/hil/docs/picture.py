@@ -53,6 +53,8 @@ def board(page: Any) -> None:
     page.locator(".registers tbody button").click()
     page.locator(".fields tbody tr").first.wait_for(timeout=60_000)
     page.get_by_role("button", name="Pause", exact=True).click()
+    page.locator(".chip", has_text="paused").wait_for()
+    page.locator(".pace").wait_for(state="hidden")
     run.process.terminate()
 
 

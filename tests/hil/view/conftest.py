@@ -87,6 +87,16 @@ def page(browser: Any, view: View) -> Iterator[Any]:
     assert troubles == []
 
 
+@pytest.fixture(autouse=True)
+def _running(request: pytest.FixtureRequest) -> None:
+    """Each test with a page finds a run that goes on, whichever tests of its module's view came before it."""
+    if "page" not in request.fixturenames:
+        return
+    run = request.getfixturevalue("page").get_by_role("button", name="Run", exact=True)
+    if run.count():
+        run.click()
+
+
 def add_signal(page: Any, label: str, name: str | None = None, words: str = "") -> None:
     """Record a signal: search the tree for its label, or for some words; choose it."""
     box = page.get_by_label("add a signal").first

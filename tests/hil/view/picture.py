@@ -5,6 +5,7 @@ A mission, gone back in to one moment, so that the picture is the same every tim
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import Any, Final
@@ -31,11 +32,12 @@ def draw(page: Any, target: Path) -> None:
     page.get_by_role("tab", name="Time").click()
     page.get_by_label("time, s").fill(MOMENT_S)
     page.get_by_role("button", name="Go to this time").click()
-    page.get_by_text(f"{MOMENT_S} s").first.wait_for(timeout=60_000)
+    page.locator(".tile .value").filter(has_text=re.compile(rf"^{MOMENT_S} s$")).wait_for(timeout=60_000)
     page.get_by_role("tab", name="Scope").click()
-    page.locator(".lanes svg").first.wait_for()
-    page.wait_for_timeout(1500)
     page.mouse.move(0, 0)
+    # The lanes end at that moment, and so does the chart, which is sent with them.
+    page.locator(".lanes .time", has_text=f"{MOMENT_S}000 s").wait_for(timeout=60_000)
+    page.get_by_role("tooltip").wait_for(state="hidden")
     page.locator(".side").first.screenshot(path=str(target))
 
 
@@ -51,7 +53,8 @@ def main() -> None:
             page.set_default_timeout(30_000)
             page.goto(view.address)
             page.locator("g.robot").first.wait_for(state="attached", timeout=90_000)
-            page.wait_for_timeout(3000)
+            # The moment has passed, so that the view goes back to it.
+            page.wait_for_function(f"parseFloat(document.querySelector('.tile .value').textContent) > {MOMENT_S}")
             draw(page, Path(sys.argv[1]))
             browser.close()
     finally:

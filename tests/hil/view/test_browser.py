@@ -8,8 +8,6 @@ from collections.abc import Callable
 from operator import ne
 from typing import Any
 
-import pytest
-
 from hil.recording.trajectory import parse_trajectory
 from tests.hil.view.conftest import View, add_signal
 
@@ -54,16 +52,6 @@ def sees(page: Any, condition: Callable[[], bool], what: str) -> None:
 
 def log(page: Any) -> str:
     return str(page.locator(".nicegui-log").inner_text())
-
-
-@pytest.fixture(autouse=True)
-def _as_at_first(request: pytest.FixtureRequest) -> None:
-    """Each test of the module's view finds a run that goes on, whichever tests came before it."""
-    if "page" not in request.fixturenames:
-        return
-    page = request.getfixturevalue("page")
-    if "paused" in page.locator(".chip").inner_text():
-        page.get_by_role("button", name="Run", exact=True).click()
 
 
 def centre(page: Any, css: str) -> tuple[float, float]:

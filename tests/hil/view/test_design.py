@@ -14,7 +14,7 @@ from typing import Any, Final
 import pytest
 
 from tests.hil.view.conftest import Shot, View
-from tests.hil.view.test_browser import button, contrast, log, sees, status, tab, wait
+from tests.hil.view.test_browser import button, centre, contrast, log, sees, status, tab, wait
 
 PANELS: Final = ("Console", "Time", "Findings", "Registers", "Scope", "Faults", "Board")
 SIZES: Final = ((1440, 900), (1024, 768), (390, 844), (844, 390), (1920, 1080))
@@ -197,8 +197,8 @@ def test_registers_are_searched_explained_and_marked(page: Any, shot: Shot) -> N
 def test_a_tick_of_the_scrub_bar_leads_to_its_finding(page: Any) -> None:
     button(page, "Pause").click()
     wait(page, "paused")
-    tick = page.locator(".scrub rect.finding").last.bounding_box()
-    page.mouse.click(tick["x"] + tick["width"] / 2, tick["y"] + 2)
+    x, y = centre(page, ".scrub rect.finding >> nth=-1")
+    page.mouse.click(x, y)
     wait(page, re.compile("[a-z-]+: found here"))
     button(page, "Run").click()
     wait(page, "running")
