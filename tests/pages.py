@@ -2,7 +2,8 @@
 
 A block of C, Python, TOML or CSV is a file, and begins with its name in a comment.  A block `diff` changes one: the
 lines that stay and that go must stand there, together and once.  A block `console` has commands (`$ pytest`, `$ hil`,
-`$ cd`) and below each the lines that must come, in this order; a line is a pattern, and may stand within a longer one.
+`$ cd`) and below each the lines that must come, in this order; `...` in a line stands for anything, and a line may stand
+within a longer one.
 """
 
 from __future__ import annotations
@@ -10,7 +11,6 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable
-from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import NamedTuple
 
@@ -64,11 +64,11 @@ def files(blocks: list[Block]) -> dict[str, str]:
 
 
 def lines_in_order(output: list[str], wanted: list[str]) -> None:
-    """Each wanted line (a pattern) is the beginning of, or stands alone in, a later line than the one before."""
+    """Each wanted line, in which `...` stands for anything, stands in a later line than the one before."""
     rest = iter(output)
     for pattern in wanted:
-        hard = re.sub(r"([\[\]])", r"[\1]", pattern)
-        assert any(fnmatchcase(line, f"*{hard}*") for line in rest), f"{pattern!r} is not in\n" + "\n".join(output)
+        like = re.compile(".*".join(map(re.escape, pattern.split("..."))))
+        assert any(map(like.search, rest)), f"{pattern!r} is not in\n" + "\n".join(output)
 
 
 def _change(folder: Path, diff: str) -> None:
