@@ -115,7 +115,7 @@ class Liveness:
         """
         for s in halves:
             other = self.exchanged[id(s)].root
-            if other in live or other not in self.tracked:
+            if not isinstance(other, Variable) or other in live or other not in self.tracked:
                 self.halves.add(id(s))
             else:
                 self.halves.discard(id(s))

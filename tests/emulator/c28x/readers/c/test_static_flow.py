@@ -130,6 +130,7 @@ EXCHANGES = [
     "{ int t, x = port; if (n > x) { t = n; n = x; x = t; } return n; }",
     "{ int x = port; if (n > x) { int t = n; n = x; x = t; } return x; }",
     "{ int t, v[2] = {port, n}; t = v[0]; v[0] = v[1]; v[1] = t; return v[1]; }",
+    "{ int v[2] = {port, n}, *a = v, *b = v + 1, t = *a; *a = *b; *b = t; return v[1]; }",
 ]
 
 
