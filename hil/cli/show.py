@@ -129,8 +129,11 @@ def _project_path(file: Path) -> Path | None:
 
 
 def print_error(message: str) -> None:
-    """Print one error line on stderr.  Of a word too long to read only the two ends are shown."""
-    shortened = _ENDLESS.sub(lambda word: f"{word[0][:100]}[...]{word[0][-50:]}", " ".join(message.split("\n")))
+    """Print one error line on stderr; its paths as `from_here`.  Of a word too long to read it shows the two ends."""
+    from hil.reports.excerpt import from_here
+
+    line = from_here(" ".join(message.split("\n")))
+    shortened = _ENDLESS.sub(lambda word: f"{word[0][:100]}[...]{word[0][-50:]}", line)
     print(f"hil: error: {shortened}", file=sys.stderr, flush=True)
 
 

@@ -46,8 +46,11 @@ def relative_path(file: str) -> str:
 
 
 def from_here(text: str) -> str:
-    """A text in which paths below the current directory are relative to it."""
-    here = re.escape(f"{Path.cwd()}{os.sep}")
+    """A text in which paths below the current directory are relative to it; as it is, where that directory is gone."""
+    try:
+        here = re.escape(f"{Path.cwd()}{os.sep}")
+    except OSError:
+        return text
     return re.sub(rf"(?<![^\s=:'\"(\[]){here}", "", text)
 
 
