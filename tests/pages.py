@@ -2,8 +2,8 @@
 
 A block of C, Python, TOML or CSV is a file, and begins with its name in a comment.  A block `diff` changes one: the
 lines that stay and that go must stand there, together and once.  A block `console` has commands (`$ pytest`, `$ hil`,
-`$ cd`) and below each the lines that must come, in this order; `...` in a line stands for anything, and a line may stand
-within a longer one.
+`$ cd`) and below each the lines that must come, in this order; `...` in a line stands for anything, and a line may
+stand within a longer one.
 """
 
 from __future__ import annotations
