@@ -41,8 +41,8 @@ def red_test(page: Any) -> None:
     page.set_content(console.export_svg(title="pytest -k 0.5", theme=DEFAULT_TERMINAL_THEME))
 
 
-def board(page: Any) -> None:
-    """The page of the program on its board: a register with its fields, and who wrote it."""
+def board(page: Any) -> subprocess.Popen[str]:
+    """The page of the program on its board: a register with its fields, and who wrote it.  Returns its process."""
     (main,) = re.findall(r"```c\n(/\* main\.c \*/.*?)```", TUTORIAL.read_text(encoding="utf-8"), re.DOTALL)
     Path("main.c").write_text(main, encoding="utf-8")
     run = View("--no-open", "--board", "board.py", "--firmware", ".", "--put", "infrared.distance_m=0.5")
@@ -55,7 +55,7 @@ def board(page: Any) -> None:
     page.get_by_role("button", name="Pause", exact=True).click()
     page.locator(".chip", has_text="paused").wait_for()
     page.locator(".pace").wait_for(state="hidden")
-    run.process.terminate()
+    return run.process
 
 
 def main() -> None:
@@ -67,9 +67,11 @@ def main() -> None:
         browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
         page = browser.new_page(viewport=SIZE)
         with chdir("ranger"):
-            {"tutorial-red": red_test, "tutorial-board": board}[made.stem](page)
+            running = {"tutorial-red": red_test, "tutorial-board": board}[made.stem](page)
             shown = page.locator("svg").first if made.stem == "tutorial-red" else page
-            shown.screenshot(path=made)
+            shown.screenshot(path=made, animations="disabled")
+            if running is not None:
+                running.terminate()
         browser.close()
 
 

@@ -38,7 +38,7 @@ def draw(page: Any, target: Path) -> None:
     # The lanes end at that moment, and so does the chart, which is sent with them.
     page.locator(".lanes .time", has_text=f"{MOMENT_S}000 s").wait_for(timeout=60_000)
     page.get_by_role("tooltip").wait_for(state="hidden")
-    page.locator(".side").first.screenshot(path=str(target))
+    page.locator(".side").first.screenshot(path=str(target), animations="disabled")
 
 
 def main() -> None:
