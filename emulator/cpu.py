@@ -38,25 +38,34 @@ class InterruptStorm(Exception):
     """Interrupts follow each other at once, and nothing else runs any more."""
 
 
-class Cpu:
+class Eallow:
+    """What lets protected registers be written: the bit EALLOW of the core, or one that never changes."""
+
+    __slots__ = ("eallow",)
+
+    def __init__(self, eallow: bool) -> None:
+        self.eallow = eallow
+
+
+class Cpu(Eallow):
     """Core state of one board.  Lines 1..12 come from the PIE, 13 is CPU timer 1, 14 CPU timer 2.
 
     It has the CPU's time to itself until a kernel takes it over.
     """
 
     __slots__ = (
-        "_began", "_described", "_forced", "_handlers", "_left", "_row", "clock", "dispatched", "eallow", "findings",
-        "ier", "ifr", "in_interrupt", "intm", "isr", "position", "sp", "stack_limit",
+        "_began", "_described", "_forced", "_handlers", "_left", "_row", "clock", "dispatched", "findings", "ier",
+        "ifr", "in_interrupt", "intm", "isr", "position", "sp", "stack_limit",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, findings: Findings) -> None:
+        #: Power-on state (ST1 = 0x080B: INTM set, EALLOW clear).
+        super().__init__(eallow=False)
+        self.intm = True
         self.clock = clock
         self.findings = findings
         #: The position of the firmware.
         self.position = findings.position
-        #: Power-on state (ST1 = 0x080B: INTM set, EALLOW clear).
-        self.eallow = False
-        self.intm = True
         self.ier = 0
         self.ifr = 0
         self.in_interrupt = 0

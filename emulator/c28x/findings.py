@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from html import escape
 from itertools import islice
 from typing import Any
@@ -77,29 +77,34 @@ class Finding:
 Cause = tuple[int, Calls | None, str]
 
 
-@dataclass(slots=True, repr=False)
 class Findings:
     """The findings of one board, in order of first occurrence."""
 
-    clock: Clock
-    #: Where the firmware is, and the places by number.
-    position: Position = field(default_factory=Position)
-    places: Places = field(default_factory=Places)
-    #: Python file of a firmware module -> C file it mirrors; filled by the linker.
-    sources: dict[str, str] = field(default_factory=dict)
-    #: Where each function of the firmware begins; filled by the linker.
-    beginnings: dict[Callable[..., Any], Place] = field(default_factory=dict)
-    #: The cause of the event that runs now: findings belong to it, not to the task that happens to have the CPU.
-    cause: Cause | None = None
-    #: Reports are not recorded now, because they are consequences of an earlier finding.
-    muted: bool = False
-    #: Increases with every `clear`, so that a detector knows that the finding it remembers is gone.
-    generation: int = 0
-    #: How often anything was reported or counted.
-    occurrences: int = 0
-    _by_key: dict[tuple[str, str, int, str], Finding] = field(default_factory=dict)
-    #: (finding): at each first occurrence.
-    found: Signal[Finding] = field(default_factory=Signal)
+    __slots__ = (
+        "_by_key", "beginnings", "cause", "clock", "found", "generation", "muted", "occurrences", "places", "position",
+        "sources",
+    )  # fmt: skip
+
+    def __init__(self, clock: Clock) -> None:
+        self.clock = clock
+        #: Where the firmware is, and the places by number.
+        self.position = Position()
+        self.places = Places()
+        #: Python file of a firmware module -> C file it mirrors; filled by the linker.
+        self.sources: dict[str, str] = {}
+        #: Where each function of the firmware begins; filled by the linker.
+        self.beginnings: dict[Callable[..., Any], Place] = {}
+        #: The cause of the event that runs now: findings belong to it, not to the task that happens to have the CPU.
+        self.cause: Cause | None = None
+        #: Reports are not recorded now, because they are consequences of an earlier finding.
+        self.muted = False
+        #: Increases with every `clear`, so that a detector knows that the finding it remembers is gone.
+        self.generation = 0
+        #: How often anything was reported or counted.
+        self.occurrences = 0
+        self._by_key: dict[tuple[str, str, int, str], Finding] = {}
+        #: (finding): at each first occurrence.
+        self.found: Signal[Finding] = Signal()
 
     def __iter__(self) -> Iterator[Finding]:
         return iter(self._by_key.values())

@@ -55,7 +55,7 @@ from emulator.c28x.tree import (
     Variable,
     Where,
 )  # fmt: skip
-from emulator.c28x.typed_text import attribute, identity, methods
+from emulator.c28x.typed_text import attribute, identity, methods, register_name
 from emulator.clock import NEVER
 
 __all__ = ["LinkError", "Linked", "to_c"]
@@ -77,6 +77,7 @@ class Linked:
 
         `built` gives the module of a program that was compiled (`typed_text.py`), by its identity, or None.
         """
+        self.compiled = compiled
         self.program = compiled.program
         self.options = compiled.options
         self.runtime = runtime
@@ -94,7 +95,6 @@ class Linked:
         self._bound: dict[str, Function] = {}
         self._words = 0
         self.namespace: dict[str, Any] = self._runtime_names()
-        self.compiled_functions = compiled.functions
         #: The number of the program's first place.
         self.first = len(runtime.findings.places)
         module = built(self.identity) if built is not None and not self.replaced else None
@@ -121,7 +121,7 @@ class Linked:
     @property
     def identity(self) -> str:
         """What a compiled program is known by (`typed_text.py`)."""
-        return identity(self.compiled_functions, self.first)
+        return identity(self.compiled, self.first)
 
     @property
     def interpreted(self) -> bool:
@@ -282,7 +282,10 @@ class Linked:
             space[names.counters] = self.coverage.counters(compiled.file, function.name, compiled.written.counted)
         for name, (block, register, access) in names.registers.items():
             if name not in space:
-                self.registers(block, register).follow(access, space, name)
+                cell = self.registers(block, register)
+                cell.follow(access, space, name)
+                if self._methods is not None:
+                    space[register_name(name)] = cell
         for name, text in names.strings.items():
             space[name] = self._string(text)
         for name, function in names.functions.items():

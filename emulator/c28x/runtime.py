@@ -13,6 +13,8 @@ from dataclasses import fields
 from math import isfinite
 from typing import Any, Final, Protocol
 
+from mypy_extensions import mypyc_attr
+
 from emulator.c28x.arithmetic import COMPARE, DIVIDERS, FLOAT_TO_INT, divide_int, modulo_int
 from emulator.c28x.called_as import fitted, misfit
 from emulator.c28x.ctypes import (
@@ -69,6 +71,7 @@ class Idling(EndlessPoll):
     """A function idles in an endless loop while its caller waits for its return: this is not a defect of the loop."""
 
 
+@mypyc_attr(native_class=False)  # sites are kept by pickling, which a native class cannot be
 class RuntimeSite(Site):
     """One check of a running image: its site, its number, and what it has found so far."""
 

@@ -1,22 +1,24 @@
 """The typed text of a program: its functions as methods of one class, for mypyc (`hil build`).
 
 The methods are the functions that `python.py` wrote, statement by statement: every charge, check and place is the same.
-What is added are types, which let mypyc do without objects and look-ups by name: C's integers are `int`, its floats
-`float`, a function calls another as a method, and every other name that the linker binds is an attribute of the class.
-What a type does not fit (a value that may never have been written, an array, a pointer) stays `Any`.
+What is added are types, which let mypyc do without objects and look-ups by name.  C's integers are `int`, its floats
+`float`.  A function calls another as a method.  A register that is only looked at, or stored in place, is the `Cell`
+itself.  Every other name that the linker binds is an attribute of the class.  What a type does not fit (a value that
+may never have been written, an element of an array, a pointer) stays `Any`; where it is computed with, it has been
+written, and its type is stated.
 """
 
 from __future__ import annotations
 
 import ast
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from hashlib import sha256
 from typing import Final
 
-from emulator.c28x.compiled_program import CompiledFunction
-from emulator.c28x.ctypes import VOID, CType, FloatType, IntType
-from emulator.c28x.emit.names import escaped, local_name
+from emulator.c28x.compiled_program import Compiled, CompiledFunction
+from emulator.c28x.ctypes import VOID, ArrayType, CType, FloatType, IntType, StructType
+from emulator.c28x.emit.names import escaped, local_name, object_name
 from emulator.c28x.emit.written import FIRST_NUMBER
 
 #: The class of a program.
@@ -29,15 +31,15 @@ from emulator.c28x.arithmetic import f32
 from emulator.c28x.position import Position
 from emulator.clock import Clock
 from emulator.cpu import Cpu
-from emulator.registers.cell import Cell, Gate, Source
+from emulator.registers.cell import Cell, look
 
 class {CLASS}:
     """Its functions."""
 '''
 #: Names that the text uses itself: one of C's that is the same gets the prefix of `escaped`.
 _TAKEN: Final = frozenset({
-    CLASS, "Any", "Callable", "Cell", "Clock", "Cpu", "Gate", "NAMES", "Position", "Source", "cast", "f32", "float",
-    "int", "len", "list", "max", "range", "self",
+    CLASS, "Any", "Callable", "Cell", "Clock", "Cpu", "NAMES", "Position", "cast", "f32", "float", "int", "len", "list",
+    "look", "max", "range", "self",
 })  # fmt: skip
 #: What the linker binds to these names is the same for every program.
 _COMMON: Final = {"_range": "range", "_max": "max", "_len": "len", "_c_f32": "f32"}
@@ -46,21 +48,28 @@ _TYPES: Final = {
     "_c_clock": "Clock", "_c_position": "Position", "_cpu": "Cpu", "_c_poll_limit": "int", "_c_loop_limit": "int",
 }  # fmt: skip
 _ACCESSES: Final = {
-    "gate": "Gate | Cpu", "source": "Cell | Source", "cleared": "Cell", "read": "Callable[[], int]",
-    "write": "Callable[[int, int], None]", "modify": "Callable[[int, int, int], None]",
+    "cleared": "Cell", "read": "Callable[[], int]", "write": "Callable[[int, int], None]",
+    "modify": "Callable[[int, int, int], None]",
 }  # fmt: skip
 #: The types of the names that the writer makes up within a function; those of objects of the emulator are inferred.
 _WITHIN: Final = dict.fromkeys(("_e", "_fp", "_i", "_n", "_q", "_since", "_t", "_w"), "int")
 _INFERRED: Final = ("_k", "_p", "_up")
+#: The value that a function returns, and the local that has it while the frame is released.
+_VALUE: Final = "_v"
+_RESULT: Final = "_result"
+#: A type: where a value of it is taken from a place that may hold `None` as well.
+_NUMBERS: Final = ("int", "float")
 
 
-def identity(functions: Iterable[CompiledFunction], first: int) -> str:
-    """What tells a program apart: its functions with their text and types, and the number of its first place."""
+def identity(compiled: Compiled, first: int) -> str:
+    """What tells a program apart: its functions with text and types, its objects, the number of its first place."""
     known = sha256(str(first).encode())
-    for compiled in functions:
-        f = compiled.function
+    for function in compiled.functions:
+        f = function.function
         types = [(local_name(variable), str(variable.ctype)) for variable in (*f.parameters, *f.locals)]
-        known.update(repr((compiled.path, str(f.ctype.result), types, compiled.written.text)).encode())
+        known.update(repr((function.path, str(f.ctype.result), types, function.written.text)).encode())
+    for variable, _ in compiled.objects:
+        known.update(repr((object_name(variable), str(variable.ctype))).encode())
     return known.hexdigest()
 
 
@@ -80,14 +89,22 @@ def _of_c(name: str) -> str:
     return f"z_{name}" if name in _TAKEN else attribute(name)
 
 
-def typed_text(functions: Sequence[CompiledFunction], first: int) -> str:
+def register_name(name: str) -> str:
+    """The name of the register itself, from the name of a way to access it."""
+    return name.rpartition("_")[0]
+
+
+def typed_text(compiled: Compiled, first: int) -> str:
     """The module with the class of a program whose first place has the number `first`."""
-    names = {compiled.path: name for compiled, name in zip(functions, methods(functions), strict=True)}
+    functions = compiled.functions
+    named = list(zip(functions, methods(functions), strict=True))
+    names = {each.path: name for each, name in named}
+    elements = {f"_g_{object_name(variable)}": _element(variable.ctype) for variable, _ in compiled.objects}
     bound: dict[str, str] = {}
     written = []
-    for compiled in functions:
-        written.append(_Method(compiled, first, names, bound).text())
-        first += len(compiled.written.places)
+    for each, name in named:
+        written.append(_Method(each, name, first, names, elements, bound).text())
+        first += len(each.written.places)
     declared = [f"    {attribute(name)}: {kind}\n" for name, kind in sorted(bound.items())]
     return "".join([_HEADER, *declared, *written, f"\nNAMES = frozenset({sorted(bound)!r})\n"])
 
@@ -96,12 +113,14 @@ class _Method(ast.NodeTransformer):
     """One function as a method."""
 
     def __init__(
-        self, compiled: CompiledFunction, first: int, names: dict[str, str], bound: dict[str, str]
-    ) -> None:
+        self, compiled: CompiledFunction, name: str, first: int, names: dict[str, str], elements: dict[str, str],
+        bound: dict[str, str],
+    ) -> None:  # fmt: skip
         self._first = first
         self._bound = bound
         self._function = compiled.function
-        self._name = names[compiled.path]
+        self._results = {name: f.ctype.result for name, f in compiled.written.names.functions.items()}
+        self._name = name
         self._methods = {
             name: names[function.path]
             for name, function in compiled.written.names.functions.items()
@@ -110,11 +129,23 @@ class _Method(ast.NodeTransformer):
         (self._tree,) = ast.parse(compiled.written.text).body
         assert isinstance(self._tree, ast.FunctionDef)
         self._parameters = [argument.arg for argument in self._tree.args.args]
+        result = self._function.ctype.result
+        self._result = "None" if result == VOID else _type(result)
+        if self._result in _NUMBERS:
+            _Returns().visit(self._tree)
         #: The function's own names: what it assigns.
         self._own = {
             node.id for node in ast.walk(self._tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
         }
+        #: The type of the elements of each array, where all have one.
+        self._elements = elements | {
+            local_name(variable): _element(variable.ctype) for variable in self._function.locals if variable.in_memory
+        }
+        #: The type that a value has where it is written: the C type of locals that may hold None.
+        self._unset: dict[str, str] = {}
         self._types = self._types_of_variables()
+        #: The register that the statement stores in place.
+        self._stored = ""
 
     def text(self) -> str:
         method = self._tree
@@ -125,8 +156,7 @@ class _Method(ast.NodeTransformer):
             argument.annotation = _name(self._types.get(argument.arg, "Any"))
             argument.arg = _of_c(argument.arg)
         method.args.args.insert(0, ast.arg("self"))
-        result = self._function.ctype.result
-        method.returns = _name("None" if result == VOID else _type(result))
+        method.returns = _name(self._result)
         locals_ = sorted(self._own.difference(self._parameters, _INFERRED))
         method.body = [
             *(ast.AnnAssign(_name(_of_c(name)), _name(self._type(name)), None, 1) for name in locals_), *method.body
@@ -146,8 +176,14 @@ class _Method(ast.NodeTransformer):
         }
         for variable in (*self._function.parameters, *self._function.locals):
             name = local_name(variable)
-            kind = "Any" if variable.in_memory or name in unset else _type(variable.ctype)
+            kind = _type(variable.ctype)
+            if variable.in_memory:
+                kind = "list[Any]" if variable.kind == "local" else "Any"
+            elif name in unset:
+                self._unset[name] = kind
+                kind = "Any"
             types[name] = kind if types.get(name, kind) == kind else "Any"
+        types[_RESULT] = self._result
         return types
 
     def _type(self, name: str) -> str:
@@ -173,18 +209,102 @@ class _Method(ast.NodeTransformer):
             function = self.visit(node.func)
         return ast.Call(function, [self.visit(argument) for argument in node.args], [])
 
+    def visit_Assign(self, node: ast.Assign) -> ast.Assign:
+        """A store in a register in place: its word is that of the register itself."""
+        (target, *_) = node.targets
+        if isinstance(target, ast.Attribute) and isinstance(target.value, ast.Name):
+            self._stored = target.value.id
+        self.generic_visit(node)
+        self._stored = ""
+        return node
+
     def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
-        """The word of a register is stored only where it is that of the register itself."""
-        value = self.visit(node.value)
-        if isinstance(node.ctx, ast.Store) and isinstance(node.value, ast.Name) and node.value.id.endswith("_source"):
-            value = ast.Call(_name("cast"), [_name("Cell"), value], [])
-        return ast.Attribute(value, node.attr, node.ctx)
+        """The word of a register, and what lets it be stored in place."""
+        name = node.value.id if isinstance(node.value, ast.Name) else ""
+        if name.startswith("_r_") and name.endswith(("_source", "_gate")):
+            self._bound[register_name(name)] = "Cell"
+            register = ast.Attribute(_name("self"), attribute(register_name(name)), ast.Load())
+            if name.endswith("_gate"):
+                return ast.Attribute(ast.Attribute(register, "gate", ast.Load()), node.attr, node.ctx)
+            if name != self._stored:
+                return ast.Call(_name("look"), [register], [])
+            return ast.Attribute(register, node.attr, node.ctx)
+        return ast.Attribute(self.visit(node.value), node.attr, node.ctx)
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
+        """Arithmetic has numbers.  The sum of an integer and 0.0 is a conversion."""
+        match node:
+            case ast.BinOp(left, ast.Add(), ast.Constant(value=float(0.0))) if self._is_integer(left):
+                return ast.Call(_name("float"), [self._number(left)], [])
+        return ast.BinOp(self._number(node.left), node.op, self._number(node.right))
+
+    def visit_UnaryOp(self, node: ast.UnaryOp) -> ast.UnaryOp:
+        """As `visit_BinOp`."""
+        operand = self.visit(node.operand) if isinstance(node.op, ast.Not) else self._number(node.operand)
+        return ast.UnaryOp(node.op, operand)
+
+    def visit_Compare(self, node: ast.Compare) -> ast.Compare:
+        """So has a comparison, but for one with None."""
+        if any(isinstance(op, ast.Is | ast.IsNot) for op in node.ops):
+            self.generic_visit(node)
+            return node
+        return ast.Compare(self._number(node.left), node.ops, [self._number(each) for each in node.comparators])
+
+    def _number(self, node: ast.expr) -> ast.expr:
+        """An operand that has its C type by now."""
+        kind = self._kind(node)
+        value: ast.expr = self.visit(node)
+        return ast.Call(_name("cast"), [_name(kind), value], []) if kind in _NUMBERS else value
+
+    def _is_integer(self, node: ast.expr) -> bool:
+        """Whether a value is known to be an integer of C."""
+        match node:
+            case ast.Name(id=name):
+                return (self._unset.get(name) or self._types.get(name)) == "int"
+            case ast.Call(func=ast.Name(id=name)) if name in self._methods:
+                return isinstance(self._results[name], IntType)
+        return self._kind(node) == "int"
+
+    def _kind(self, node: ast.expr) -> str:
+        """The type of a value that is an `Any` in the text ("": unknown)."""
+        match node:
+            case ast.Name(id=name):
+                return self._unset.get(name, "")
+            case ast.Subscript(value=ast.Name(id=name)):
+                return self._elements.get(name, "")
+            case ast.IfExp(test=ast.Compare(left=ast.NamedExpr(value=value), ops=[ast.IsNot()])):
+                return self._kind(value)
+            case ast.IfExp(body=body, orelse=orelse):
+                return self._kind(body) or self._kind(orelse)
+        return ""
 
     def visit_Constant(self, node: ast.Constant) -> ast.expr:
         """The number of a place."""
         if type(node.value) is int and node.value >= FIRST_NUMBER:
             return ast.Constant(node.value - FIRST_NUMBER + self._first)
         return node
+
+
+class _Returns(ast.NodeTransformer):
+    """Gives the value that a function of a number returns a local of its own, which has its type."""
+
+    def generic_visit(self, node: ast.AST) -> ast.AST:
+        super().generic_visit(node)
+        for _, block in ast.iter_fields(node):
+            if isinstance(block, list) and block and isinstance(block[-1], ast.Return):
+                self._rename(block)
+        return node
+
+    @staticmethod
+    def _rename(block: list[ast.stmt]) -> None:
+        """Rename it from the last assignment in the block to the return at its end."""
+        match block[-1]:
+            case ast.Return(value=ast.Name(id=name) as returned) if name == _VALUE:
+                for statement in reversed(block):
+                    match statement:
+                        case ast.Assign(targets=[ast.Name(id=name) as target]) if name == _VALUE:
+                            target.id = returned.id = _RESULT
+                            return
 
 
 def _name(text: str) -> ast.Name:
@@ -200,3 +320,13 @@ def _type_of(name: str) -> str:
     if name.startswith("_r_"):
         return _ACCESSES[name.rpartition("_")[2]]
     return _TYPES.get(name, "list[Any]" if name.startswith("_g_") else "Any")
+
+
+def _element(ctype: CType) -> str:
+    """The type of every scalar of an object, if all have one."""
+    if isinstance(ctype, ArrayType):
+        return _element(ctype.element)
+    if isinstance(ctype, StructType):
+        kinds = {"int"} if ctype.word_backed else {_element(member.ctype) for member in ctype.members}
+        return kinds.pop() if len(kinds) == 1 else ""
+    return _type(ctype)

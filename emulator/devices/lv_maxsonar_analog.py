@@ -13,6 +13,8 @@ import math
 from collections.abc import Callable
 from typing import Final
 
+from mypy_extensions import i64
+
 from emulator.clock import CYCLES_PER_US, NEVER
 
 #: Time constant of an upward step.  CHOICE: first order; 90 % of a step to "no target", whose listening time ends at
@@ -122,7 +124,10 @@ class HeldVoltage:
 
     def _noise(self, slot: int) -> float:
         """A value in -1..1 that depends only on the slot, however often it is asked for."""
-        h = (slot * 0x9E3779B1 ^ self.salt * 0x85EBCA6B) & 0xFFFFFFFF
+        # Machine words, of which only the low 32 bits count.
+        s: i64 = slot & 0xFFFFFFFF
+        salt: i64 = self.salt & 0xFFFFFFFF
+        h: i64 = (s * 0x9E3779B1 ^ salt * 0x85EBCA6B) & 0xFFFFFFFF
         h = (h ^ h >> 15) * 0x2C1B3C6D & 0xFFFFFFFF
         h = (h ^ h >> 12) * 0x297A2D39 & 0xFFFFFFFF
         return (h ^ h >> 15) / 0x7FFFFFFF - 1.0

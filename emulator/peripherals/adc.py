@@ -690,11 +690,11 @@ class Adc:
     def _write_ADCSOCFRC1(self, word: int, lanes: int = ALL) -> None:
         position = self._position
         self._cause = position.at, position.calls, position.who  # `Findings.mark` without its call: 0.7 % of a mission
-        if self._event is None and word in self._single:
+        soc = self._single.get(word)
+        if soc is not None and self._event is None:
             start = self._clock.now + self._sync_cycles
             if start >= self._ready_at:
                 # `_begin` for a round-robin SOC alone: there is nothing to arbitrate and nothing to report.
-                soc = self._single[word]
                 socs = self._socs
                 socs.before = socs.pointer
                 socs.pointer = soc.n

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Protocol
 
 from mypy_extensions import mypyc_attr
 
-from emulator.cpu import Cpu
+from emulator.cpu import Cpu, Eallow
 from emulator.registers.checks import gated_read, gated_write, protecting, refusing_reserved, watching
 from emulator.registers.fields import ALL
 from emulator.registers.taps import lay
@@ -30,17 +30,9 @@ class Owner(Protocol):
     registers: dict[str, Cell]
 
 
-class Gate:
-    """Stands for the CPU where EALLOW does not decide."""
-
-    __slots__ = ("eallow",)
-
-    def __init__(self, eallow: bool) -> None:
-        self.eallow = eallow
-
-
-OPEN: Final = Gate(eallow=True)
-CLOSED: Final = Gate(eallow=False)
+#: They stand for the CPU where EALLOW does not decide.
+OPEN: Final = Eallow(eallow=True)
+CLOSED: Final = Eallow(eallow=False)
 
 
 @mypyc_attr(allow_interpreted_subclasses=True)
@@ -69,8 +61,8 @@ class Cell:
     write_only: ClassVar[bool] = False
 
     __slots__ = (
-        "_chosen", "_followers", "_taps", "address", "block", "gate", "modify", "name", "on_read", "on_write", "read",
-        "value", "write",
+        "_chosen", "_followers", "_plain", "_taps", "address", "block", "gate", "modify", "name", "on_read", "on_write",
+        "read", "value", "write",
     )  # fmt: skip
 
     def __init__(self, block: Owner, name: str, address: int) -> None:
@@ -84,13 +76,15 @@ class Cell:
         self._taps: dict[Seen, bool] = {}
         #: Whether the access functions are those of the present state; else the first access chooses them.
         self._chosen = False
+        #: Whether `read` only gives `value`.
+        self._plain = False
         self.read: Callable[[], int] = self._read_first
         self.write: Callable[[int, int], None] = self._write_first
         #: `modify(keep, bits, lanes)`: the read-modify-write that a compiler makes of a field assignment.
         self.modify: Callable[[int, int, int], None] = self._modify_first
         #: While its `eallow` stands, `modify` does nothing but store the field in `value`; of a register that clears
         #: bits of another, `write` does nothing else.
-        self.gate: Gate | Cpu = CLOSED
+        self.gate: Eallow = CLOSED
 
     @property
     def path(self) -> str:
@@ -105,7 +99,7 @@ class Cell:
         if self._taps or self._followers:
             self._choose()
         elif self._chosen:
-            self._chosen = False
+            self._chosen = self._plain = False
             self.read, self.write, self.modify = self._read_first, self._write_first, self._modify_first
 
     def _read_first(self) -> int:
@@ -131,6 +125,7 @@ class Cell:
         if self._taps:
             lay(self, self._taps)
             self.gate = CLOSED
+        self._plain = self.read == self._read_plain
         for namespace, name, access in self._followers:
             namespace[name] = getattr(self, access)
 
@@ -168,7 +163,7 @@ class Cell:
     @property
     def source(self) -> Cell | Source:
         """What has the word that the CPU reads as its `value`."""
-        return self if self.read == self._read_plain else Source(self)
+        return self if self._plain else Source(self)
 
     @property
     def cleared(self) -> Cell:
@@ -292,6 +287,14 @@ class Cell:
 
     def _read_masked(self) -> int:
         return self.value & self.read_mask
+
+
+def look(register: Cell) -> int:
+    """What the CPU reads in `register` now.
+
+    It is no method: compiled code calls those of `Cell` through Python, because registers are made at run time.
+    """
+    return register.value if register._plain else register.read()
 
 
 class Source:

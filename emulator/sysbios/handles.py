@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import lru_cache, wraps
 from types import FunctionType, MappingProxyType
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from emulator.c28x.memory import NULL, Memory, Pointer
 from emulator.c28x.program import Program
@@ -38,9 +38,16 @@ def headers() -> Mapping[str, Any]:
     return MappingProxyType(Program().module("emulator.sysbios.headers").symbols)
 
 
+class Prototype(NamedTuple):
+    """A C function: how many arguments it has, and of each handle which argument, its type, whether a pointer to it."""
+
+    arguments: int
+    handles: tuple[tuple[int, str, bool], ...]
+
+
 @lru_cache(maxsize=1)
-def prototypes() -> Mapping[str, tuple[tuple[int, str, bool], ...]]:
-    """C function -> its arguments that are handles: which, the type's name, whether it is a pointer to the handle.
+def prototypes() -> Mapping[str, Prototype]:
+    """The C functions that take handles.
 
     The names of the types tell; `headers` would take as long as linking a kept program.
     """
@@ -50,7 +57,7 @@ def prototypes() -> Mapping[str, tuple[tuple[int, str, bool], ...]]:
             types = [text for parameter, text in function.__annotations__.items() if parameter != "return"]
             handles = tuple((i, *_handle(text)) for i, text in enumerate(types) if "_Handle" in text)
             if handles:
-                found[name] = handles
+                found[name] = Prototype(len(types), handles)
     return MappingProxyType(found)
 
 
@@ -89,18 +96,35 @@ class Handles:
         """A C function that checks its handles before it does anything else."""
         if not _may_take_handles(function):
             return function
-        #: The class of its only handle, if this is the first argument.  Then checking the class is enough.
-        wanted: type[KernelObject] | None = None
+        arguments, handles = prototypes().get(name, Prototype(0, ()))
+        # Where the first argument is the only handle, its class is enough.  A call with any number of arguments takes
+        # three times as long as one with as many as the kernel's busiest functions have.
+        wanted = self.classes.get(handles[0][1]) if len(handles) == 1 and handles[0][0] == 0 else None
+        if wanted is not None and not handles[0][2]:
+            if arguments == 1:
+
+                @wraps(function)
+                def call_with_handle(handle: Any) -> Any:
+                    if handle.__class__ is wanted and not handle.deleted:
+                        return function(handle)
+                    return function(*self.checked(name, (handle,)))
+
+                return call_with_handle
+            if arguments == 2:
+
+                @wraps(function)
+                def call_with_handle_and_argument(handle: Any, argument: Any) -> Any:
+                    if handle.__class__ is wanted and not handle.deleted:
+                        return function(handle, argument)
+                    return function(*self.checked(name, (handle, argument)))
+
+                return call_with_handle_and_argument
 
         @wraps(function)
-        def call(*arguments: Any) -> Any:
-            nonlocal wanted
-            if arguments and arguments[0].__class__ is wanted and not arguments[0].deleted:
-                return function(*arguments)
-            handles = prototypes().get(name, ())
-            if len(handles) == 1 and handles[0][0] == 0 and not handles[0][2]:
-                wanted = self.classes.get(handles[0][1])
-            return function(*self.checked(name, arguments))
+        def call(*passed: Any) -> Any:
+            if passed and passed[0].__class__ is wanted and not passed[0].deleted:
+                return function(*passed)
+            return function(*self.checked(name, passed))
 
         return call
 
@@ -111,7 +135,7 @@ class Handles:
         """
         if name in _NOT_BEFORE_TASKS and not self._in_task():
             return arguments
-        for i, kind, behind in prototypes().get(name, ()):
+        for i, kind, behind in prototypes().get(name, Prototype(0, ())).handles:
             value = arguments[i]
             if value.__class__ is self.classes.get(kind) and not value.deleted:
                 continue

@@ -212,7 +212,7 @@ def test_the_command_explains_itself(capsys: pytest.CaptureFixture[str]) -> None
 def test_what_must_stay_python_is_not_listed() -> None:
     listed = set(build.listed())
     assert {"emulator/clock.py", "emulator/peripherals/adc.py", "hil/world/robot.py"} <= listed
-    stay = ("c28x/findings.py", "c28x/link.py", "c28x/sites.py", "sysbios/headers.py")
+    stay = ("c28x/link.py", "c28x/sites.py", "sysbios/headers.py")
     for name in (f"emulator/{file}" for file in stay):
         assert (compiled.ROOT / name).exists()
         assert name not in listed
@@ -278,7 +278,7 @@ def test_a_robot_whose_functions_are_methods_drives_alike(
 
     told_as: list[str] = []
     program = link(RobotBoard(), fixes=fixes).linked
-    text = as_methods.module(program.compiled_functions, program.first)
+    text = as_methods.module(program.compiled, program.first)
     functions, one = driven(lambda _identity: None)
     methods, other = driven({program.identity: text}.get)
     assert functions is dict

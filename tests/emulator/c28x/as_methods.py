@@ -9,14 +9,13 @@ does.
 from __future__ import annotations
 
 import ast
-from collections.abc import Sequence
 from importlib import import_module
 from types import ModuleType
 from typing import Any, Final
 
 import pytest
 
-from emulator.c28x.compiled_program import Compiled, CompiledFunction
+from emulator.c28x.compiled_program import Compiled
 from emulator.c28x.link import Linked
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.typed_text import typed_text
@@ -52,6 +51,13 @@ class _Holding(ast.NodeTransformer):
         node.value = self._held(node.target.id, node.value)
         return node
 
+    def visit_Call(self, node: ast.Call) -> ast.expr:
+        self.generic_visit(node)
+        match node:
+            case ast.Call(func=ast.Name(id="cast"), args=[ast.Name(id=kind), value]):
+                return ast.Call(ast.Name("_held", ast.Load()), [ast.Constant(kind), value], [])
+        return node
+
     def _held(self, name: str, value: ast.expr) -> ast.expr:
         kind = self._types.get(name, "Any")
         return ast.Call(ast.Name("_held", ast.Load()), [ast.Constant(kind), value], []) if kind in _KINDS else value
@@ -62,11 +68,11 @@ def _held(kind: str, value: Any) -> Any:
     return value
 
 
-def module(functions: Sequence[CompiledFunction], first: int) -> ModuleType:
+def module(compiled: Compiled, first: int) -> ModuleType:
     """The typed text of a program, as a module, each value held to its type."""
     made = ModuleType("program")
     made.__dict__["_held"] = _held
-    tree = _Holding().visit(ast.parse(typed_text(functions, first)))
+    tree = _Holding().visit(ast.parse(typed_text(compiled, first)))
     exec(compile(ast.fix_missing_locations(tree), "<typed text>", "exec"), made.__dict__)
     return made
 
@@ -76,7 +82,7 @@ class AsMethods(Linked):
 
     def __init__(self, compiled: Compiled, runtime: Runtime, **options: Any) -> None:
         first = len(runtime.findings.places)
-        super().__init__(compiled, runtime, **{**options, "built": lambda identity: module(compiled.functions, first)})
+        super().__init__(compiled, runtime, **{**options, "built": lambda identity: module(compiled, first)})
 
 
 def pytest_configure(config: pytest.Config) -> None:

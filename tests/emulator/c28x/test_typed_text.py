@@ -116,7 +116,7 @@ def test_a_function_that_others_call_directly_cannot_be_replaced() -> None:
 def test_a_program_is_known_by_its_text_and_its_first_place() -> None:
     one, other = Workshop(SOURCE).linked, Workshop(SOURCE.replace("1.5", "1.25")).linked
     assert one.identity == Workshop(SOURCE).linked.identity != other.identity
-    assert identity(one.compiled_functions, one.first) != identity(one.compiled_functions, one.first + 1)
+    assert identity(one.compiled, one.first) != identity(one.compiled, one.first + 1)
 
 
 @pytest.mark.parametrize("other", ["float32", "int32", "ptr[int16]"])
@@ -130,10 +130,10 @@ def test_a_program_is_known_by_the_types_of_its_variables_too(other: str) -> Non
 
 def test_variables_of_c_have_types_and_what_may_be_unwritten_has_none() -> None:
     linked = Workshop(SOURCE).linked
-    tree = ast.parse(typed_text(linked.compiled_functions, linked.first))
+    tree = ast.parse(typed_text(linked.compiled, linked.first))
     (program,) = (node for node in tree.body if isinstance(node, ast.ClassDef))
     method = {node.name: ast.unparse(node) for node in program.body if isinstance(node, ast.FunctionDef)}
-    assert list(method) == methods(linked.compiled_functions) == ["add", "scaled", "fill", "chosen"]
+    assert list(method) == methods(linked.compiled.functions) == ["add", "scaled", "fill", "chosen"]
     assert method["scaled"].startswith("def scaled(self, x: float, n: int) -> float:")
     assert "last: Any" in method["fill"]
     assert "i: int" in method["fill"]

@@ -77,7 +77,7 @@ def test_every_argument_that_is_a_handle_is_looked_at() -> None:
     """Two ways: each function of the headers with a handle is known, and each kind of handle can be found."""
     handles = Bench().kernel.handles
     kinds = {*handles.classes, *handles.finders}
-    assert {kind for arguments in prototypes().values() for _, kind, _ in arguments} == kinds
+    assert {kind for prototype in prototypes().values() for _, kind, _ in prototype.handles} == kinds
     assert {f"{kind}_Handle" for kind in KINDS} | {"Hwi_Handle", "IHeap_Handle"} == kinds
     named = {name for name in headers() if name.endswith("_Handle")}
     assert named == kinds
@@ -99,10 +99,10 @@ def _handle(ctype: CType, typedef: str = "") -> tuple[str, bool] | None:
 
 def test_the_names_of_types_tell_the_handles_that_the_types_are() -> None:
     declared = {
-        name: tuple((i, *handle) for i, ctype in enumerate(symbol.ctype.parameters) if (handle := _handle(ctype)))
-        for name, symbol in headers().items() if isinstance(symbol, Function)
+        name: (len(types), tuple((i, *handle) for i, ctype in enumerate(types) if (handle := _handle(ctype))))
+        for name, symbol in headers().items() if isinstance(symbol, Function) and (types := symbol.ctype.parameters)
     }  # fmt: skip
-    assert prototypes() == {name: handles for name, handles in declared.items() if handles}
+    assert prototypes() == {name: prototype for name, prototype in declared.items() if prototype[1]}
 
 
 def test_a_handle_through_the_argument_of_a_clock_is_the_object_again() -> None:
