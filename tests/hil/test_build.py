@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import itertools
 import json
 import os
 import shutil
@@ -16,6 +17,7 @@ from typing import Any
 import pytest
 
 from emulator import compiled
+from emulator.c28x.sites import Place
 from firmware_model.image import link
 from hil import build
 from hil.bench import Bench
@@ -285,6 +287,49 @@ def test_a_robot_whose_functions_are_methods_drives_alike(
     assert methods is not dict
     assert one == other
     assert told_as == ["compiled build, interpreted firmware", "compiled build, compiled firmware"]
+
+
+def test_an_interrupt_at_every_charge_finds_functions_and_methods_alike() -> None:
+    """`Read_Distance`, interrupted after each 15 cycles more (no step is shorter); the routine changes what it uses."""
+
+    def distances(program: Callable[[str], Any]) -> tuple[Any, ...]:
+        board = RobotBoard()
+        firmware = link(board, built=program)
+        cpu, clock, findings = board.cpu, board.clock, firmware.linked.runtime.findings
+        firmware.us.Init_US()
+
+        def routine() -> None:
+            interrupted.append((clock.now - begun, findings.here(3)))
+            clock.charge(37)
+            firmware.us.L_Calib_b = firmware.us.L_Calib_b + 1.0
+
+        cpu.connect(12, routine)
+        cpu.write_ier(1 << 11)
+        cpu.enable_interrupts()
+        codes = itertools.cycle((400, 380, 386, 1200, 1190, 300, 90))  # with steps over and under the filter's limit
+        board.adc["A"].force_codes(lambda soc: next(codes))
+        interrupted: list[tuple[int, tuple[Place, ...]]] = []
+        results = []
+        for after in range(0, 6000, 15):
+            firmware.us.L_Calib_b = 0.0
+            begun = clock.now
+            clock.after(after, lambda: cpu.raise_line(12))
+            results.append((firmware.us.Read_Distance(0), clock.now - begun, firmware.us.L_Calib_b))
+        told = [(f.rule, f.place, f.message, f.count) for f in findings]
+        return type(firmware.linked.namespace), (results, interrupted, told)
+
+    program = link(RobotBoard()).linked
+    text = as_methods.module(program.compiled, program.first)
+    functions, one = distances(lambda _identity: None)
+    methods, other = distances({program.identity: text}.get)
+    assert functions is dict
+    assert methods is not dict
+    assert one == other == distances(compiled.program)[1]  # the last is the compiled program, where there is a build
+    results, interrupted, told = one
+    assert {"Read_Distance", "Read_Channel"} <= {path[0].function for _, path in interrupted if path}
+    assert {0.0, 1.0} <= {shift for _, _, shift in results}
+    assert len({distance for distance, _, _ in results}) > 6
+    assert {"index", "uninitialised"} <= {rule for rule, *_ in told}
 
 
 def test_a_debugger_finds_the_firmware_interpreted(monkeypatch: pytest.MonkeyPatch) -> None:
