@@ -577,13 +577,13 @@ class Connections:
             if not self._stuck(mode, "CONTINUOUS", bool):
                 continue
             why = f"{mode}.CONTINUOUS = 0, and no statement sets {control}.RUN again"
+            missing = MissingLink(why, mode, "CONTINUOUS")
             addresses = [f"DmaRegs.CH{n}.{side}_ADDR_SHADOW" for side in ("SRC", "DST")]
             given = next((a for a in addresses if self._writes_again(a, lambda _address: True, "")), None)
             if given and self.started_up and not self._writes_again(control, bool, "RUN"):
                 message = f"channel {n} of the DMA stopped, is given the next addresses, and is not started"
-                self._report(self._source.last(*_split(given)), message, MissingLink(why, given), mode)
+                self._report(self._source.last(*_split(given)), message, missing, mode)
             elif self._waits_for_ever():
-                missing = MissingLink(why, mode, "CONTINUOUS")
                 message = f"channel {n} of the DMA stopped after a transfer, and the program waits for ever"
                 self._report(place, message, missing, mode)
 

@@ -846,7 +846,7 @@ void main(void)
 
 @pytest.mark.parametrize(("was", "now", "at"), [
     ("", "", None),
-    ("    DmaRegs.CH1.CONTROL.bit.RUN = 1;\n", "", "DST_ADDR_SHADOW"),
+    ("    DmaRegs.CH1.CONTROL.bit.RUN = 1;\n", "", "CONT_DISABLE"),
     # It runs on by itself, from the addresses that it then has.
     ("    DmaRegs.CH1.CONTROL.bit.RUN = 1;\n", "    DmaRegs.CH1.MODE.bit.CONTINUOUS = 1;\n", None),
 ])  # fmt: skip
