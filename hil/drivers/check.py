@@ -121,7 +121,8 @@ def _function(tried: CheckedFunction, found: Roles, ran: ProgramOutcome | None) 
     function = tried.function
     reason = tried.reason
     if ran is not None and (function is found.main or function in found.tasks):
-        reason = f"{reason}; the program ran for {ran.virtual_s:g} s" + (f", then ended: {ran.cut}" if ran.cut else "")
+        time = f"{ran.virtual_s:g} s" if ran.virtual_s >= 1e-3 else f"{ran.virtual_s * 1e6:.3g} us"
+        reason = f"{reason}; the program ran for {time}" + (f", then ended: {ran.cut}" if ran.cut else "")
     notes = []
     if tried.guessed:
         notes.append(f"the C does not give the size of what {' and '.join(tried.guessed)} points to: it was guessed")
