@@ -128,6 +128,21 @@ function has one elsewhere: no run needs to take that way.
 """, "BIOS, GateMutexPri_enter: nested key",
     ),
     _rule(
+        "interrupts-left-off", Severity.ERROR, "A way through a function leaves interrupts or a scheduler off.", """
+From then on no interrupt is taken, or no other task runs, until something else switches on.
+
+`DINT; if (late) continue; ...; EINT;` goes on with interrupts off. `key = Hwi_disable();` without `Hwi_restore(key)`
+does the same; the check reports such a key (also of `Swi_disable` and `Task_disable`) if nothing in the function uses
+it and nothing else there switches on.
+
+A `continue` or `return` is reported if the DINT before it has its EINT on another way. It is not reported right after
+the DINT, in a loop that comes to an EINT first, or if a function on the way may switch on. Nothing is reported of a
+function that switches off only, and of the `return` of a start-up (`init`, `setup`, ... in its name).
+
+**Fix:** one way out, and the EINT or the restore there.
+""", "BIOS, Hwi_disable, Hwi_restore; SPRU430, INTM",
+    ),
+    _rule(
         "gate-key", Severity.ERROR, "A gate was left with a wrong key.", """
 A task waits for ever for a gate, or a second task enters a gate that is still in use.
 

@@ -11,6 +11,7 @@ from typing import Any
 
 from emulator.c28x.passes.copies import check_copies
 from emulator.c28x.passes.flow import FlowReport
+from emulator.c28x.passes.masked import check_masked
 from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
 from emulator.c28x.passes.null_tests import NullTests
 from emulator.c28x.passes.report import StaticFinding, StaticReport
@@ -54,6 +55,7 @@ def check(
             Liveness(function, report).run()
             check_stores(function, report)
             check_copies(function, report)
+            check_masked(function, report)
             NullTests(function, report).run()
             check_waiting(function, threads, report)
             if not in_header(function.where, unit.file):
