@@ -151,16 +151,25 @@ class _Visit:
         self._client.on("run_javascript", self._asked)
 
     async def begin(self) -> _Visit:
-        """Ask for the page; where it comes, open its socket as the page's script does."""
-        self.status, self.said = await asyncio.to_thread(_got, self._address)
-        if self.status == 200:
-            found = re.search(r"client_id\W+([0-9a-f-]{36})", self.said)
-            assert found is not None, self.said[:200]
-            query = f"client_id={found[1]}&next_message_id=0&implicit_handshake=true&tab_id={id(self)}&document_id=1"
-            await self._client.connect(
-                f"{self._address}?{query}", socketio_path="/_nicegui_ws/socket.io", transports=["websocket"],
-                wait_timeout=TIMEOUT_S,
-            )  # fmt: skip
+        """Ask for the page; where it comes, open its socket as the page's script does.
+
+        A page that a slow computer has given up before its socket came is loaded anew, as by a browser.
+        """
+        from socketio.exceptions import ConnectionError as Refused
+
+        async with asyncio.timeout(TIMEOUT_S):
+            while not self._client.connected:
+                self.status, self.said = await asyncio.to_thread(_got, self._address)
+                if self.status != 200:
+                    break
+                found = re.search(r"client_id\W+([0-9a-f-]{36})", self.said)
+                assert found is not None, self.said[:200]
+                query = f"client_id={found[1]}&tab_id={id(self)}&document_id=1"
+                with contextlib.suppress(Refused):
+                    await self._client.connect(
+                        f"{self._address}?{query}&next_message_id=0&implicit_handshake=true",
+                        socketio_path="/_nicegui_ws/socket.io", transports=["websocket"], wait_timeout=TIMEOUT_S,
+                    )  # fmt: skip
         return self
 
     async def fed(self) -> bool:
