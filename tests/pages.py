@@ -11,6 +11,8 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,7 +20,9 @@ import matplotlib.backends.backend_svg
 import matplotlib.figure  # noqa: F401
 import pytest
 
-# Imported here, so that a run within a test finds everything in memory.
+# Imported here, so that a run within a test finds everything in memory: what it imports itself it takes along.
+import emulator.c28x.compile
+import emulator.c28x.readers.python.source  # noqa: F401
 import hil.bench
 import hil.testing.machines.gates
 import hil.testing.outside
@@ -27,6 +31,9 @@ import hil.testing.tasks
 import hil.testing.timeline
 import hil.testing.uart  # noqa: F401
 from hil.cli import invoke
+
+if find_spec("pycparser"):
+    import_module("emulator.c28x.readers.c.source")
 
 _BLOCK = re.compile(r"^```(\w+)\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
 _FILE = re.compile(r"(?:# |/\* )([\w./]+)(?: \*/)?\n")
