@@ -92,9 +92,13 @@ def _running(request: pytest.FixtureRequest) -> None:
     """Each test with a page finds a run that goes on, whichever tests of its module's view came before it."""
     if "page" not in request.fixturenames:
         return
-    run = request.getfixturevalue("page").get_by_role("button", name="Run", exact=True)
-    if run.count():
-        run.click()
+    page = request.getfixturevalue("page")
+    chip, run = page.locator(".chip"), page.get_by_role("button", name="Run", exact=True)
+    # The button may say "Pause" by the time of the click.
+    while chip.count() and chip.inner_text() != "running":
+        if run.count():
+            run.click()
+        page.wait_for_timeout(200)
 
 
 def add_signal(page: Any, label: str, name: str | None = None, words: str = "") -> None:

@@ -9,6 +9,7 @@ from operator import ne
 from typing import Any
 
 from hil.recording.trajectory import parse_trajectory
+from hil.view.lanes import LEFT
 from tests.hil.view.conftest import View, add_signal
 
 Shot = Callable[[Any, str], None]
@@ -212,6 +213,11 @@ def test_time_is_paused_stepped_and_gone_back_in(page: Any, shot: Shot) -> None:
     wait(page, "the CPU goes to")
     button(page, "frame").click()
     wait(page, "a frame was sent")
+    for wrong in ("", "-1", "1e305"):
+        page.get_by_label("time, s").fill(wrong)
+        button(page, "Go to this time").click()
+        wait(page, "the time must be from 0 to 86400 s")
+    assert page.locator(".chip").inner_text() == "paused"
     page.get_by_label("time, s").fill("2.5")
     button(page, "Go to this time").click()
     wait(page, "executing again")
@@ -240,7 +246,8 @@ def test_findings_lead_to_source_explanation_and_time(page: Any, shot: Shot) -> 
     assert abs(number_in(page, TIME) * 1e3 - at_ms) <= 0.6
     assert "held" in page.locator(".chip").inner_text()
     where = page.locator(".q-tab-panel:visible").first.inner_text()
-    assert "never written" in where
+    assert "result = never written" in where
+    assert re.search(r"v = \{\d+, \?, \?, .*\(\?: never written\)", where), where
     assert "registers written last" in where
     shot(page, "at-the-finding")
     page.keyboard.press("p")
@@ -365,15 +372,19 @@ def test_the_scope_is_a_logic_analyser(page: Any, shot: Shot) -> None:
     lanes = page.locator(".lanes svg").first
     lanes.scroll_into_view_if_needed()
     readable = page.locator(".lanes .word", has_text="read OUT_Z_L")
-    for _ in range(60):
+    transfers = page.locator(".lanes g").filter(has_text="SIMO SPI-A").locator(".bus, .busy")
+    at = lanes.bounding_box()["width"] * 0.6
+    for _ in range(40):
         if readable.count():
             break
-        # The wheel, a little right of where the first word begins, as the picture has it now.
-        begin = float(re.findall(r"M([\d.]+)", str(words.first.get_attribute("d")))[0])
+        # The wheel, a little right of where a transfer begins that is not cut by the left end of the lanes.
+        drawn = " ".join(transfers.evaluate_all("(paths) => paths.map((path) => path.getAttribute('d'))"))
+        begins = [float(x) for x in re.findall(r"M([\d.]+)", drawn) if float(x) > LEFT + 50]
+        at = min(begins, key=lambda x, at=at: abs(x - at), default=at)
         place, times = lanes.bounding_box(), ends(page)
-        page.mouse.move(place["x"] + begin + 1, place["y"] + 30)
+        page.mouse.move(place["x"] + at + 1, place["y"] + 30)
         page.mouse.wheel(0, -100)
-        sees(page, lambda times=times: ends(page) != times, "the wheel does not zoom")
+        sees(page, lambda times=times: ends(page) != times, f"the wheel does not zoom from {times}")
     assert readable.count() > 0
     wait(page, re.compile(r"^pointer"))
     shot(page, "logic")
