@@ -73,6 +73,8 @@ class SciReceiver:
         self.loopback = False
         #: The statement that set the baud registers.
         self.rate_set_by: Cause | None = None
+        #: The statement that took the module out of reset.
+        self._run_by: Cause | None = None
         #: Whether SCIRST holds the FIFO channel.
         self.channel_held = False
         #: The cycle until which a character that began earlier is being sampled.
@@ -111,6 +113,7 @@ class SciReceiver:
     def run(self) -> None:
         """SWRESET=1: hunt for a falling edge from now on; a line that is low already counts as one."""
         self._running = True
+        self._run_by = self._cpu.findings.mark()
         self._busy_until = float(self._clock.now)
         self._update_ready()
         if self._line.broken:
@@ -162,7 +165,7 @@ class SciReceiver:
                 "not-configured",
                 f"a character came to GPIO{pin}, and {self._regs.name} is waiting for one, but {self._line.missing}: "
                 "it is lost",
-                object=self._line.name,
+                object=self._line.name, cause=self._run_by,
             )  # fmt: skip
 
     def _on_break(self, low: bool) -> None:
