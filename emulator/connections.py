@@ -127,6 +127,7 @@ class Connections:
         self._compares()
         self._compares_for_nobody()
         self._outputs()
+        self._driven_inputs()
 
     # The source
 
@@ -239,6 +240,38 @@ class Connections:
             self._could(f"DmaClaSrcSelRegs.DMACHSRCSEL{1 + n // 4}", lambda word: word == number, f"CH{n + 1}")
             for n in range(DMA_CHANNELS)
         )
+
+    def _driven_inputs(self) -> None:
+        """Pins that the program sets and clears, and that no statement makes outputs."""
+        calls = self._source.calls.get("GPIO_SetupPinOptions", ())
+        named = [self._source.values(arguments[0]) for _, arguments in calls]
+        if None in named:
+            return
+        set_up = frozenset[int]().union(*(numbers for numbers in named if numbers is not None))
+        for letter, first in zip(PORTS, range(0, 32 * len(PORTS), 32), strict=True):
+            direction = f"GpioCtrlRegs.GP{letter}DIR"
+            for n in range(32):
+                places = [self._moves(f"GP{letter}{verb}", 1 << n) for verb in ("SET", "CLEAR", "TOGGLE")]
+                moved = (places[0] and places[1]) or places[2]
+                if moved is None or first + n in set_up:
+                    continue
+                block, name = _split(direction)
+                register = self._chip.blocks[block].registers[name]
+                if register.value & 1 << n or self._source.could(block, name, 1 << n, bool):
+                    continue
+                self._chip.findings.report_at(
+                    moved, "not-connected", f"GPIO{first + n} is set and cleared, and drives nothing: it is an input, "
+                    f"and no statement sets {direction}.GPIO{first + n}", object=f"GPIO{first + n}", how="dynamic",
+                )  # fmt: skip
+
+    def _moves(self, register: str, mask: int) -> Place | None:
+        """The last statement that writes a 1 to this one bit of a register of GpioDataRegs."""
+        places = [
+            write.place for write in self._source.of("GpioDataRegs", register, mask)
+            if write.values is not None and any(value & mask for value in write.values)
+            and not write.place.file.startswith("<")
+        ]  # fmt: skip
+        return places[-1] if places else None
 
     def _burst(self, block: str, first: int) -> None:
         """Bursts go round through SOC `first` to SOC15.  Each should be set up, and a round should end with a burst."""

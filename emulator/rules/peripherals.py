@@ -221,7 +221,8 @@ connections are checked:
   nothing requests its transmission, or in loopback its filter passes none of the controller's own frames. An identifier
   of 11 bits is in the lower bits of `ARB`, which only extended identifiers have. Data are written to an object with
   `Dir = 0`, whose request sends a remote frame. An object receives messages, and the program never reads one.
-* Pins: the chip itself drives a pin, and the input qualification of the pin needs longer pulses.
+* Pins: the program sets and clears a pin that no statement makes an output. The chip itself drives a pin, and the input
+  qualification of the pin needs longer pulses.
 
 The check is made at the end of a run. It reports a setting only if no statement of the program could set it. A program
 that starts its timer on an order that did not come in this run is not reported. The start-up runs once: a setting

@@ -854,3 +854,41 @@ def test_a_channel_that_gets_new_addresses_is_started(tmp_path: Path, was: str, 
     text = BUFFERS.replace(was, now) if was else BUFFERS
     places = [finding.place for finding in told(tmp_path, text, seconds=0.01)]
     assert [place and at and at in text.splitlines()[place.line - 1] for place in places] == [True] * (at is not None)
+
+
+#: A lamp blinks at GPIO34, in a loop.
+LAMP = """#include "F28x_Project.h"
+volatile Uint16 Order = 0;
+void main(void)
+{
+    InitSysCtrl();
+    EALLOW;
+    GpioCtrlRegs.GPBDIR.bit.GPIO34 = 1;
+    EDIS;
+    for (;;) {
+        GpioDataRegs.GPBSET.bit.GPIO34 = 1;
+        DELAY_US(10);
+        GpioDataRegs.GPBCLEAR.bit.GPIO34 = 1;
+        DELAY_US(10);
+    }
+}
+"""
+_OUTPUT = "    GpioCtrlRegs.GPBDIR.bit.GPIO34 = 1;\n"
+_CLEARED = "        GpioDataRegs.GPBCLEAR.bit.GPIO34 = 1;\n"
+
+
+@pytest.mark.parametrize(("was", "now", "told_at"), [
+    ("", "", []),
+    (_OUTPUT, "    GpioCtrlRegs.GPBDIR.bit.GPIO35 = 1;\n", [_CLEARED]),
+    (_OUTPUT, "    if (Order) GpioCtrlRegs.GPBDIR.all |= 4;\n", []),
+    (_OUTPUT, "    GPIO_SetupPinOptions(34, GPIO_OUTPUT, GPIO_PUSHPULL);\n", []),
+    # It keeps one level, which the pin may get later.
+    (_OUTPUT + "|" + _CLEARED, "", []),
+])  # fmt: skip
+def test_a_pin_that_is_set_and_cleared_is_an_output(tmp_path: Path, was: str, now: str, told_at: list[str]) -> None:
+    text = LAMP
+    for part in was.split("|") if was else ():
+        assert part in text
+        text = text.replace(part, now)
+    found = told(tmp_path, text, seconds=0.0005)
+    assert [text.splitlines(keepends=True)[f.place.line - 1] for f in found if f.place] == told_at
