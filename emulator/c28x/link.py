@@ -228,7 +228,7 @@ class Linked:
             "_c_load_bits": runtime.load_bits, "_c_store_bits": runtime.store_bits,
             "_c_load_octet": runtime.load_octet, "_c_store_octet": runtime.store_octet,
             "_c_clock": runtime.clock, "_c_position": runtime.findings.position, "_cpu": runtime.cpu,
-            "_range": range, "_max": max, "_len": len, "_c_NULL": NULL,
+            "_c_runtime": runtime, "_range": range, "_max": max, "_len": len, "_c_NULL": NULL,
             "_c_f32": f32, "_c_uninit": runtime.uninit, "_c_oob_load": runtime.oob_load,
             "_c_oob_store": runtime.oob_store, "_c_member_index": runtime.member_index,
             "_c_address": runtime.address, "_c_code": runtime.code, "_c_function_at": runtime.function_at,

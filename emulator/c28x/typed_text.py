@@ -2,10 +2,10 @@
 
 The methods are the functions that `python.py` wrote, statement by statement: every charge, check and place is the same.
 What is added are types, which let mypyc do without objects and look-ups by name.  C's integers are `int`, its floats
-`float`.  A function calls another as a method.  A register that is only looked at, or stored in place, is the `Cell`
-itself.  Every other name that the linker binds is an attribute of the class.  What a type does not fit (a value that
-may never have been written, an element of an array, a pointer) stays `Any`; where it is computed with, it has been
-written, and its type is stated.
+`float`.  Functions of the program and of `Runtime` are called as methods.  A register that is only looked at, or stored
+in place, is the `Cell` itself.  Every other name that the linker binds is an attribute of the class.  What a type does
+not fit (a value that may never have been written, an element of an array, a pointer) stays `Any`; where it is computed
+with, it has been written, and its type is stated.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from __future__ import annotations
 import ast
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from hashlib import sha256
 from typing import Final
 
@@ -20,6 +21,7 @@ from emulator.c28x.compiled_program import Compiled, CompiledFunction
 from emulator.c28x.ctypes import VOID, ArrayType, CType, FloatType, IntType, StructType
 from emulator.c28x.emit.names import escaped, local_name, object_name
 from emulator.c28x.emit.written import FIRST_NUMBER
+from emulator.c28x.runtime import Runtime
 
 #: The class of a program.
 CLASS: Final = "Program"
@@ -29,6 +31,7 @@ from collections.abc import Callable
 from typing import Any, cast
 from emulator.c28x.arithmetic import f32
 from emulator.c28x.position import Position
+from emulator.c28x.runtime import Runtime
 from emulator.clock import Clock
 from emulator.cpu import Cpu
 from emulator.registers.cell import Cell, look
@@ -38,15 +41,20 @@ class {CLASS}:
 '''
 #: Names that the text uses itself: one of C's that is the same gets the prefix of `escaped`.
 _TAKEN: Final = frozenset({
-    CLASS, "Any", "Callable", "Cell", "Clock", "Cpu", "NAMES", "Position", "cast", "f32", "float", "int", "len", "list",
-    "look", "max", "range", "self",
+    CLASS, "Any", "Callable", "Cell", "Clock", "Cpu", "NAMES", "Position", "Runtime", "cast", "f32", "float", "int",
+    "len", "list", "look", "max", "range", "self",
 })  # fmt: skip
 #: What the linker binds to these names is the same for every program.
 _COMMON: Final = {"_range": "range", "_max": "max", "_len": "len", "_c_f32": "f32"}
 #: The types of what the linker binds, by name and by the end of a register's name.
 _TYPES: Final = {
-    "_c_clock": "Clock", "_c_position": "Position", "_cpu": "Cpu", "_c_poll_limit": "int", "_c_loop_limit": "int",
+    "_c_clock": "Clock", "_c_position": "Position", "_c_runtime": "Runtime", "_cpu": "Cpu", "_c_poll_limit": "int",
+    "_c_loop_limit": "int",
 }  # fmt: skip
+#: Names of the language -> the methods of `Runtime` that the linker binds to them.
+_METHODS: Final = {f"_c_{name}": name for name, value in vars(Runtime).items() if callable(value) and name[0] != "_"}
+#: Those that it binds otherwise where accesses are watched.
+_WATCHED: Final = ("_c_load", "_c_store", "_c_touch")
 _ACCESSES: Final = {
     "cleared": "Cell", "read": "Callable[[], int]", "write": "Callable[[int, int], None]",
     "modify": "Callable[[int, int, int], None]",
@@ -98,31 +106,46 @@ def typed_text(compiled: Compiled, first: int) -> str:
     """The module with the class of a program whose first place has the number `first`."""
     functions = compiled.functions
     named = list(zip(functions, methods(functions), strict=True))
-    names = {each.path: name for each, name in named}
-    elements = {f"_g_{object_name(variable)}": _element(variable.ctype) for variable, _ in compiled.objects}
-    bound: dict[str, str] = {}
+    program = _Names(
+        {each.path: name for each, name in named},
+        {f"_g_{object_name(variable)}": _element(variable.ctype) for variable, _ in compiled.objects},
+        {name: _METHODS[name] for name in _METHODS if not compiled.options.watch or name not in _WATCHED},
+    )
     written = []
     for each, name in named:
-        written.append(_Method(each, name, first, names, elements, bound).text())
+        written.append(_Method(each, name, first, program).text())
         first += len(each.written.places)
+    bound = program.bound
     declared = [f"    {attribute(name)}: {kind}\n" for name, kind in sorted(bound.items())]
     return "".join([_HEADER, *declared, *written, f"\nNAMES = frozenset({sorted(bound)!r})\n"])
+
+
+@dataclass(frozen=True, slots=True)
+class _Names:
+    """The names of a program."""
+
+    #: The path of each function -> its method.
+    methods: dict[str, str]
+    #: `_g_x` -> the type of its elements.
+    elements: dict[str, str]
+    #: `_c_x` -> the method of `Runtime`.
+    runtime: dict[str, str]
+    #: What the text refers to -> the type of the attribute.
+    bound: dict[str, str] = field(default_factory=dict)
 
 
 class _Method(ast.NodeTransformer):
     """One function as a method."""
 
-    def __init__(
-        self, compiled: CompiledFunction, name: str, first: int, names: dict[str, str], elements: dict[str, str],
-        bound: dict[str, str],
-    ) -> None:  # fmt: skip
+    def __init__(self, compiled: CompiledFunction, name: str, first: int, program: _Names) -> None:
         self._first = first
-        self._bound = bound
+        self._bound = program.bound
+        self._runtime = program.runtime
         self._function = compiled.function
         self._results = {name: f.ctype.result for name, f in compiled.written.names.functions.items()}
         self._name = name
         self._methods = {
-            name: names[function.path]
+            name: program.methods[function.path]
             for name, function in compiled.written.names.functions.items()
             if not function.extern
         }
@@ -138,7 +161,7 @@ class _Method(ast.NodeTransformer):
             node.id for node in ast.walk(self._tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
         }
         #: The type of the elements of each array, where all have one.
-        self._elements = elements | {
+        self._elements = program.elements | {
             local_name(variable): _element(variable.ctype) for variable in self._function.locals if variable.in_memory
         }
         #: The type that a value has where it is written: the C type of locals that may hold None.
@@ -202,9 +225,12 @@ class _Method(ast.NodeTransformer):
         return ast.Attribute(_name("self"), attribute(name), node.ctx)
 
     def visit_Call(self, node: ast.Call) -> ast.expr:
-        """A call of a function of the program.  (Its name alone, a pointer to it, is bound as any other.)"""
-        if isinstance(node.func, ast.Name) and node.func.id in self._methods:
-            function: ast.expr = ast.Attribute(_name("self"), self._methods[node.func.id], ast.Load())
+        """A call of a function of the program or of the runtime.  (A name alone, a pointer, is bound as any other.)"""
+        name = node.func.id if isinstance(node.func, ast.Name) else ""
+        if name in self._methods:
+            function: ast.expr = ast.Attribute(_name("self"), self._methods[name], ast.Load())
+        elif name in self._runtime:
+            function = ast.Attribute(self.visit(_name("_c_runtime")), self._runtime[name], ast.Load())
         else:
             function = self.visit(node.func)
         return ast.Call(function, [self.visit(argument) for argument in node.args], [])
