@@ -81,7 +81,7 @@ FIRMWARE_STAYS: Final = (
     "counted, and on any other board"
 )
 #: What every error of a build ends with.
-STILL: Final = "without a compiled build everything runs in plain Python, at about a third of the pace"
+STILL: Final = "without a compiled build everything runs in plain Python, at about a quarter of the pace"
 #: Whatever a compiled module may have taken a constant or a type from.
 SOURCES: Final = ("emulator/**/*.py", "hil/world/*.py")
 #: The libraries in which the modules really are: those of the emulator, and programs of firmware.

@@ -115,6 +115,8 @@ class I2c:
         self._event: Event | None = None
         #: Whether this controller has made a START and no STOP yet.
         self._owner = False
+        #: Whether the message stays within the module.  CHOICE: DLB counts when its START is made, and until its STOP.
+        self._loopback = False
         #: The transfer, as I2CMDR and I2CCNT were at its START; `_finished`: it takes no further byte.
         self._transmitter = self._repeat = self._finished = False
         self._left = 0
@@ -233,7 +235,7 @@ class I2c:
         self._state = IDLE
         if self._owner:
             self._owner = False
-            if not self._mdr.value & DLB:
+            if not self._loopback:
                 self._bus.stop()
         self._mdr.value &= ~(STT | STP)
         self._data.run(False)
@@ -258,9 +260,11 @@ class I2c:
 
     def _start(self) -> None:
         """SDA falls while SCL is high."""
+        if not self._owner:
+            self._loopback = bool(self._mdr.value & DLB)
         self._owner = True
         self._str.value |= BB
-        if not self._mdr.value & DLB:
+        if not self._loopback:
             self._caused(self._bus.start)
         self._event = self._clock.after(self._module_cycles * (self._clkh.value + self._delay), self._started)
 
@@ -272,7 +276,7 @@ class I2c:
         self._transmitter, self._repeat = bool(mode & TRX), bool(mode & RM)
         self._left = self._vain.wanted = self._cnt.value or LONGEST_COUNT
         self._finished = False
-        if mode & DLB and not self._transmitter:
+        if self._loopback and not self._transmitter:
             self._checks.receiver_in_loopback()
         self._shift(self._address_sent)
 
@@ -292,7 +296,7 @@ class I2c:
         mode, target = self._mdr.value, self._sar.value
         address = TEN_BITS | target >> 8 if mode & XA else target & 0x7F
         self._unanswered = False
-        if not mode & DLB and not self._caused(self._bus.address, address, not self._transmitter):
+        if not self._loopback and not self._caused(self._bus.address, address, not self._transmitter):
             self.refusals += 1
             self._refused()
             return
@@ -371,7 +375,7 @@ class I2c:
 
     def _byte_sent(self) -> None:
         acknowledged = True
-        if self._mdr.value & DLB:
+        if self._loopback:
             self._looped = self._xsr
             self._loop = self._clock.after(LOOPBACK_CLOCKS * self._module_cycles, self._looped_back)
         else:
@@ -412,8 +416,10 @@ class I2c:
 
     def _stopped(self) -> None:
         """SDA rises while SCL is high."""
+        if not self._owner:
+            self._loopback = bool(self._mdr.value & DLB)
         self._owner = False
-        if not self._mdr.value & DLB:
+        if not self._loopback:
             self._caused(self._bus.stop)
         self._str.value &= ~BB
         self._interrupts.set(SCD)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tests.emulator.peripherals.i2c_bench import (
@@ -799,6 +799,10 @@ ACCESSES = st.lists(
 
 
 @given(accesses=ACCESSES)
+@example(accesses=[
+    ("I2CMDR", SEND), ("I2CMDR", IRS | 0x40), ("I2CDXR", 0), ("time", 3292), ("I2CMDR", SEND | STP), ("I2CMDR", SEND),
+    ("time", 1431),
+])  # fmt: skip
 def test_whatever_a_program_does_the_bus_sees_messages(accesses: list[tuple[str, int | None]]) -> None:
     bench = Bench(answers=bytes(100))
     for name, word in accesses:
