@@ -38,7 +38,7 @@ def headers() -> Mapping[str, Any]:
     return MappingProxyType(Program().module("emulator.sysbios.headers").symbols)
 
 
-class Prototype(NamedTuple):
+class HandlePrototype(NamedTuple):
     """A C function: how many arguments it has, and of each handle which argument, its type, whether a pointer to it."""
 
     arguments: int
@@ -46,7 +46,7 @@ class Prototype(NamedTuple):
 
 
 @lru_cache(maxsize=1)
-def prototypes() -> Mapping[str, Prototype]:
+def prototypes() -> Mapping[str, HandlePrototype]:
     """The C functions that take handles.
 
     The names of the types tell; `headers` would take as long as linking a kept program.
@@ -57,7 +57,7 @@ def prototypes() -> Mapping[str, Prototype]:
             types = [text for parameter, text in function.__annotations__.items() if parameter != "return"]
             handles = tuple((i, *_handle(text)) for i, text in enumerate(types) if "_Handle" in text)
             if handles:
-                found[name] = Prototype(len(types), handles)
+                found[name] = HandlePrototype(len(types), handles)
     return MappingProxyType(found)
 
 
@@ -96,7 +96,7 @@ class Handles:
         """A C function that checks its handles before it does anything else."""
         if not _may_take_handles(function):
             return function
-        arguments, handles = prototypes().get(name, Prototype(0, ()))
+        arguments, handles = prototypes().get(name, HandlePrototype(0, ()))
         # Where the first argument is the only handle, its class is enough.  A call with any number of arguments takes
         # three times as long as one with as many as the kernel's busiest functions have.
         wanted = self.classes.get(handles[0][1]) if len(handles) == 1 and handles[0][0] == 0 else None
@@ -135,7 +135,7 @@ class Handles:
         """
         if name in _NOT_BEFORE_TASKS and not self._in_task():
             return arguments
-        for i, kind, behind in prototypes().get(name, Prototype(0, ())).handles:
+        for i, kind, behind in prototypes().get(name, HandlePrototype(0, ())).handles:
             value = arguments[i]
             if value.__class__ is self.classes.get(kind) and not value.deleted:
                 continue

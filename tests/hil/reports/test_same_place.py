@@ -232,6 +232,7 @@ def test_the_view_and_the_console_show_a_finding_where_all_others_do() -> None:
     pytest.importorskip("textual")
     from hil.terminal.findings import _row
     from hil.view.findings_panel import row_of
+    from hil.view.rated_finding import RatedFinding
 
     bench = Bench("corridor", seed=1)
     bench.boot()
@@ -239,7 +240,7 @@ def test_the_view_and_the_console_show_a_finding_where_all_others_do() -> None:
     for finding in bench.findings:
         (told,) = of_json([finding_of(finding) | {"how": "dynamic"}])
         severity = RULES[finding.rule].severity
-        _, what, where, _ = row_of(finding, severity).cells
+        _, what, where, _ = row_of(RatedFinding(finding, severity)).cells
         assert (what.text, what.more, f"{where.text} ({where.title})") == row(told)
         _, rule, *_, place = (cell.plain for cell in _row(finding, severity))
         assert (rule, told.object, place) == row(told)
