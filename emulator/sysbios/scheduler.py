@@ -13,7 +13,16 @@ from typing import Any, Final
 from greenlet import GreenletExit, getcurrent, greenlet
 
 from emulator.c28x.position import Calls
-from emulator.sysbios.core import TASK, Function, KernelCore, KernelObject, UniqueNames, fitted, function_name
+from emulator.sysbios.core import (
+    TASK,
+    Function,
+    KernelCore,
+    KernelError,
+    KernelObject,
+    UniqueNames,
+    fitted,
+    function_name,
+)  # fmt: skip
 from emulator.sysbios.stack import Stack, StackSpace
 from emulator.sysbios.swi import SwiModule
 
@@ -262,6 +271,11 @@ class Scheduler:
             if not self.vital_tasks:
                 self.exit_program(0)
         self.restore(False)
+        # No other task has the CPU now, because Swis are disabled.  `Task_exit` returns, to an address that nothing has
+        # set.  CHOICE: the program ends here, because what follows would depend on unknown words.
+        raise KernelError(
+            "Task_exit", f"task {task.name} has ended and Swi_disable is in force, so no other task can run"
+        )  # fmt: skip
 
     def drop(self, task: Task) -> None:
         """Delete a task that does not run and is in no queue of a semaphore, event or gate."""

@@ -138,6 +138,14 @@ def test_a_broken_rule_is_the_kernels_assertion(call: Any, identifier: str) -> N
     assert error.value.identifier == identifier
 
 
+def test_a_task_that_ends_while_Swis_are_disabled_ends_the_program() -> None:
+    """No task can follow it, and the function that it would return to is none."""
+    b = Bench()
+    b.boot(lambda: b.task(lambda: b.kernel.Swi_disable(), 1))
+    with pytest.raises(KernelError, match="Swi_disable is in force"):
+        b.kernel.run_until(MS)
+
+
 @pytest.mark.parametrize("priority", [0, 16, -2])
 def test_create_refuses_a_priority_that_is_not_for_users(priority: int) -> None:
     b = Bench()
