@@ -62,10 +62,10 @@ _ACCESSES: Final = {
 #: The types of the names that the writer makes up within a function; those of objects of the emulator are inferred.
 _WITHIN: Final = dict.fromkeys(("_e", "_fp", "_i", "_n", "_q", "_since", "_t", "_w"), "int")
 _INFERRED: Final = ("_k", "_p", "_up")
-#: The value that a function returns, and the local that has it while the frame is released.
+#: The writer's name for a value that is kept for a moment; the name that the value to return gets here.
 _VALUE: Final = "_v"
 _RESULT: Final = "_result"
-#: A type: where a value of it is taken from a place that may hold `None` as well.
+#: The types of values that can be computed with.
 _NUMBERS: Final = ("int", "float")
 
 
