@@ -21,6 +21,7 @@ from hil.files import GrowingFile, growing
 from hil.instruments.levels import Levels, frame_levels, spi_levels
 from hil.instruments.trace_file import FROM_PC, SAMPLE_CYCLES, TO_PC, TraceWriter
 from hil.instruments.variables import variables
+from hil.reports.accepted import why_accepted
 from hil.reports.excerpt import excerpt
 from hil.running import RunningBoard
 from hil.view.stage import stage_of
@@ -243,6 +244,8 @@ class Recorder:
             # The source as it is now: when the trace is read, the file may have changed.
             texts = [line.text for line in lines]
             value["source"] = {"first": lines[0].number, "marked": finding.place.line, "lines": texts}
+        if reason := why_accepted(finding):
+            value["accepted"] = reason
         self._event(finding.time_cycles, "findings", finding.rule, value)
 
     def _soldered(self, kind: str) -> Iterator[tuple[str, Any]]:

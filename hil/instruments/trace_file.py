@@ -45,7 +45,7 @@ CHANNELS: Final = {
     "serial": "bytes on serial pins (pin; byte)",
     "registers": "writes of the CPU to registers (block.register; word)",
     "variables": "variables of the firmware at file scope, looked at every millisecond (module.name; its number)",
-    "findings": "what the detectors found (rule; message, place, task)",
+    "findings": "what the detectors found (rule; message, place, task, why the source accepts it)",
     "pose": "where the robot is and where it believes to be (true or odometry; [x_m, y_m, heading_rad])",
     "scene": "the robot in its world and what its sonars say, looked at every 50 ms (name; hil/instruments/scene.py)",
     "faces": "what the parts of the board see and do, looked at every 50 ms and at the end (part.face; its number)",

@@ -111,6 +111,9 @@
 
   const scene = run.scene;
   const findings = run.findings;
+  // What the source accepts is counted by itself, and not with its severity.
+  const kindOf = (each) => (each.accepted ? "accepted" : each.severity);
+  const accepted = (each) => (each.accepted ? `accepted in the source: ${each.accepted}` : "");
   const byTime = [...findings].sort((a, b) => a.t - b.t);
   const lines = { ...run.lines, t: sums(run.lines.t) };
   const isOrder = (index) => lines.received[lines.pin[index]];
@@ -137,7 +140,7 @@
     mark.setAttribute("height", 9);
     draw("title", "", mark).textContent = `${text}, ${seconds(cycles)}`;
   }
-  for (const each of findings) tick(each.t, 0, each.severity, each.rule);
+  for (const each of findings) tick(each.t, 0, kindOf(each), each.rule + (each.accepted && `, accepted: ${each.accepted}`));
   for (const index of orders) tick(lines.t[index], 10, "order", lines.text[index]);
   for (const [cycles, text] of scene ? scene.happened : []) tick(cycles, 10, "world", text);
 
@@ -169,19 +172,14 @@
     return found;
   };
 
-  const byRank = ["error", "warning", "note"];
-  function counted(found) {
-    return byRank
-      .map((severity) => [severity, found.filter((each) => each.severity === severity).length])
-      .filter(([, many]) => many)
-      .map(([severity, many]) => [severity, `${many} ${severity}${many === 1 ? "" : "s"}`]);
-  }
-  for (const [severity, text] of counted(findings)) {
-    $("counts").append(make("span", { class: `severity ${severity}` }, text));
-    setText($(`count-${severity}`), text);
-  }
-  for (const severity of byRank) {
-    if (!findings.some((each) => each.severity === severity)) setText($(`count-${severity}`), `0 ${severity}s`);
+  const kinds = ["error", "warning", "note", "accepted"];
+  for (const kind of kinds) {
+    const many = findings.filter((each) => kindOf(each) === kind).length;
+    const text = `${many} ${kind}${many === 1 || kind === "accepted" ? "" : "s"}`;
+    if (many) $("counts").append(make("span", { class: `severity ${kind}` }, text));
+    setText($(`count-${kind}`), text);
+    // Few programs accept anything.
+    if (kind === "accepted") $(`count-${kind}`).parentElement.hidden = !many;
   }
   if (!findings.length) {
     $("counts").append(make("span", { class: "soft" }, "no findings"));
@@ -494,6 +492,7 @@
 
   function detail(each) {
     const box = make("div", { class: "detail" }, make("p", {}, each.message));
+    if (each.accepted) box.append(make("p", { class: "soft" }, accepted(each)));
     if (each.where) box.append(make("p", { class: "mono" }, each.where));
     for (const text of each.details) box.append(make("p", { class: "soft" }, text));
     if (each.source) {
@@ -552,8 +551,12 @@
     const button = make(
       "button",
       { type: "button", "aria-expanded": "false", onclick: () => (picked === each && now === each.t ? open(null) : pick(each)) },
-      make("span", { class: `severity ${each.severity}` }, each.severity), what, when,
+      make("span", { class: `severity ${kindOf(each)}` }, each.severity), what, when,
     );
+    if (each.accepted) {
+      button.title = accepted(each);
+      button.firstElementChild.append(make("br"), make("span", { class: "state" }, "accepted"));
+    }
     setText(when, seconds(each.t, 6));
     const item = make("li", { class: "finding" }, button);
     items.set(each, { item, button, when });
@@ -564,14 +567,14 @@
     const wanted = $("search").value.trim().toLowerCase();
     let any = false;
     for (const each of findings) {
-      const words = [each.rule, each.object, each.where, each.task, each.message].join(" ").toLowerCase();
-      const visible = $(`show-${each.severity}`).checked && words.includes(wanted);
+      const words = [each.rule, each.object, each.where, each.task, each.message, accepted(each)].join(" ").toLowerCase();
+      const visible = $(`show-${kindOf(each)}`).checked && words.includes(wanted);
       items.get(each).item.hidden = !visible;
       any ||= visible;
     }
     $("no-findings").hidden = any;
   }
-  for (const severity of byRank) $(`show-${severity}`).addEventListener("change", filter);
+  for (const kind of kinds) $(`show-${kind}`).addEventListener("change", filter);
   $("search").addEventListener("input", filter);
   filter();
 

@@ -19,7 +19,6 @@ from typing import Any, Final
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from emulator.rules import Severity
 from hil.files import replacing
 from hil.instruments.recorder import Recorder, about_of
 from hil.instruments.trace_file import DEFAULT, RecordedTrace
@@ -27,6 +26,7 @@ from hil.page.replay import Replay
 from hil.reports.policy import Policy
 from hil.robot.view.arena_drawing import LEGEND
 from hil.running import RunningBoard
+from hil.view.rated_finding import KINDS
 from hil.view.style import ARENA, DARK, LIGHT, WORDS
 
 #: How the gestures of the view's arena begin, which is a component there and an object here.
@@ -78,7 +78,7 @@ def html(data: Mapping[str, Any]) -> str:
         title=title(data["about"]),
         about=data["about"],
         light=Markup(LIGHT), dark=Markup(DARK), shared=Markup(WORDS + ARENA), legend=LEGEND,
-        severities=[severity.value for severity in sorted(Severity, key=lambda severity: -severity.rank)],
+        kinds=KINDS,
         # The browser runs this script and no other, whatever the run wrote into its names.
         digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
         script=Markup(script),

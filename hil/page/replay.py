@@ -211,7 +211,7 @@ class Replay:
             {
                 "t": cycles, "rule": name, "severity": severity.value,
                 "message": readable(value["message"]), "object": _text(value.get("object")), "task": value["task"],
-                "where": readable(value["place"]),
+                "where": readable(value["place"]), "accepted": readable(_text(value.get("accepted"))),
                 "details": [readable(text) for text in _texts(value.get("details"))],
                 "from": [readable(text) for text in _texts(value.get("called_from"))],
                 **_source(value.get("source")),

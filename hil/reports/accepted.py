@@ -40,6 +40,19 @@ def acceptance(finding: Finding) -> tuple[UserDeclaration, str] | None:
     return None
 
 
+def why_accepted(finding: Finding) -> str:
+    """The reason in the source; empty: no comment accepts the finding.
+
+    For a finding that is shown while the program runs.  A file with a wrong `hil: allow` accepts nothing; the report at
+    the end names it.
+    """
+    try:
+        allowed = acceptance(finding)
+    except ValueError:
+        return ""
+    return allowed[1] if allowed else ""
+
+
 def idle(files: Iterable[str], used: Iterable[UserDeclaration]) -> list[UserDeclaration]:
     """The `allow` comments of `files` that no finding needed."""
     asked = set(used)

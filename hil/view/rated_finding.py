@@ -9,7 +9,7 @@ from typing import Final
 
 from emulator.c28x.findings import Finding
 from emulator.rules import Severity
-from hil.reports.accepted import acceptance
+from hil.reports.accepted import why_accepted
 from hil.reports.policy import Policy
 
 WORST_FIRST: Final = sorted(Severity, key=lambda severity: -severity.rank)
@@ -37,18 +37,9 @@ class RatedFinding:
 def rated(findings: Iterable[Finding], policy: Policy) -> list[RatedFinding]:
     """The findings in their order, without those whose rule is turned off."""
     return [
-        RatedFinding(finding, severity, _why_accepted(finding))
+        RatedFinding(finding, severity, why_accepted(finding))
         for finding, severity in policy.with_severities(findings)
     ]
-
-
-def _why_accepted(finding: Finding) -> str:
-    """The reason in the source.  A file with a wrong `hil: allow` accepts nothing; the report at the end names it."""
-    try:
-        allowed = acceptance(finding)
-    except ValueError:
-        return ""
-    return allowed[1] if allowed else ""
 
 
 def worst_first(findings: Iterable[RatedFinding]) -> list[RatedFinding]:

@@ -211,6 +211,33 @@ def test_findings_are_filtered_and_searched(open_page: Open, file: Path) -> None
     assert page.locator("#no-findings").is_visible()
 
 
+def test_what_the_source_accepts_is_marked_counted_and_filtered_by_itself(
+    open_page: Open, file: Path, trace: RecordedTrace, tmp_path: Path
+) -> None:
+    assert not open_page(file).locator("#show-accepted").is_visible()
+    replay = Replay(trace.about)
+    for cycles, channel, name, value in trace.of("findings"):
+        reason = {"accepted": "a guard word follows"} if name == "index" else {}
+        replay.event(cycles, channel, name, {**value, **reason})
+    some = tmp_path / "accepted.html"
+    some.write_text(html(replay.data()), encoding="utf-8")
+    page = open_page(some)
+    accepted = page.locator(".finding:visible").filter(has_text="index")
+    many = accepted.count()
+    assert many == page.locator("#ticks .accepted").count() == page.locator(".finding .severity.accepted").count() > 0
+    assert page.locator("#counts .accepted").inner_text() == f"{many} accepted"
+    assert page.locator("#count-accepted").inner_text() == f"{many} accepted"
+    errors = page.locator(".finding .severity.error:visible").count()
+    assert page.locator("#counts .error").inner_text() == f"{errors} errors"
+    assert accepted.first.locator(".severity").inner_text().split() == ["error", "accepted"]
+    accepted.first.click()
+    assert "accepted in the source: a guard word follows" in accepted.first.inner_text()
+    page.get_by_label("Search findings").fill("guard word")
+    assert page.locator(".finding:visible").count() == many
+    page.locator("#show-accepted").uncheck()
+    assert page.locator(".finding:visible").count() == 0
+
+
 def test_frames_and_orders_follow_the_time(open_page: Open, file: Path) -> None:
     page = open_page(file, at="#t=2.1")
     row = page.locator(".said", has_text="#MISN")

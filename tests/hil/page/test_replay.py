@@ -166,6 +166,31 @@ def test_a_board_without_wheels_has_faces_and_no_scene(tmp_path: Path) -> None:
     assert found["end"] >= 60_000_000  # the whole 0.3 s
 
 
+def test_what_the_source_accepts_has_its_reason_and_is_as_severe_as_ever(tmp_path: Path) -> None:
+    pytest.importorskip("pycparser", reason="needs the extra c: pip install 'c2000-hil[c]'")
+    from hil.cli import invoke
+    from tests.hil.own_board import project
+
+    project.write(tmp_path)
+    main = tmp_path / "firmware" / "main.c"
+    write = "CpuSysRegs.PCLKCR8.bit.SPI_C = 1;"
+    allowed = f"{write} // hil: allow eallow, <b>the boot ROM</b> left it open\n"
+    text = main.read_text(encoding="utf-8")
+    main.write_text(text.replace("Init_Station();", f"{allowed}{write}\nInit_Station();"), encoding="utf-8")
+    trace, page = tmp_path / "run.trace", tmp_path / "run.html"
+    assert invoke([
+        "run", "--board", str(tmp_path / "station_board.py"), "--firmware", str(tmp_path / "firmware"), "--no-port",
+        "--pace", "max", "--for", "0.01", "--trace", str(trace), "--page", str(page),
+    ]) == 0  # fmt: skip
+    found = data_of(page.read_text(encoding="utf-8"))["findings"]
+    assert [(each["rule"], each["severity"], each["accepted"]) for each in found] == [
+        ("eallow", "error", "<b>the boot ROM</b> left it open"), ("eallow", "error", ""),
+    ]  # fmt: skip
+    # A trace has the reason as it was when the program ran.
+    main.unlink()
+    assert replayed(read(trace))["findings"] == found
+
+
 # What is too much, and what is hostile
 
 
