@@ -15,6 +15,7 @@ from nicegui import ui
 
 from hil.board import Board, Face, Part
 from hil.view.engine import Engine
+from hil.view.notice import Notice
 from hil.view.snapshot import Snapshot
 
 #: CHOICE: steps of a slider from one end to the other.
@@ -52,16 +53,15 @@ class BoardPanel:
                 row.show(value)
 
     def _put(self, part: Part, face: Face, value: float) -> None:
-        try:
-            part.check(face.name, value)
-        except ValueError as error:
-            ui.notify(str(error), type="warning")
-            return
+        part.check(face.name, value)
         self._engine.act("put", part.name, face.name, value)
 
 
 class FaceRow:
-    """One face: its name, unit and present value, and the control that sets it."""
+    """One face: its name, unit and present value, and the control that sets it.
+
+    `put` raises ValueError for a value that the face cannot have.
+    """
 
     def __init__(self, part: Part, face: Face, put: Callable[[Part, Face, float], None]) -> None:
         self._part, self._face, self._put = part, face, put
@@ -94,6 +94,7 @@ class FaceRow:
                     .props(f'aria-label="{part.name} {face.name}"').style("flex:3 1 8em;width:auto")
                     .classes("pr-3 unset").mark(f"slide-{part.name}-{face.name}")
                 )  # fmt: skip
+            self._notice = Notice()
 
     def show(self, value: float | None) -> None:
         """Show the present value; None: the part does not give it."""
@@ -128,7 +129,12 @@ class FaceRow:
             return
         self._held_until_s = time.monotonic() + HOLD_S
         self._set(float(value))
-        self._put(self._part, self._face, float(value))
+        try:
+            self._put(self._part, self._face, float(value))
+        except ValueError as error:
+            self._notice.tell(str(error))
+        else:
+            self._notice.tell("")
 
 
 def value_text(value: float, unit: str) -> str:

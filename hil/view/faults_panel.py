@@ -14,6 +14,7 @@ from nicegui import ui
 from hil.faults import FAULTS, FaultOutcome, FaultParameter, parse
 from hil.faults.effect import Phase
 from hil.view.engine import Engine
+from hil.view.notice import Notice
 from hil.view.snapshot import Snapshot
 
 if TYPE_CHECKING:
@@ -43,6 +44,7 @@ class FaultsPanel:
                 ).props("dense").classes("w-64").mark("fault")
             )  # fmt: skip
             ui.button("Break it", on_click=self._break).props("no-caps dense").mark("break")
+        self._notice = Notice()
         self._parameters = ui.column().classes("w-full gap-1").mark("parameters")
         self._show_parameters()
         ui.label("Mounted").classes("head")
@@ -69,7 +71,9 @@ class FaultsPanel:
             fault = parse(f"{self._kind.value}:{','.join(arguments)}")
             await asyncio.wrap_future(self._engine.act("break", str(fault)))
         except ValueError as error:
-            ui.notify(str(error), type="warning")
+            self._notice.tell(str(error))
+        else:
+            self._notice.tell("")
 
     def update(self, now: Snapshot) -> None:
         """Update the panel while it is visible."""

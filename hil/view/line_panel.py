@@ -7,6 +7,7 @@ from typing import Final
 from nicegui import ui
 
 from hil.view.line import RobotLine
+from hil.view.notice import Notice
 
 #: Each is an element of the page, and all of them are gone through 20 times a second.
 MAX_LINES: Final = 100
@@ -28,6 +29,7 @@ class LinePanel:
             ui.button("Send", on_click=self._send).props("no-caps dense outline")
             ui.space()
             self._counts = ui.label().classes("soft value")
+        self._notice = Notice()
         self._log = ui.log(max_lines=MAX_LINES).classes("w-full mono log").mark("log")
 
     def update(self, _now: object = None) -> None:
@@ -51,8 +53,9 @@ class LinePanel:
         try:
             data = text.encode("latin-1")
         except UnicodeEncodeError:
-            ui.notify("only characters of one byte can be sent", type="warning")
+            self._notice.tell("only characters of one byte can be sent")
             return
+        self._notice.tell("")
         if data:
             self._line.write(data)
             self._text.value = ""

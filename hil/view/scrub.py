@@ -91,9 +91,10 @@ class ScrubBar:
         #: The finding at which it stands, or which it goes to.
         self._at: Finding | None = None
         with ui.row().classes("scrub items-center no-wrap gap-2 w-full"):
-            self._jump_button("navigate_before", -1, "finding before this time")
+            before = self._jump_button("navigate_before", -1, "finding before this time")
             ui.label("finding").classes("soft wide")
-            self._jump_button("navigate_next", 1, "finding after this time")
+            after = self._jump_button("navigate_next", 1, "finding after this time")
+            self._jumps = {-1: before, 1: after}
             with ui.element("div").classes("bar"):
                 self._ticks = ui.html(tag="svg", sanitize=False).mark("ticks").props(
                     f'viewBox="0 0 {STEPS} 17" preserveAspectRatio=none aria-hidden=true'
@@ -106,24 +107,26 @@ class ScrubBar:
             self._slider.on("change", self._chosen)
             self._end = ui.label(f"{self._end_s} s").classes("soft value")
 
-    def _jump_button(self, icon: str, direction: int, meaning: str) -> None:
+    def _jump_button(self, icon: str, direction: int, meaning: str) -> ui.button:
         button = ui.button(icon=icon, on_click=lambda: self.jump(direction))
         with button.props(f'no-caps dense outline aria-label="{meaning}"'):
             ui.tooltip(meaning)
+        return button
 
     @property
     def _findings(self) -> list[Finding]:
         engine = self._engine
         return [finding for finding, _ in engine.policy.with_severities(engine.known_findings)]
 
-    def jump(self, direction: int) -> None:
-        """Go to the statement of the next finding, or of the one before."""
+    def _neighbour(self, direction: int) -> Finding | None:
         at = self._at.time_cycles if self._at is not None else self._engine.snapshot.cycles
-        found = neighbour(self._findings, at, direction)
-        if found is None:
-            ui.notify("no finding after this time" if direction > 0 else "no finding before this time")
-            return
-        self.go_to(found)
+        return neighbour(self._findings, at, direction)
+
+    def jump(self, direction: int) -> None:
+        """Go to the statement of the next finding, or of the one before; if there is none, its button is disabled."""
+        found = self._neighbour(direction)
+        if found is not None:
+            self.go_to(found)
 
     def go_to(self, finding: Finding) -> None:
         """Go to the statement of a finding."""
@@ -145,6 +148,8 @@ class ScrubBar:
                 self._slider.value = shown
         if self._turn:
             return
+        for direction, button in self._jumps.items():
+            button.enabled = self._neighbour(direction) is not None
         end = end_s(seconds(self._engine.known_cycles))
         if end != self._end_s:
             self._end_s = end

@@ -164,7 +164,8 @@ button.tile { cursor:pointer; }
 .q-tab-panel > * { flex-shrink:0; }
 .log { flex:1 1 200px; min-height:200px; }
 .panel { background:var(--panel); border:1px solid var(--line); border-radius:6px; padding:8px; color:var(--ink); }
-.q-uploader__list { display:none; } .q-notification__message { overflow-wrap:anywhere; }
+.q-uploader__list { display:none; }
+.notice { color:var(--soft); white-space:pre-line; overflow-wrap:anywhere; } .notice.wrong { color:var(--bad); }
 .one-line { flex:1 1 0; min-width:0; overflow:hidden; text-overflow:ellipsis; }
 /* A table takes the panel's height, and makes room when the chosen row is explained below it. */
 .scrolled:has(~ .detail:not(:empty), ~ .fields:not(.hidden)) { overflow:auto;

@@ -10,6 +10,7 @@ from emulator.clock import SYSCLK_HZ, seconds
 from hil.reports.excerpt import shown
 from hil.view.code import show_code
 from hil.view.engine import Engine
+from hil.view.notice import Notice
 from hil.view.rows import Rows, TableCell, TableRow
 from hil.view.snapshot import Mode, Snapshot
 from hil.view.stepping import Step, StepEnd
@@ -92,6 +93,7 @@ class TimePanel:
             ui.button("Go to this time", on_click=self._go).props("no-caps dense").mark("go")
             self._label = ui.input("name of this moment").props("dense stack-label maxlength=60").classes("w-40")
             ui.button("Remember", on_click=self._remember).props("no-caps dense outline").mark("remember")
+        self._notice = Notice()
         ui.label(
             "An earlier moment is executed again from power-up with the same inputs at the same cycles: the same run, "
             "byte for byte. What was done later is done again, until you do something else."
@@ -106,8 +108,9 @@ class TimePanel:
     def _go(self) -> None:
         time_s = self._to.value
         if time_s is None or not 0.0 <= time_s <= MAX_S:
-            ui.notify(f"the time must be from 0 to {MAX_S} s", type="warning")
+            self._notice.tell(f"the time must be from 0 to {MAX_S} s")
             return
+        self._notice.tell("")
         self._engine.go_to(round(float(time_s) * SYSCLK_HZ))
 
     def _remember(self) -> None:

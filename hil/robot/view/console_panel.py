@@ -14,6 +14,7 @@ from hil.client.orders import number, order, parse_order, set_reference
 from hil.recording.trajectory import HEADINGS, parse_trajectory
 from hil.robot.view.tele import BrowserTele
 from hil.view.line import LogEntry, RobotLine
+from hil.view.notice import Notice
 
 #: The name of the thesis console's file (reference: annex 2).
 FILE: Final = "trayectoria.txt"
@@ -76,6 +77,7 @@ class ConsolePanel:
             self._raw = ui.input("any order", placeholder="#SETR0.2,0").classes("w-36")
             self._raw.props("dense stack-label maxlength=200")
             self._raw.on("keydown.enter", self._send_raw)
+        self._order_notice = Notice()
         with ui.row().classes("gap-2 items-center w-full"):
             ui.label("Serial line").classes("head")
             self._counts = ui.label().classes("soft value")
@@ -86,6 +88,7 @@ class ConsolePanel:
             ).classes("unseen").mark("load")  # fmt: skip
             load = ui.button("Load points", on_click=lambda: upload.run_method("pickFiles"))
             load.props("no-caps dense flat size=sm")
+        self._load_notice = Notice()
         self._log = ui.log(max_lines=MAX_LINES).classes("w-full mono log").props(
             'role=log aria-label="serial line" tabindex=0'
         ).mark("log")  # fmt: skip
@@ -173,13 +176,14 @@ class ConsolePanel:
 
     def _set(self) -> None:
         if self._v.value is None or self._w.value is None:
-            ui.notify("V and W must be numbers such as 0.2", type="warning")
+            self._order_notice.tell("V and W must be numbers such as 0.2")
             return
         try:
             data = set_reference(number(str(self._v.value), "V"), number(str(self._w.value), "W"))
         except ValueError as error:
-            ui.notify(str(error), type="warning")
+            self._order_notice.tell(str(error))
             return
+        self._order_notice.tell("")
         # Telemanipulation comes first, as in the console; otherwise the robot accepts no reference.
         self.tele.end()
         self.send(order("tele"))
@@ -189,23 +193,24 @@ class ConsolePanel:
         try:
             self.send(parse_order(str(self._raw.value or "")))
         except ValueError as error:
-            ui.notify(str(error), type="warning")
+            self._order_notice.tell(str(error))
+        else:
+            self._order_notice.tell("")
 
     def _save(self) -> None:
         ui.download.content(file_of(self._line.log.frames_since(0)), FILE)
 
     async def _load(self, e: events.UploadEventArguments) -> None:
         if e.file.size() > MAX_UPLOAD:  # the browser's own limit is only the browser's
-            ui.notify(f"{e.file.name}: more than {MAX_UPLOAD / 1e6:g} MB", type="negative")
+            self._load_notice.tell(f"{e.file.name}: more than {MAX_UPLOAD / 1e6:g} MB")
             return
         trajectory = parse_trajectory(await e.file.read())
-        for problem in trajectory.problems:
-            ui.notify(problem, type="warning")
         if trajectory.frames:
             self._on_loaded(trajectory.frames)
-            ui.notify(f"{len(trajectory.frames)} points of {e.file.name}")
+            loaded = f"{len(trajectory.frames)} points of {e.file.name}"
         else:
-            ui.notify(f"{e.file.name}: no points; the first line is {HEADINGS}", type="negative")
+            loaded = f"{e.file.name}: no points; the first line is {HEADINGS}"
+        self._load_notice.tell("\n".join([loaded, *trajectory.problems]), wrong=not trajectory.frames)
         e.sender.reset()  # type: ignore[attr-defined]
 
 

@@ -176,6 +176,20 @@ def test_arrow_keys_and_the_stick_drive(page: Any, shot: Shot) -> None:
     sees(page, lambda: "#STOP" in log(page).rpartition("#SETR")[2], "driving goes on after STOP")
 
 
+def test_a_refused_order_is_told_below_its_field_until_one_is_sent(page: Any) -> None:
+    field = page.get_by_label("any order")
+    field.fill("speed now")
+    field.press("Enter")
+    notice = page.locator(".notice:visible")
+    notice.wait_for()
+    assert notice.inner_text().startswith("no order 'speed now': write stop, mission,")
+    box, below = field.bounding_box(), notice.bounding_box()
+    assert below["y"] >= box["y"] + box["height"]
+    field.fill("stop")
+    field.press("Enter")
+    notice.wait_for(state="hidden")
+
+
 def test_points_are_saved_and_loaded_in_the_consoles_format(page: Any, tmp_path: Any, shot: Shot) -> None:
     with page.expect_download() as download:
         button(page, "Save points").click()
@@ -279,6 +293,8 @@ def test_the_scrub_bar_goes_back_and_to_the_findings(page: Any, shot: Shot) -> N
     button(page, "Pause").click()
     wait(page, "paused")
     late = number_in(page, TIME)
+    after = page.get_by_role("button", name="finding after this time")
+    sees(page, after.is_disabled, "there is a finding after all of them")
     bar = page.locator(".scrub .q-slider").bounding_box()
     page.mouse.move(bar["x"] + bar["width"] * 0.9, bar["y"] + bar["height"] / 2)
     page.mouse.down()
@@ -289,7 +305,7 @@ def test_the_scrub_bar_goes_back_and_to_the_findings(page: Any, shot: Shot) -> N
     wait(page, "executed again in")
     before = number_in(page, TIME)
     shot(page, "scrub")
-    page.get_by_role("button", name="finding after this time").click()
+    after.click()
     wait(page, re.compile("[a-z-]+: found here"))
     assert number_in(page, TIME) > before
     page.keyboard.press("p")
