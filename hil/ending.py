@@ -21,8 +21,9 @@ SIGNALS: Final = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "
 EXIT_INTERRUPTED: Final = 130
 #: Wrappers that forward Ctrl-C to a group deliver it twice; a second one later than this means it.
 REPEAT_S: Final = 1.0
-#: Processor time that an interrupted command may still take.  Python drops an exception in places (a finaliser).
-DEADLINE_S: Final = 1.0
+#: Processor time that an interrupted command may still take.  Python drops an exception in places (a finaliser); such a
+#: command ends within the second, too.
+DEADLINE_S: Final = 0.7
 
 
 def ending_signals() -> tuple[int, ...]:

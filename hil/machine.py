@@ -213,6 +213,9 @@ class Machine(Protocol):
     def run_until(self, cycles: int) -> None:
         """Run to an absolute time.  How a stretch is cut into calls does not change what happens in it."""
 
+    def pause(self) -> None:
+        """Make `run_until` return at the CPU's next charge.  Safe in a signal handler."""
+
     def feed(self, data: bytes) -> None:
         """Queue bytes from the PC; the line takes them at its own baud."""
 

@@ -146,6 +146,10 @@ class RunningBoard:
         with self._stopping():
             self.board.kernel.run_until(cycles)
 
+    def pause(self) -> None:
+        """Make `run_until` or the start-up's present slice end at the CPU's next charge.  Safe in a signal handler."""
+        self.board.kernel.pause()
+
     def run_for(self, duration_s: float) -> None:
         """Run for a stretch of virtual time.
 

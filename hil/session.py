@@ -66,8 +66,13 @@ class Session:
         self._stop_hearing = machine.uart_sent.connect(self._robot_byte)
 
     def stop(self) -> None:
-        """End `run` after the present slice.  Safe in a signal handler."""
+        """End `run` after the present slice."""
         self._stop = True
+
+    def interrupt(self) -> None:
+        """End `run` at the CPU's next charge: a slice may take seconds of computing.  Safe in a signal handler."""
+        self._stop = True
+        self.machine.pause()
 
     def release(self) -> None:
         """Leave the machine to another session: hear the robot no more."""

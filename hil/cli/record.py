@@ -176,7 +176,7 @@ def _play_orders(
         wire = None if output is None else stack.enter_context(new_log(output, header_of(setup)))
         with show.progress("replay", quiet=quiet) as told:
             verdict = replay_orders(
-                recording, machine, wire=wire, on_session=lambda session: stop.ends(session.stop), progress=told
+                recording, machine, wire=wire, on_session=lambda session: stop.ends(session.interrupt), progress=told
             )
         if stop.requested:
             raise KeyboardInterrupt

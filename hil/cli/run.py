@@ -303,6 +303,7 @@ def run(
                 stack.enter_context(paged(page, machine, channels, about))
         stop = show.StopRequest()
         stack.enter_context(show.ended_by_signals(stop))
+        stop.ends(machine.pause)
         try:
             if not _boot(machine, stop, quiet=json_output):
                 _print_start_up(machine, "interrupted", setup, json_output=json_output)
@@ -326,7 +327,7 @@ def run(
         session = Session(
             machine, line, pacer, orders=orders, remember_frames=plot is not None, tick=tick, wire=wire_log
         )
-        stop.ends(session.stop)
+        stop.ends(session.interrupt)
         stopped: FirmwareStopped | PortError | None = None
         script_failed = ""
         try:

@@ -83,7 +83,7 @@ def tasks(
             session = Session(
                 machine, None, Pacer(None), orders=orders, tick=lambda ran: told(ran.elapsed_virtual_s / for_s)
             )
-            with show.ended_by_signals(session.stop):
+            with show.ended_by_signals(session.interrupt):
                 session.run(for_s)
         use = machine.task_statistics()
         measured_s = session.elapsed_virtual_s

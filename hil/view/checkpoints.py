@@ -162,6 +162,10 @@ class RewindableRun:
         """A new run, not powered up, with the past and planned inputs of this one ahead."""
         return RewindableRun(self.setup, [*self.done, *self.ahead], read=self.bench.read)
 
+    def pause(self) -> None:
+        """Make `run_until` return at the CPU's next charge."""
+        self.bench.pause()
+
     def close(self) -> None:
         """End the kernel's tasks."""
         self.bench.close()

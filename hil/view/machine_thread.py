@@ -114,6 +114,7 @@ class MachineThread:
             self._commands.put(self.end)
             self._end_wanted.set()
             if hasattr(self, "run"):
+                self.run.pause()
                 self._thread.join(timeout=20.0)
 
     # The loop
@@ -423,7 +424,7 @@ class MachineThread:
         # A held place that is left by anything but a further step ends the slice soon.
         if not self._stepper.armed:
             self._wanted = None
-            self.run.bench.board.kernel.pause()
+            self.run.pause()
 
     def _rest(self, where: StepEnd) -> None:
         self.showing.where = where

@@ -71,6 +71,9 @@ class ScriptedMachine:
     def run_until(self, cycles: int) -> None:
         self.clock.advance_to(cycles)
 
+    def pause(self) -> None:
+        """It computes nothing that would take long."""
+
     def feed(self, data: bytes) -> None:
         self._queue.extend(data)
         if not self._busy and self._queue:

@@ -70,6 +70,25 @@ def test_signals_have_a_meaning_before_anything_of_the_project_is_imported() -> 
     assert run.stdout.split() == ["hil", "hil.ending"]
 
 
+def test_an_interrupt_that_python_drops_ends_the_command_within_a_second_of_computing() -> None:
+    # Python ignores what a finaliser raises; after a second of processor time the system would end the process itself.
+    script = (
+        "import os, resource, signal\n"
+        "from hil import ending\n"
+        "used = resource.getrusage(resource.RUSAGE_SELF)\n"
+        "resource.setrlimit(resource.RLIMIT_CPU, (1 + round(used.ru_utime + used.ru_stime), 60))\n"
+        "ending.interrupts()\n"
+        "class Finalised:\n"
+        "    def __del__(self): signal.raise_signal(signal.SIGINT)\n"
+        "Finalised()\n"
+        "print('dropped', flush=True)\n"
+        "while True: pass\n"
+    )
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert run.stdout == "dropped\n"
+    assert (run.returncode, run.stderr.splitlines()[-1]) == (ending.EXIT_INTERRUPTED, "hil: error: interrupted")
+
+
 def test_a_command_that_ends_does_not_look_through_its_memory_once_more() -> None:
     #: Of a cycle: only the collector would end it.
     script = (

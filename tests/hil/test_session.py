@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ
+from hil.bench import Bench
+from hil.cli import show
 from hil.client.orders import TimedOrder
 from hil.pacing import Pacer
 from hil.serial_port import SerialPort
@@ -107,6 +112,28 @@ def test_stop_ends_after_the_present_slice() -> None:
     session = Session(machine, None, Pacer(None), tick=lambda running: running.stop())
     session.run()
     assert session.elapsed_virtual_s == session.pacer.slice_cycles / SYSCLK_HZ
+
+
+@pytest.mark.parametrize("booting", [True, False])
+def test_a_signal_ends_firmware_that_never_yields_within_its_statement(booting: bool, tmp_path: Path) -> None:
+    """Its computing time depends on how slow a computer is; its virtual time does not: one turn of a loop."""
+    pytest.importorskip("pycparser", reason="needs the extra c: pip install 'c2000-hil[c]'")
+    (tmp_path / "main_Robot.c").write_text(
+        '#include "F28x_Project.h"\nunsigned int x;\nvoid main(void) { for (;;) x = (x ^ 3) * 5; }\n'
+    )
+    bench = Bench(firmware=(str(tmp_path),))
+    session = Session(bench, None, Pacer(None))
+    stop = show.StopRequest()
+    stop.ends(bench.pause if booting else session.interrupt)
+    if not booting:
+        bench.power_up()
+    # Half a millisecond into a slice, of 50 in the start-up and of 25 afterwards.
+    sent = bench.clock.now + 100_000
+    bench.clock.schedule(sent, lambda: signal.raise_signal(signal.SIGTERM))
+    with show.ended_by_signals(stop):
+        (bench.power_up if booting else session.run)()
+    assert stop.requested
+    assert sent <= bench.clock.now < sent + 100
 
 
 @settings(max_examples=25, deadline=None)
