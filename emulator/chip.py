@@ -13,7 +13,7 @@ from random import Random
 from typing import Any, Final, ParamSpec, TypeVar
 
 from emulator.blocks import BLOCKS, UNMODELLED
-from emulator.c28x.findings import Findings
+from emulator.c28x.findings import Cause, Findings
 from emulator.c28x.memory import Memory
 from emulator.can_bus import CanBus, CanPort
 from emulator.clock import CYCLES_PER_US, Clock
@@ -290,6 +290,7 @@ class Chip:
             noise_lsb=0.0 if noise is None else 1.0, random=noise,
             left_by=lambda n: self.pie.left_by(*ADC_PIE[letter][n]),
             awaited=partial(self._awaits, letter),
+            selected=partial(self._given_to_dma, letter),
             trigger_changed=partial(self._adc_trigger_changed, letter),
         )  # fmt: skip
 
@@ -298,6 +299,10 @@ class Chip:
         interrupt = ADC_PIE[letter][n]
         to_cpu = self.pie.enabled(*interrupt) and not self.pie.is_blocked(*interrupt)
         return to_cpu or DMA_ADC[letter] + n in self._dma_sources
+
+    def _given_to_dma(self, letter: str, n: int) -> Cause | None:
+        """The statement that has given ADCINT(n+1) to the DMA, if its interrupt is not enabled."""
+        return None if self.pie.enabled(*ADC_PIE[letter][n]) else self.dma.selected(DMA_ADC[letter] + n)
 
     def _dac(self, letter: str, vrefhi_v: float) -> Dac:
         adc, channel = DAC_OUTPUT[letter]

@@ -462,9 +462,13 @@ class Connections:
     def _no_can_line(self, letter: str, line: int) -> MissingLink | None:
         """Why a CAN never gives an interrupt on its line 0 or 1; None if it can."""
         block = f"Can{letter.lower()}Regs"
-        for register, field in ((f"{block}.CAN_CTL", f"IE{line}"), (f"{block}.CAN_GLB_INT_EN", f"GLBINT{line}_EN")):
-            if self._stuck(register, field, bool):
-                return MissingLink(f"{register}.{field} = 0", register, field)
+        control, enable = f"{block}.CAN_CTL", f"{block}.CAN_GLB_INT_EN"
+        if self._stuck(control, f"IE{line}", bool):
+            return MissingLink(f"{control}.IE{line} = 0", control, f"IE{line}")
+        if self._stuck(enable, f"GLBINT{line}_EN", bool):
+            why = f"{enable}.GLBINT{line}_EN = 0"
+            # Without any write to it, its place is that of the other enable.
+            return MissingLink(why, enable) if self._writes(enable) else MissingLink(why, control, f"IE{line}")
         return None
 
     def _no_character(self, letter: str, *, receive: bool) -> MissingLink | None:
@@ -591,10 +595,20 @@ class Connections:
                     continue
             if missing:
                 self._report(reads[0], f"a capture of eCAP{n} is read, and is always 0", missing, f"{name}.CAP1")
-            elif self._value(second, "CONT_ONESHT") and self._chip.ecap[n].stopped and self._waits_for_ever():
+            elif self._value(second, "CONT_ONESHT") and self._chip.ecap[n].stopped:
+                cleared = self._chip.ecap[n].cleared_in_vain
+                goes_on = self._writes_again(second, bool, "REARM") or self._writes_again(
+                    second, lambda one_shot: not one_shot, "CONT_ONESHT"
+                )
+                if self._waits_for_ever():
+                    waits = "the program waits for ever"
+                elif cleared >= MIN_EDGES and not goes_on:
+                    waits = f"its flags were cleared {cleared} times since, for a capture that never comes"
+                else:
+                    continue
                 last = self._value(second, "STOP_WRAP") + 1
                 missing = MissingLink(f"{second}.REARM is not set again", second, "CONT_ONESHT")
-                message = f"the one shot of eCAP{n} stopped after event {last}, and the program waits for ever"
+                message = f"the one shot of eCAP{n} stopped after event {last}, and {waits}"
                 self._report(reads[0], message, missing, second)
 
     def _channels(self) -> None:
@@ -604,11 +618,11 @@ class Connections:
         """
         for n in range(1, DMA_CHANNELS + 1):
             mode, control = f"DmaRegs.CH{n}.MODE", f"DmaRegs.CH{n}.CONTROL"
+            if self._value(control, "RUNSTS") or not self._could(control, bool, "RUN"):
+                continue
+            if self._source.last(*_split(mode)) is None or not self._stuck(mode, "CONTINUOUS", bool):
+                continue
             place = self._wanting(mode, "CONTINUOUS")
-            if place is None or self._value(control, "RUNSTS") or not self._could(control, bool, "RUN"):
-                continue
-            if not self._stuck(mode, "CONTINUOUS", bool):
-                continue
             why = f"{mode}.CONTINUOUS = 0, and no statement sets {control}.RUN again"
             missing = MissingLink(why, mode, "CONTINUOUS")
             addresses = [f"DmaRegs.CH{n}.{side}_ADDR_SHADOW" for side in ("SRC", "DST")]
@@ -616,7 +630,7 @@ class Connections:
             if given and self.started_up and not self._writes_again(control, bool, "RUN"):
                 message = f"channel {n} of the DMA stopped, is given the next addresses, and is not started"
                 self._report(self._source.last(*_split(given)), message, missing, mode)
-            elif self._waits_for_ever():
+            elif place is not None and self._waits_for_ever():
                 message = f"channel {n} of the DMA stopped after a transfer, and the program waits for ever"
                 self._report(place, message, missing, mode)
 
@@ -936,6 +950,7 @@ class Connections:
                     block, whole=True,
                 )  # fmt: skip
                 continue
+            self._can_pins(block, letter)
             for n in (1, 2):
                 arbitration = f"{block}.CAN_IF{n}ARB"
                 place = self._source.last(*_split(arbitration))
@@ -949,6 +964,16 @@ class Connections:
             self._objects(block, letter, commands)
             self._own_frames(block, letter)
             self._bit_rate(block, letter)
+
+    def _can_pins(self, block: str, letter: str) -> None:
+        """A controller without pins that has objects for messages, on a bus with other nodes."""
+        can, bus = self._chip.can[letter], self._chip.can_bus[letter]
+        control = f"{block}.CAN_CTL"
+        told = any(finding.object == can.port.name for finding in self._chip.findings.of("not-configured"))
+        if told or not can.unconnected or not can.ram.idle_receiver() or not bus.nodes:
+            return
+        missing = MissingLink(can.port.missing, control, "Init")
+        self._report(self._wanting(control, "Init"), f"{block} receives nothing", missing, can.port.name)
 
     def _messages(self, block: str, letter: str, commands: list[str]) -> None:
         """Messages that are written and never sent, or that are taken again and again."""

@@ -109,6 +109,7 @@ class Adc:
         "_results",
         "_sample",
         "_sel_then",
+        "_selected",
         "_single",
         "_soc",
         "_socs",
@@ -133,6 +134,7 @@ class Adc:
                  sync_cycles: int = 2, any_write_resets_pointer: bool = False, flag_collision: Collision = "cleared",
                  left_by: Callable[[int], Place | None] = lambda n: None,
                  awaited: Callable[[int], bool] = lambda n: True,
+                 selected: Callable[[int], Cause | None] = lambda n: None,
                  trigger_changed: Callable[[int, bool], None] = lambda _trigsel, _on: None) -> None:  # fmt: skip
         """Raises ValueError for wrong numbers of pins or interrupts, a reference that is not positive, bad noise.
 
@@ -142,7 +144,8 @@ class Adc:
         `overflow` clears it and sets ADCINTOVF (TRM), `cleared` only clears it (CHOICE: the default, because the CPU is
         charged a block of statements at a time, so that one cycle of its time means little).
         `left_by(n)` returns where the routine of ADCINT(n+1) is in the source, if it has run since the last pulse.
-        `awaited(n)` tells whether anything uses that interrupt.
+        `awaited(n)` tells whether anything uses that interrupt.  `selected(n)` returns the statement that has given it
+        to the DMA, if only the DMA uses it.
         `trigger_changed(trigsel, on)` is called when that hardware trigger begins (or ceases) to start conversions.
         """
         if len(interrupts) != 4:
@@ -155,7 +158,7 @@ class Adc:
         self._interrupts = (*interrupts, event)
         #: The function that a pulse calls: the PIE's input itself, as long as nothing else listens.
         self._pulses, self._adcint1 = list(self._interrupts), interrupts[0]
-        self._left_by, self._awaited = left_by, awaited
+        self._left_by, self._awaited, self._selected = left_by, awaited, selected
         self._collision, self._notes_collisions = flag_collision, flag_collision != "cleared"
         self._intflg, self._intovf = registers["ADCINTFLG"], registers["ADCINTOVF"]
         self._intsel12, self._intsel34 = registers["ADCINTSEL1N2"], registers["ADCINTSEL3N4"]
@@ -540,7 +543,8 @@ class Adc:
         message += "ADCINTOVF is set"
         routine = self._left_by(n)
         if routine is None:
-            self._findings.report("flag-not-cleared", message, object=path)
+            cause = None if self._intflg.is_read else self._selected(n)
+            self._findings.report("flag-not-cleared", message, object=path, cause=cause)
         else:
             self._findings.report_at(
                 routine, "flag-not-cleared", message, how="dynamic", object=path, task=self._cpu.routine_at(routine)

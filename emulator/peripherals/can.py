@@ -25,10 +25,24 @@ from collections.abc import Callable
 from functools import partial
 from typing import Final
 
+from emulator.c28x.findings import Cause
 from emulator.can_bus import IDLE_BITS, INTERMISSION_BITS, SUSPEND_BITS, CanBus, CanError, CanFrame, CanPort
 from emulator.clock import NEVER, Clock, Event
 from emulator.cpu import Cpu
-from emulator.peripherals.can_objects import DIR, INTPND, NEWDAT, OBJECTS, TXIE, TXRQST, MessageRam
+from emulator.peripherals.can_objects import (
+    DIR,
+    DLC,
+    EOB,
+    INTPND,
+    MSGVAL,
+    NEWDAT,
+    OBJECTS,
+    RXIE,
+    TXIE,
+    TXRQST,
+    UMASK,
+    MessageRam,
+)
 from emulator.registers.can import CanRegs
 from emulator.registers.core import ALL
 
@@ -82,8 +96,15 @@ CONTROL: Final = 1 << 20
 ARBITRATION: Final = 1 << 21
 MASK: Final = 1 << 22
 WRITE: Final = 1 << 23
-#: Register of an interface -> the bit of its command that fetches it.
-FETCHES: Final = {"MSK": MASK, "ARB": ARBITRATION, "MCTL": CONTROL, "DATA": DATA_A, "DATB": DATA_B}
+#: Register of an interface -> the bit of its command that moves it, and the name of that bit.
+MOVES: Final = {
+    "MSK": (MASK, "Mask"), "ARB": (ARBITRATION, "Arb"), "MCTL": (CONTROL, "Control"),
+    "DATA": (DATA_A, "DATA_A"), "DATB": (DATA_B, "DATA_B"),
+}  # fmt: skip
+#: Bits of MCTL that the program chooses.  The controller changes the other ones.
+CHOSEN_BITS: Final = UMASK | TXIE | RXIE | EOB | DLC
+#: The bytes of a message that come before those of DATB.
+FIRST_BYTES: Final = 4
 CONTROL_BITS: Final = 0xFF8F
 #: Registers of an interface after its first one.
 PARTS: Final = ("MSK", "ARB", "MCTL", "DATA", "DATB")
@@ -113,7 +134,7 @@ class Can:
         self, clock: Clock, cpu: Cpu, regs: CanRegs, port: CanPort, bus: CanBus, lines: tuple[Callable[[], None], ...],
         *, clock_cycles: Callable[[], int], on_blocked: Callable[[int], None],
     ) -> None:  # fmt: skip
-        self._clock, self._findings, self._regs, self._port = clock, cpu.findings, regs, port
+        self._clock, self._findings, self._regs, self.port = clock, cpu.findings, regs, port
         self._lines, self._clock_cycles, self._on_blocked = lines, clock_cycles, on_blocked
         registers = regs.registers
         self._ctl, self._es, self._errc = registers["CAN_CTL"], registers["CAN_ES"], registers["CAN_ERRC"]
@@ -143,6 +164,10 @@ class Can:
         self._transfers: dict[int, Event | None] = {1: None, 2: None}
         #: When each began, until the program has seen its end.
         self._commanded = {1: -NEVER, 2: -NEVER}
+        #: The registers of each interface that the program has written since its last transfer.
+        self._written: dict[int, set[str]] = {1: set(), 2: set()}
+        #: The statement that has cleared Init: from there on the controller takes part in the traffic.
+        self._started: Cause | None = None
         self._recovery: Event | None = None
         self._recovered = 0
         self._bus_on_event: Event | None = None
@@ -204,6 +229,7 @@ class Can:
             self._regs.registers[name].value = value
         self._tec = self._rec = self._next_update = 0
         self._status_pending = False
+        self._written = {1: set(), 2: set()}
         self._settle()
         self._update_lines()
 
@@ -216,7 +242,7 @@ class Can:
     def _settle(self) -> None:
         """Join the bus that pins, test mode and Init select, or leave the bus."""
         active = self._on and not self._ctl.value & INIT and self._clock_cycles() > 0
-        outside = self._port.connected and not self.in_loopback
+        outside = self.port.connected and not self.in_loopback
         at = None if not active else self._bus if outside else self._inside
         if at is self._at:
             return
@@ -284,8 +310,9 @@ class Can:
             sending.control &= ~NEWDAT
         if self.unconnected:
             self._findings.report(
-                "not-configured", f"{self._port.missing}: the frame does not reach the bus", object=self._port.name
-            )
+                "not-configured", f"{self.port.missing}: the frame does not reach the bus", object=self.port.name,
+                cause=self._started,
+            )  # fmt: skip
         self._offered = sending.frame()
         return self._offered
 
@@ -307,7 +334,7 @@ class Can:
         if each.control & TXIE:
             each.control |= INTPND
         self._record_result(0, TXOK)
-        if self.in_loopback and not self._mode() & SILENT and self._port.connected and self._offered is not None:
+        if self.in_loopback and not self._mode() & SILENT and self.port.connected and self._offered is not None:
             self._bus.report_loopback(self._offered)
 
     def received(self, frame: CanFrame) -> None:
@@ -441,7 +468,10 @@ class Can:
     # --- control -----------------------------------------------------------------------------------------------------
 
     def _write_CAN_CTL(self, word: int, lanes: int = ALL) -> None:
+        stopped = self._ctl.value & INIT
         self._ctl.store(word, lanes)
+        if stopped and not self._ctl.value & INIT:
+            self._started = self._findings.mark()
         if word & lanes & SWR and self._ctl.value & INIT:
             self._reset()
             return
@@ -458,7 +488,7 @@ class Can:
             self._refuse(self._btr.path, word, "CAN_CTL.Init and CCE are not both set")
 
     def _read_CAN_TEST(self) -> int:
-        level = self._bus.level(self._clock.now) if self._port.connected else 1
+        level = self._bus.level(self._clock.now) if self.port.connected else 1
         return self._test.value & ~RX | (RX if level else 0)
 
     def _write_CAN_TEST(self, word: int, lanes: int = ALL) -> None:
@@ -490,7 +520,7 @@ class Can:
         register = self._regs.registers[f"CAN_IF{n}{part}"]
         command = self._regs.registers[f"CAN_IF{n}CMD"].value
         since = self._clock.now - self._commanded[n]
-        if since < HASTY_CLOCKS * self._clock_cycles() and not command & WRITE and command & FETCHES[part]:
+        if since < HASTY_CLOCKS * self._clock_cycles() and not command & WRITE and command & MOVES[part][0]:
             self._findings.report(
                 "can-interface-busy",
                 f"{register.path} was read {since} cycles after the command that fetches it, and CAN_IF{n}CMD.Busy was "
@@ -508,6 +538,7 @@ class Can:
         register = self._regs.registers[f"CAN_IF{n}{part}"]
         if self._transfers[n] is None:
             register.store(word, lanes)
+            self._written[n].add(part)
         else:
             self._busy(register.path, n, word)
 
@@ -518,10 +549,41 @@ class Can:
             return
         command.store(word, lanes)
         if lanes & NUMBER:
+            self._check_command(n, command.value)
             command.value |= BUSY
             cycles = TRANSFER_CLOCKS * max(1, self._clock_cycles())
             self._commanded[n] = self._clock.now
             self._transfers[n] = self._clock.after(cycles, partial(self._transfer, n))
+
+    def _check_command(self, n: int, word: int) -> None:
+        """Report what the program has written to an interface, and what its command does not move to the object."""
+        registers = self._regs.registers
+        written = {part for part in self._written[n] if not word & MOVES[part][0]}
+        self._written[n] = set() if word & WRITE else written
+        if not word & WRITE:
+            return
+        number = self.ram.valid(word & NUMBER)
+        each = self.ram[number]
+        mask, arbitration, control, *data = (registers[f"CAN_IF{n}{part}"].value for part in PARTS)
+        after = control if word & CONTROL else each.control
+        valid = (arbitration if word & ARBITRATION else each.arbitration) & MSGVAL
+        sends = valid and (word & REQUEST or after & TXRQST)
+        lost = {
+            "ARB": arbitration & MSGVAL and not each.arbitration & MSGVAL,
+            "MSK": valid and after & UMASK and mask != each.mask,
+            "MCTL": valid and (control ^ each.control) & CHOSEN_BITS,
+            "DATA": sends and after & DLC and data[0] != each.data[0],
+            "DATB": sends and after & DLC > FIRST_BYTES and data[1] != each.data[1],
+        }
+        for part in sorted(part for part in written if lost[part]):
+            register = registers[f"CAN_IF{n}{part}"]
+            kept = "which stays invalid" if part == "ARB" else "which keeps what it had"
+            self._findings.report(
+                "can-part-lost",
+                f"{register.path} = {register.value:#x} is lost: CAN_IF{n}CMD.{MOVES[part][1]} = 0 in the command for "
+                f"object {number}, {kept}",
+                object=register.path, value=register.value,
+            )  # fmt: skip
 
     def _busy(self, path: str, n: int, word: int) -> None:
         self._findings.report(

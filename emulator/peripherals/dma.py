@@ -99,7 +99,7 @@ def signed16(word: int) -> int:
 class _Channel:
     """One channel: its registers by name, and the word that it is moving."""
 
-    __slots__ = ("cause", "checks", "interrupt", "n", "name", "registers", "stopping", "word")
+    __slots__ = ("cause", "checks", "interrupt", "n", "name", "registers", "selected", "stopping", "word")
 
     def __init__(
         self, n: int, regs: DmaRegs, interrupt: Callable[[], None], findings: Findings,
@@ -116,6 +116,8 @@ class _Channel:
         self.stopping = False
         #: The statement that switched the channel on.
         self.cause: Cause | None = None
+        #: The statement that gave its field of DMACHSRCSEL the present value.
+        self.selected: Cause | None = None
         self.checks = TransferChecks(f"{regs.name}.{self.name}", self.registers, findings, region)
 
     def value(self, name: str) -> int:
@@ -208,6 +210,10 @@ class Dma:
     def objects(self) -> dict[str, Cause | None]:
         """The objects that transfers began in, each with the statement that gave its address."""
         return {name: cause for channel in self._channels for name, cause in channel.checks.used.items()}
+
+    def selected(self, source: int) -> Cause | None:
+        """The statement that gave trigger `source` to a channel that listens to it; None if no channel does."""
+        return next((channel.selected for channel in self._channels_of_source.get(source, ())), None)
 
     # --- triggers ----------------------------------------------------------------------------------------------------
 
@@ -482,7 +488,11 @@ class Dma:
                 object=register.path, value=word,
             )  # fmt: skip
             return
+        before = register.value
         register.store(word, lanes)
+        for channel in self._channels[4 * (n - 1) : 4 * n]:
+            if (register.value ^ before) >> 8 * ((channel.n - 1) % 4) & 0xFF:
+                channel.selected = self._cpu.findings.mark()
         self._configure()
         for channel in self._channels:
             self._check_level(channel)

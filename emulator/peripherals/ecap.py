@@ -83,6 +83,7 @@ class ECap:
         "_shadows",
         "_since",
         "_sync_out",
+        "cleared_in_vain",
         "output",
     )  # fmt: skip
 
@@ -129,6 +130,8 @@ class ECap:
         self._shadows = 0
         #: Whether ECFLG was read, maybe by a poll: since the last event; and at any time in capture mode.
         self._polled = self._edges_polled = False
+        #: How often the program cleared flags of a one-shot that has stopped, none of which was set.
+        self.cleared_in_vain = 0
         self._apply()
 
     # -- for the world -------------------------------------------------------------------------------------------
@@ -399,6 +402,8 @@ class ECap:
 
     def _write_ECCLR(self, word: int, lanes: int = ALL) -> None:
         self._catch_up()
+        if not self._armed and not self._flags.value & word:
+            self.cleared_in_vain += 1
         self._flags.value &= ~word
         self._gate()
         self._apply()

@@ -97,6 +97,10 @@ class Spi:
         #: The statements that wrote the word that is being sent and the words that wait.
         self._cause: Cause | None = None
         self._causes: list[Cause | None] = []
+        #: Of the transaction: the bits that were sent, its first word (-1: none yet), whether another one differs, and
+        #: the first word that sent nothing of what it holds, with its statement.
+        self._sent, self._first, self._differ = 0, -1, False
+        self._unsent: tuple[int, Cause | None] | None = None
         bus.deselected.connect(self._deselected)
         self._configure()
 
@@ -223,11 +227,23 @@ class Spi:
         unsent = (1 << 16 - kept) - 1
         lost = before & unsent, word & unsent
         if all(lost) and lost[0] != lost[1] and word != before << kept & 0xFFFF:
-            self._cpu.findings.report(
-                "spi-width",
-                f"{self._txbuf.path} = {word:#06x} is sent from bit 15 down, {kept} bits: {lost[1]:#x} is not sent",
-                object=f"{self._ccr.path}.SPICHAR", value=word,
-            )  # fmt: skip
+            self._report_width(word, self._causes[-1])
+        self._sent |= word & ~unsent
+        if lost[1] and not self._sent and self._unsent is None:
+            self._unsent = word, self._causes[-1]
+        if self._first < 0:
+            self._first = word
+        elif word != self._first:
+            self._differ = True
+
+    def _report_width(self, word: int, cause: Cause | None) -> None:
+        kept = self._char_bits
+        lost = word & (1 << 16 - kept) - 1
+        self._cpu.findings.report(
+            "spi-width",
+            f"{self._txbuf.path} = {word:#06x} is sent from bit 15 down, {kept} bits: {lost:#x} is not sent",
+            object=f"{self._ccr.path}.SPICHAR", value=word, cause=cause,
+        )  # fmt: skip
 
     def _write_SPIDAT(self, word: int, lanes: int) -> None:
         if self._shift is None:
@@ -351,7 +367,13 @@ class Spi:
         )
 
     def _deselected(self, chip_select: Wire) -> None:
-        """A device was deselected.  A word that is being shifted does not reach it any more."""
+        """A device was deselected.  A word that is being shifted does not reach it any more.
+
+        Words that differ and all sent zeros were not meant so: a driver that only wants an answer repeats one word.
+        """
+        if self._unsent is not None and not self._sent and self._differ:
+            self._report_width(*self._unsent)
+        self._sent, self._first, self._differ, self._unsent = 0, -1, False, None
         shift = self._shift
         if shift is not None and not self._cut:
             self._cut = True

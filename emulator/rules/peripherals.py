@@ -202,10 +202,11 @@ connections are checked:
   selected (`INPUTxSELECT`). Or it enables a line without a routine, while another line of the group has a routine and
   is not enabled. Or `IER` or `ENPIE` does not pass the interrupt on.
 * DMA: a channel was never started, has no trigger, does not interrupt (`CHINTE`), or uses an ADC interrupt that is not
-  enabled.
+  enabled. It has stopped after a transfer, and is given the addresses of the next one without a start.
 * ADC post-processing: an event interrupts, and nothing starts the SOC of its block.
 * eCAP: it has no input, or the program selected the input of another eCAP; its counter is stopped, no edge loads it
-  (`CAPLDEN`), or its sequence ends before the event that is enabled (`STOP_WRAP`).
+  (`CAPLDEN`), or its sequence ends before the event that is enabled (`STOP_WRAP`). A one-shot has stopped and is not
+  armed again (`REARM`), while the program waits for ever or clears its flags again and again.
 * eQEP: the program reads `QPOSLAT`, which the unit timer never loads (`QCLM`), or the unit timer has no period.
 * ePWM digital compare: it uses a TRIP input of the X-BAR that has no enabled mux, or a comparator that is off.
 * ePWM outputs: an output with actions and a pin has a counter that does not count. The dead band makes a pair of
@@ -217,10 +218,11 @@ connections are checked:
 * I2C and SCI: the module stays in reset, no interrupt of a direction is enabled, or one needs more characters than the
   FIFO holds.
 * SPI: the interrupt of a direction is not enabled.
-* CAN: an interrupt line is not enabled, the controller stays in Init, a message object that is set up is never valid,
-  nothing requests its transmission, or in loopback its filter passes none of the controller's own frames. An identifier
-  of 11 bits is in the lower bits of `ARB`, which only extended identifiers have. Data are written to an object with
-  `Dir = 0`, whose request sends a remote frame. An object receives messages, and the program never reads one.
+* CAN: a pin is missing, an interrupt line is not enabled, the controller stays in Init, a message object that is set up
+  is never valid, nothing requests its transmission, or in loopback its filter passes none of the controller's own
+  frames. An identifier of 11 bits is in the lower bits of `ARB`, which only extended identifiers have. Data are written
+  to an object with `Dir = 0`, whose request sends a remote frame. An object receives messages, and the program never
+  reads one.
 * Pins: the program sets and clears a pin that no statement makes an output. The chip itself drives a pin, and the input
   qualification of the pin needs longer pulses.
 
@@ -299,7 +301,8 @@ group (`PIEACK`) is set, later events generate none.
 
 The finding is made where the program believes the old flag, or where an interrupt is lost:
 
-* ADC: a result is read while its conversion still runs, and the flag of the conversion before is set;
+* ADC: a result is read while its conversion still runs, and the flag of the conversion before is set; or the flag
+  triggers the DMA only, and neither `INTxCONT` nor a statement lets it trigger again;
 * SPI: `INT_FLAG` is read while a word is being shifted, and it belongs to the word before;
 * eQEP and CPU timer: the program sees the second time-out without a clear since the first (`QCLR`, `TCR.TIF`);
 * I2C: the program gives up a message because of an old `NACK`, before the address was answered;
@@ -730,6 +733,30 @@ interrupts.
         "TRM CAN: IF1/IF2 command registers, Busy",
     ),
     _rule(
+        "can-part-lost",
+        Severity.ERROR,
+        "What was written to a CAN interface is lost: its command does not move it.",
+        """
+A message object does not become valid, accepts other identifiers than it should, or sends the data of the message
+before.
+
+A command moves only the parts whose bits it sets: `Mask`, `Arb` (identifier, direction, `MsgVal`), `Control`, `DATA_A`
+and `DATA_B`. The parts that it does not move are read back from the object, so that what the program has written there
+is gone.
+
+These commands are reported, at the statement that gives them:
+
+* without `Arb`, while `MsgVal` was written for an object that is not valid;
+* without `Mask` or `Control`, while another mask (with `UMask`), length, interrupt or end of a FIFO was written;
+* without `DATA_A` or `DATA_B`, while it requests a transmission with new bytes there.
+
+What is written and is the same as in the object is not reported.
+
+**Fix:** set the bit of each part that was written.
+""",
+        "TRM CAN: IF1/IF2 command registers; Bosch C_CAN: interface registers",
+    ),
+    _rule(
         "i2c-stop-pending",
         Severity.ERROR,
         "A START was requested before the previous STOP was done.",
@@ -804,7 +831,9 @@ The SPI sends `SPITXBUF` from bit 15 down, `SPICHAR` + 1 bits. With 8-bit charac
 the word. So `SPITXBUF = c` sends zeros, and a driver that writes 16 bits loses every second byte.
 
 The finding is made at the second of two words that lose different bits. A word whose remaining bits are written next
-(`w`, then `w << 8`) loses nothing and is not reported.
+(`w`, then `w << 8`) loses nothing and is not reported. It is also made when the chip select rises behind a transaction
+that sent only zeros, at the first word that held something else, if the words were not all the same: a driver that only
+wants an answer repeats one word.
 
 **Fix:** `SPITXBUF = c << 8` for a byte; `SPICHAR = 15` for words.
 """,

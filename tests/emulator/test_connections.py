@@ -491,6 +491,8 @@ def test_a_can_controller_that_is_not_set_up_whole(tmp_path: Path, was: str, now
     found = [f for name in ("not-connected", "flag-not-cleared") for f in told(tmp_path, text, name, seconds=0.01)]
     assert [f.rule for f in found] == [rule] * bool(rule)
     assert all(why in f.message and f.place is not None for f in found)
+    if "GLBINT0_EN = 0" in why:  # no statement writes that register: the other enable of the line is the place
+        assert [f.place and "IE0 = 1" in text.splitlines()[f.place.line - 1] for f in found] == [True]
 
 
 #: A node that sends 0x123 each millisecond, with 500 kbit/s.
@@ -527,6 +529,43 @@ def test_a_can_controller_of_another_bit_rate(tmp_path: Path, prescaler: int, ra
     for finding in found:
         assert finding.place is not None
         assert "CAN_BTR" in file.read_text().splitlines()[finding.place.line - 1]
+
+
+#: CAN-A takes 0x123 from the node, with its pins GPIO36 and GPIO37.
+_SET_UP = CAN.index("    CanaRegs.CAN_IF1ARB")
+LISTENER = CAN[:_SET_UP] + """    CanaRegs.CAN_IF2ARB.all = 0x80000000uL | (0x123uL << 18);
+    CanaRegs.CAN_IF2MCTL.all = 0x0082uL;
+    CanaRegs.CAN_IF2CMD.all = 0x00B00004uL;
+    Wait();
+    GPIO_SetupPinMux(36, GPIO_MUX_CPU1, 6);
+    GPIO_SetupPinMux(37, GPIO_MUX_CPU1, 6);
+    CanaRegs.CAN_CTL.bit.Init = 0;
+""" + CAN[CAN.index("    for (;;) {") :].replace("Seen < 3", "0")
+SENDING = ("CAN_IF2MCTL.all = 0x0082uL;", """CAN_IF2MCTL.all = 0x0082uL;
+    CanaRegs.CAN_IF1ARB.all = 0xA0000000uL | (0x55uL << 18);
+    CanaRegs.CAN_IF1MCTL.all = 0x0088uL;
+    CanaRegs.CAN_IF1CMD.all = 0x00B00003uL;""")
+
+
+@pytest.mark.parametrize("sends", [False, True])
+@pytest.mark.parametrize(("was", "told_at"), [
+    ("", ""), ("    GPIO_SetupPinMux(36, GPIO_MUX_CPU1, 6);\n", "Init = 0"),
+    ("    GPIO_SetupPinMux(37, GPIO_MUX_CPU1, 6);\n", "Init = 0"),
+])  # fmt: skip
+def test_a_can_controller_without_a_pin_is_told_where_it_joins_the_bus(
+    tmp_path: Path, was: str, told_at: str, sends: bool
+) -> None:
+    board = tmp_path / "master.py"
+    board.write_text(MASTER, encoding="utf-8")
+    text = LISTENER.replace(was, "") if was else LISTENER
+    if sends:
+        text = text.replace(*SENDING).replace("if (0)", "if (Seen < 3)")
+    file = tmp_path / "drv.c"
+    file.write_text(text, encoding="utf-8")
+    wanted = DriverFiles([file], seconds=0.01, board=load(str(board)), board_named=True)
+    found = [f for f in check_files(wanted).findings if f.rule in ("not-configured", "not-connected")]
+    assert [f.object for f in found] == ["CANA"] * bool(told_at)
+    assert all(f.place is not None and told_at in text.splitlines()[f.place.line - 1] for f in found)
 
 
 @pytest.mark.parametrize(("statement", "silent"), [
@@ -844,6 +883,34 @@ void main(void)
 """
 
 
+BY_BITS = ("""    DMACH1ModeConfig(DMA_TINT0, PERINT_ENABLE, ONESHOT_DISABLE, CONT_DISABLE, SYNC_DISABLE, SYNC_SRC,
+                     OVRFLOW_DISABLE, SIXTEEN_BIT, CHINT_END, CHINT_ENABLE);
+""", """    EALLOW;
+    DmaClaSrcSelRegs.DMACHSRCSEL1.bit.CH1 = DMA_TINT0;
+    DmaRegs.CH1.MODE.bit.PERINTSEL = 1;
+    DmaRegs.CH1.MODE.bit.PERINTE = 1;
+    DmaRegs.CH1.MODE.bit.CHINTMODE = 1;
+    DmaRegs.CH1.MODE.bit.CHINTE = 1;
+    EDIS;
+""")
+AGAIN = "    DmaRegs.CH1.CONTROL.bit.RUN = 1;\n"
+NEXT_BUFFER = BUFFERS[BUFFERS.index("    Filled ^= 1;") : BUFFERS.index("    PieCtrlRegs.PIEACK")]
+
+
+@pytest.mark.parametrize(("was", "now", "at"), [
+    (AGAIN, AGAIN, None),
+    (AGAIN, "", "MODE.bit.CHINTE = 1"),
+    # One block is enough: its interrupt gives the channel no other addresses.
+    (NEXT_BUFFER, "", None),
+])  # fmt: skip
+def test_a_channel_whose_mode_is_set_bit_by_bit_too(tmp_path: Path, was: str, now: str, at: str | None) -> None:
+    assert BUFFERS.count(was) == 1
+    assert BUFFERS.count(BY_BITS[0]) == 1
+    text = BUFFERS.replace(was, now).replace(*BY_BITS)
+    places = [finding.place for finding in told(tmp_path, text, seconds=0.01)]
+    assert [place and at and at in text.splitlines()[place.line - 1] for place in places] == [True] * (at is not None)
+
+
 @pytest.mark.parametrize(("was", "now", "at"), [
     ("", "", None),
     ("    DmaRegs.CH1.CONTROL.bit.RUN = 1;\n", "", "CONT_DISABLE"),
@@ -892,3 +959,97 @@ def test_a_pin_that_is_set_and_cleared_is_an_output(tmp_path: Path, was: str, no
         text = text.replace(part, now)
     found = told(tmp_path, text, seconds=0.0005)
     assert [text.splitlines(keepends=True)[f.place.line - 1] for f in found if f.place] == told_at
+
+
+#: Timer 0 starts SOC0, and the DMA moves its results.
+MOVED = BUFFERS.replace("DMA_TINT0", "DMA_ADCAINT1").replace("    DMAInitialize();\n", """    EALLOW;
+    AdcaRegs.ADCCTL2.bit.PRESCALE = 6;
+    AdcaRegs.ADCCTL1.bit.ADCPWDNZ = 1;
+    DELAY_US(1000);
+    AdcaRegs.ADCSOC0CTL.bit.ACQPS = 14;
+    AdcaRegs.ADCSOC0CTL.bit.TRIGSEL = 1;
+    AdcaRegs.ADCINTSEL1N2.bit.INT1E = 1;
+    AdcaRegs.ADCINTSEL1N2.bit.INT1CONT = 1;
+    EDIS;
+    DMAInitialize();
+""")
+
+
+@pytest.mark.parametrize(("was", "now", "at"), [
+    ("", "", None),
+    ("    AdcaRegs.ADCINTSEL1N2.bit.INT1CONT = 1;\n", "", "DMACH1ModeConfig(DMA_ADCAINT1"),
+    # The program clears the flag itself.
+    ("    AdcaRegs.ADCINTSEL1N2.bit.INT1CONT = 1;\n",
+     "#define DELAY_US(us) AdcaRegs.ADCINTFLGCLR.bit.ADCINT1 = 1\n", None),
+])  # fmt: skip
+def test_a_flag_that_only_the_dma_waits_for_is_told_where_it_is_given_to_it(
+    tmp_path: Path, was: str, now: str, at: str | None
+) -> None:
+    assert not was or MOVED.count(was) == 1
+    text = MOVED.replace(was, now) if was else MOVED
+    places = [finding.place for finding in told(tmp_path, text, "flag-not-cleared", seconds=0.01)]
+    assert [place and at and at in text.splitlines()[place.line - 1] for place in places] == [True] * (at is not None)
+
+
+#: Timer 0 asks for the width of a pulse at GPIO24, which ePWM1 gives at GPIO0; a one-shot of eCAP1 takes it.
+ONE_SHOT = """#include "F28x_Project.h"
+volatile Uint16 Ticks, Order;
+volatile Uint32 Width;
+interrupt void tick(void)
+{
+    Ticks++;
+    if (ECap1Regs.ECFLG.bit.CEVT2)
+        Width = ECap1Regs.CAP2;
+    ECap1Regs.ECCLR.all = 0xFFFF;
+    ECap1Regs.ECCTL2.bit.REARM = 1;
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;
+}
+void main(void)
+{
+""" + START_UP + """    EALLOW;
+    PieVectTable.TIMER0_INT = &tick;
+    GpioCtrlRegs.GPAMUX1.bit.GPIO0 = 1;
+    InputXbarRegs.INPUT7SELECT = 0;
+    EDIS;
+    EPwm1Regs.TBPRD = 20000;
+    EPwm1Regs.CMPA.bit.CMPA = 500;
+    EPwm1Regs.AQCTLA.bit.ZRO = AQ_SET;
+    EPwm1Regs.AQCTLA.bit.CAU = AQ_CLEAR;
+    EPwm1Regs.TBCTL.bit.CTRMODE = TB_COUNT_UP;
+    ECap1Regs.ECCTL1.bit.CAP2POL = 1;
+    ECap1Regs.ECCTL1.bit.CTRRST1 = 1;
+    ECap1Regs.ECCTL2.bit.CONT_ONESHT = 1;
+    ECap1Regs.ECCTL2.bit.STOP_WRAP = 1;
+    ECap1Regs.ECCTL1.bit.CAPLDEN = 1;
+    ECap1Regs.ECCTL2.bit.TSCTRSTOP = 1;
+    ECap1Regs.ECCTL2.bit.REARM = 1;
+    EALLOW;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 1;
+    EDIS;
+    InitCpuTimers();
+    ConfigCpuTimer(&CpuTimer0, 200, 1000);
+    CpuTimer0Regs.TCR.all = 0x4000;
+    PieCtrlRegs.PIEIER1.bit.INTx7 = 1;
+    IER |= M_INT1;
+    EINT;
+    for (;;) { DELAY_US(10); }
+}
+"""
+REARM = "    ECap1Regs.ECCTL2.bit.REARM = 1;\n    PieCtrlRegs"
+
+
+@pytest.mark.parametrize(("was", "now", "at"), [
+    ("", "", None),
+    (REARM, "    PieCtrlRegs", "CONT_ONESHT = 1"),
+    (REARM, "    if (Order) ECap1Regs.ECCTL2.bit.REARM = 1;\n    PieCtrlRegs", None),
+    (REARM, "    ECap1Regs.ECCTL2.bit.CONT_ONESHT = 0;\n    PieCtrlRegs", None),
+    # It is measured once, and kept.
+    ("    ECap1Regs.ECCLR.all = 0xFFFF;\n" + REARM, "    PieCtrlRegs", None),
+])  # fmt: skip
+def test_a_one_shot_whose_flags_are_cleared_for_the_next_capture_is_armed_again(
+    tmp_path: Path, was: str, now: str, at: str | None
+) -> None:
+    assert not was or ONE_SHOT.count(was) == 1
+    text = ONE_SHOT.replace(was, now) if was else ONE_SHOT
+    places = [finding.place for finding in told(tmp_path, text, seconds=0.02)]
+    assert [place and at and at in text.splitlines()[place.line - 1] for place in places] == [True] * (at is not None)

@@ -452,3 +452,82 @@ def test_a_routine_that_leaves_the_global_flag_is_named(tmp_path: Path) -> None:
     assert firmware.can_test.sent + firmware.can_test.received + firmware.can_test.statuses == 1
     found = board.findings.of("flag-not-cleared")
     assert [finding.object for finding in found] == ["CanaRegs.CAN_GLB_INT_FLG.INT0_FLG"]
+
+
+#: An object for frames of 0x55 and one that sends 0x66, each set up whole; `send` sends eight bytes.
+PARTS = r"""
+#include "F28x_Project.h"
+void idle(void) { while (CanaRegs.CAN_IF1CMD.bit.Busy || CanaRegs.CAN_IF2CMD.bit.Busy) { } }
+void setup(void)
+{
+    EALLOW;
+    CpuSysRegs.PCLKCR10.bit.CAN_A = 1;
+    EDIS;
+    CanaRegs.CAN_IF1MSK.all = 0x1FFC0000uL;
+    CanaRegs.CAN_IF1ARB.all = 0x80000000uL | (0x55uL << 18);
+    CanaRegs.CAN_IF1MCTL.all = 0x1088uL;
+    CanaRegs.CAN_IF1CMD.all = 0x00F00001uL;  /* receives */
+    idle();
+    CanaRegs.CAN_IF2ARB.all = 0xA0000000uL | (0x66uL << 18);
+    CanaRegs.CAN_IF2MCTL.all = 0x0088uL;
+    CanaRegs.CAN_IF2CMD.all = 0x00B00002uL;  /* sends */
+    idle();
+}
+void send(uint32_t low, uint32_t high)
+{
+    CanaRegs.CAN_IF2DATA.all = low;
+    CanaRegs.CAN_IF2DATB.all = high;
+    CanaRegs.CAN_IF2CMD.all = 0x00870002uL;  /* the message */
+    idle();
+}
+uint32_t run(void)
+{
+    setup();
+    send(1, 2);
+    send(3, 4);
+    return CanaRegs.CAN_MVAL_21;
+}
+"""
+#: What is between two statements about an interface.
+THEN = "\n    CanaRegs.CAN_IF"
+LOW = "IF2DATA.all = low;"
+
+
+@pytest.mark.parametrize(("was", "now", "lost", "at"), [
+    ("", "", "", ""),
+    ("0x00F00001uL", "0x00D00001uL", "CanaRegs.CAN_IF1ARB", "/* receives */"),
+    ("0x00F00001uL", "0x00B00001uL", "CanaRegs.CAN_IF1MSK", "/* receives */"),
+    ("0x00F00001uL", "0x00E00001uL", "CanaRegs.CAN_IF1MCTL", "/* receives */"),
+    ("0x00B00002uL", "0x00900002uL", "CanaRegs.CAN_IF2ARB", "/* sends */"),
+    ("0x00870002uL", "0x00850002uL", "CanaRegs.CAN_IF2DATA", "/* the message */"),
+    ("0x00870002uL", "0x00860002uL", "CanaRegs.CAN_IF2DATB", "/* the message */"),
+    # Of four bytes none is in DATB.
+    (f"0x0088uL;{THEN}2CMD.all = 0x00B00002uL", f"0x0084uL;{THEN}2CMD.all = 0x00B00002uL", "", ""),
+    # Without UMask the mask has no effect.
+    (f"0x1088uL;{THEN}1CMD.all = 0x00F00001uL", f"0x0088uL;{THEN}1CMD.all = 0x00B00001uL", "", ""),
+    # The same is written again, and need not be moved again.
+    (LOW, f"{LOW}{THEN}2MCTL.all = 0x0188uL;{THEN}2ARB.all = 0xA0000000uL | (0x66uL << 18);", "", ""),
+    # Another length is not the same.
+    (LOW, f"{LOW}{THEN}2MCTL.all = 0x0084uL;", "CanaRegs.CAN_IF2MCTL", "/* the message */"),
+    # The object is made invalid first; its other parts follow with a command of their own.
+    ("    CanaRegs.CAN_IF1MSK.all = 0x1FFC0000uL;", "    CanaRegs.CAN_IF1ARB.all = 0;\n    CanaRegs.CAN_IF1CMD.all = "
+     "0x00A00001uL;\n    idle();\n    CanaRegs.CAN_IF1MSK.all = 0x1FFC0000uL;", "", ""),
+    # A command that fetches moves nothing to the object, and the next one does.
+    ("    CanaRegs.CAN_IF2CMD.all = 0x00870002uL", "    CanaRegs.CAN_IF2CMD.all = 0x00100002uL;\n    idle();\n"
+     "    CanaRegs.CAN_IF2CMD.all = 0x00870002uL", "", ""),
+])  # fmt: skip
+def test_what_a_command_leaves_behind_in_the_interface_is_lost(
+    tmp_path: Path, was: str, now: str, lost: str, at: str
+) -> None:
+    assert not was or PARTS.count(was) == 1
+    text = PARTS.replace(was, now) if was else PARTS
+    board, firmware = program(tmp_path, text)
+    valid = firmware.can_test.run()
+    found = board.findings.of("can-part-lost")
+    assert [finding.object for finding in found] == [lost] * bool(lost)
+    assert all(f.place is not None and at in text.splitlines()[f.place.line - 1] for f in found)
+    assert valid == (0b11 if not lost.endswith("ARB") else 0b01 if "2" in lost else 0b10)
+    # What the findings say is so: the bytes of the second message are in the object, or those of the first are not.
+    low, high = board.can["A"].ram[2].data
+    assert low == (0 if lost.endswith("DATA") else low)
+    assert high == (0 if lost.endswith("DATB") else high)

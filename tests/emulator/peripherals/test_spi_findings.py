@@ -163,6 +163,16 @@ def hasty() -> void:
     assert [place.function for place in finding.call_path] == ["cs", "hasty"]
 
 
+SENDER = """
+# drv.c: send
+def send(word: uint16) -> uint16:
+    SpiaRegs.SPITXBUF = word  # here
+    while SpiaRegs.SPISTS.bit.INT_FLAG == 0:
+        pass
+    return SpiaRegs.SPIRXBUF
+"""
+
+
 def test_a_word_to_nobody() -> None:
     driver = spi()
     driver.transfer(0x8F)
@@ -170,18 +180,30 @@ def test_a_word_to_nobody() -> None:
 
 
 @pytest.mark.parametrize(("words", "told"), [
+    # A command and the words that fetch its answer, all in the lower half.
+    ((0x009F, 0, 0), True), ((0x0003, 0x0000), True), ((0, 0x0005), True),
+    # The command is in the upper half; what fetches the answer may be anything, if it stays the same.
+    ((0x9F00, 0x00FF, 0x00FF), False), ((0x00FF, 0x00FF, 0x00FF), False), ((0, 0, 0), False), ((0x0005,), False),
+    # Nothing is known before the transaction ends: its last word may be one that is sent.
+    ((0x0003, 0x0000, 0x8000), False),
+])  # fmt: skip
+def test_a_transaction_that_sends_nothing_of_its_words(words: tuple[int, ...], told: bool) -> None:
+    driver = spi(SENDER)
+    driver.cs(0)
+    for word in words:
+        driver.send(word)
+    assert not driver.findings.of("spi-width")
+    driver.cs(1)
+    found = [(f.value, driver.lines[f.place.line - 1]) for f in driver.findings.of("spi-width") if f.place]
+    assert found == [(next(filter(None, words), 0), "    SpiaRegs.SPITXBUF = word  # here")] * told
+
+
+@pytest.mark.parametrize(("words", "told"), [
     ((0x1234, 0x5678), True), ((0x008F, 0x0003), True), ((0x1234, 0x3400, 0x5678, 0x7800), False),
     ((0x00FF, 0x00FF), False), ((0x1200, 0x3400), False),
 ])  # fmt: skip
 def test_words_of_which_characters_of_eight_bits_send_the_upper_half(words: tuple[int, ...], told: bool) -> None:
-    driver = spi("""
-# drv.c: send
-def send(word: uint16) -> uint16:
-    SpiaRegs.SPITXBUF = word  # here
-    while SpiaRegs.SPISTS.bit.INT_FLAG == 0:
-        pass
-    return SpiaRegs.SPIRXBUF
-""")
+    driver = spi(SENDER)
     driver.cs(0)
     for word in words:
         driver.send(word)
