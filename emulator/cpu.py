@@ -28,6 +28,10 @@ INTERRUPT_CONTEXT_WORDS: Final = 14
 #: In that time a routine of 100 cycles that takes each sample of a buffer has taken 20,000 samples.
 STORM_INTERRUPTS: Final = 1000
 STORM_CYCLES: Final = 10 * CYCLES_PER_MS
+#: CHOICE: so are this many of routines that take long, over at least this many cycles.  A routine may compute longer
+#: than its period for a while, to calibrate; for three quarters of a second a user sees that nothing else happens.
+LONG_STORM_INTERRUPTS: Final = 50
+LONG_STORM_CYCLES: Final = 750 * CYCLES_PER_MS
 
 
 #: The interrupt at a line of the CPU: its vector, its source, and where its routine begins.
@@ -142,8 +146,10 @@ class Cpu(Eallow):
             line = (active & -active).bit_length()
             if self.clock.now != self._left:
                 self._row, self._began = 0, self.clock.now
-            elif self._row >= STORM_INTERRUPTS and self.clock.now - self._began >= STORM_CYCLES:
-                self._storm(line)
+            elif self._row >= LONG_STORM_INTERRUPTS:
+                lasted = self.clock.now - self._began
+                if lasted >= (STORM_CYCLES if self._row >= STORM_INTERRUPTS else LONG_STORM_CYCLES):
+                    self._storm(line)
             self.ifr &= ~(1 << (line - 1))
             self._forced &= ~(1 << (line - 1))
             self._enter(line)

@@ -35,7 +35,7 @@ Without a kernel, the finding is at the statement of `main` that must mask the i
 integer needs no mask there: an index with one writer, a flag, a counter that `main` only reads. An index that a routine
 steps and uses does need one, if `main` sets it together with another object that the routine uses in a decision.
 Some pairs rarely change within a run (hours and minutes). Then the source shows that the routine sets both and that
-`main` computes with both. A flag that `main` clears before it has copied what the flag stands for lets the routine
+`main` computes with both, or copies the whole structure and uses both. A flag that `main` clears before it has copied what the flag stands for lets the routine
 write again too early, if the routine tests this flag. What `main` did before it started a transfer is ordered before
 the interrupt at its end.
 

@@ -594,8 +594,8 @@ The program seems dead. The debugger finds it in the same interrupt routine each
 
 The interrupt comes again as soon as its routine returns. The interrupted code (`main`, a task, or a routine that
 allows interrupts) does not execute one statement in between. It is a storm after 1000 interrupts in a row that took
-2,000,000 cycles (10 ms at 200 MHz) in all. The run ends there. An interrupt that leaves one statement each time is not
-reported, however fast it is.
+2,000,000 cycles (10 ms at 200 MHz) in all, or after 50 that took 0.75 s. The run ends there. An interrupt that leaves
+one statement each time is not reported, however fast it is.
 
 Typical causes: a timer with a period of 0, or shorter than its routine; an ADC in continuous mode whose conversions
 are shorter than the routine; a FIFO flag that is cleared while the level still holds, so the hardware sets it again at

@@ -266,11 +266,26 @@ A test of several flags looks only at bit 0, or all flags are cleared instead of
 In C, `flags & MASK == MASK` compares first: `MASK == MASK` is 1, so `flags & 1` is left. Two comparisons that are
 combined by `&` or `|` are not reported.
 
-`flags &= !MASK` clears all flags: `!MASK` is 0 for every mask. It is reported for a constant that is not 0 or 1.
+`flags &= !MASK` clears all flags: `!MASK` is 0 for every mask. It is reported for a constant that is not 0 or 1, and
+for 1 if another statement sets a higher bit of the same object.
 
 **Fix:** parentheses around the mask: `(flags & MASK) == MASK`; `~MASK` for the other bits.
 """,
         "ISO C 6.5.8 to 6.5.12 (precedence); CERT EXP00-C",
+    ),
+    _rule(
+        "mask-gaps",
+        Severity.WARNING,
+        "A mask N - 1 is used for a remainder, and N is no power of two.",
+        """
+An index skips elements, or never comes back to 0: a ring buffer repeats old data or loses new ones.
+
+`i & (N - 1)` is `i % N` only if N is a power of two. For N = 60 the mask is 0x3B: bit 2 of the index is always 0. The
+finding is made if the source (or a macro) says `N - 1` or `~(N - 1)`. Any other mask may have gaps.
+
+**Fix:** a power of two for N, or `i % N`.
+""",
+        "ISO C 6.5.10; 6.5.5 p6",
     ),
     _rule(
         "float-equality",

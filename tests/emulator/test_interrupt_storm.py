@@ -1,7 +1,7 @@
 """Interrupts that leave what they interrupt nothing are a finding and the end; fast ones that leave something are not.
 
 An interrupt takes 14 cycles of entry and 8 of return besides its routine; a storm is 1000 of them in a row over
-2,000,000 cycles (10 ms) in which nothing else ran.
+2,000,000 cycles (10 ms) in which nothing else ran, or 50 over 0.75 s.
 """
 
 from __future__ import annotations
@@ -11,9 +11,10 @@ import re
 import pytest
 
 from emulator.clock import CYCLES_PER_MS
-from emulator.cpu import STORM_CYCLES, STORM_INTERRUPTS, InterruptStorm
+from emulator.cpu import LONG_STORM_INTERRUPTS, STORM_CYCLES, STORM_INTERRUPTS, InterruptStorm
 from tests.emulator.drivers import Driver
 
+SECOND = 1000 * CYCLES_PER_MS
 SOURCE = """
 from emulator.sysbios.headers import *
 Count: uint32 = 0
@@ -187,6 +188,16 @@ def test_a_routine_that_asks_for_itself_until_its_work_is_done_is_none() -> None
     calm.main()
     assert calm.linked.objects["drv.Count"].data[0] == 15_000
     assert calm.rules() == []
+
+
+def test_a_routine_that_is_longer_than_its_period_is_one_after_three_quarters_of_a_second() -> None:
+    storm = driver("TIMER0_INT", 1, init=timer(0, 1_999_999), body="DELAY_US(11000.0)")
+    with pytest.raises(InterruptStorm):
+        storm.main()
+    (finding,) = storm.findings.of("interrupt-storm")
+    assert 0.75 * SECOND <= storm.board.clock.now < 0.8 * SECOND
+    assert finding.value is not None
+    assert LONG_STORM_INTERRUPTS <= finding.value < STORM_INTERRUPTS
 
 
 def test_a_routine_that_is_taken_rarely_and_computes_for_long_is_none() -> None:

@@ -19,7 +19,7 @@ from emulator.c28x.passes.stamps import Stamps
 from emulator.c28x.passes.states import States
 from emulator.c28x.passes.stores import check_stores
 from emulator.c28x.passes.timer_clock import check_timer_clocks
-from emulator.c28x.passes.values import ValueChecks, file_scope
+from emulator.c28x.passes.values import ValueChecks, file_scope, flag_words
 from emulator.c28x.passes.waiting import WriterAnalysis, check_waiting
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
@@ -43,6 +43,7 @@ def check(
     mentions = Mentions(modules, initialisers)
     entered = mentions.by_address | entries
     threads = WriterAnalysis(modules, entered)
+    flags = flag_words(function for module in modules for function in module.functions)
     for module, report in reports.items():
         for remark in module.remarks:
             at = remark.where
@@ -51,7 +52,7 @@ def check(
         for function in module.functions:
             unit = module.unit(function.name)
             FlowReport(function, report).run()
-            ValueChecks(function, report, unit.symbols).run()
+            ValueChecks(function, report, unit.symbols, flags).run()
             Liveness(function, report).run()
             check_stores(function, report)
             check_copies(function, report)

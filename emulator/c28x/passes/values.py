@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterable, Iterator
 from itertools import pairwise
 from math import ceil, floor, isfinite
 from typing import Any
@@ -111,10 +111,14 @@ class ConstantChecks:
 class ValueChecks(ConstantChecks):
     """The checks of one function."""
 
-    def __init__(self, function: Function, report: StaticReport, shared: Container[str] = ()) -> None:
-        """`shared`: the names of the file's objects."""
+    def __init__(
+        self, function: Function, report: StaticReport, shared: Container[str] = (),
+        flag_words: Container[Variable] = (),
+    ) -> None:  # fmt: skip
+        """`shared`: the names of the file's objects.  `flag_words`: those in which a bit above bit 0 is a flag."""
         super().__init__(function, report, function.where)
         self.shared = shared
+        self.flag_words = flag_words
         self.body = function.body
         self.known = known_locals(function, counted=True)
         self.loosely = known_locals(function, counted=False)
@@ -329,12 +333,33 @@ class ValueChecks(ConstantChecks):
             case Binary(op="&" | "|" | "^", right=right) if _compared_mask(right):
                 text = source_text(e)
                 self.report_here("mixed-logic", f"{text}: the comparison comes first and gives 0 or 1", text)
-            case Binary(op="&" | "|" | "^", left=a, right=b) if mask := _not_of_mask(a) or _not_of_mask(b):
+            case Binary(op="&" | "|" | "^", left=a, right=b) if mask := self.not_of_mask(a, b) or self.not_of_mask(b, a):
                 text = f"!{source_text(mask)}"
                 self.report_here("mixed-logic", f"{text} is 0: ~ inverts the bits of a mask", text)
+            case Binary(op="&", left=left, right=right) if (count := _less_one(right) or _less_one(left)) is not None:
+                text = source_text(e)
+                lost = f"{source_text(count)} - 1 is {count.value - 1:#x}, a mask with gaps"
+                message = f"{text}: {lost}, because {count.value} is no power of two: some remainders never occur"
+                self.report_here("mask-gaps", message, text, count.value)
             case Binary(op="*" | "/", left=left, right=Const(value=8) as right) if _size(left) and not _size(right):
                 text = source_text(e)
                 self.report_here("octet", f"{text}: sizeof counts words of 16 bits here, not octets", text)
+
+    def not_of_mask(self, e: Expr, other: Expr) -> Expr | None:
+        """The constant of an operand `!MASK`, if it is a mask; None: there is none.
+
+        0 and 1 may be truth values.  1 is a mask if the other operand is a word with flags in other bits.
+        """
+        for part in _chain(e):
+            inner = part.source if isinstance(part, Const) and part.source is not None else part
+            if isinstance(inner, Not):
+                match bare(inner.operand), bare(other):
+                    case Const(value=1) as mask, Load(lvalue=LValue(root=Variable() as root)) if root in self.flag_words:
+                        return mask
+                    case Const(value=value) as mask, _ if value not in (0, 1):
+                        return mask
+                return None
+        return None
 
     def signs(self, e: Compare) -> None:
         """Report a signed value that may be negative and is compared as unsigned."""
@@ -392,13 +417,32 @@ def _compared_mask(e: Expr) -> bool:
     return False
 
 
-def _not_of_mask(e: Expr) -> Expr | None:
-    """The constant of an operand `!MASK`, if it is neither 0 nor 1; None: there is none."""
+def flag_words(functions: Iterable[Function]) -> set[Variable]:
+    """The integers in which a statement sets a single bit above bit 0: `flags |= 4`."""
+    found: set[Variable] = set()
+    for function in functions:
+        for s in statements(function.body):
+            match s:
+                case Assign(target=LValue(root=Variable(ctype=IntType()) as root), value=value):
+                    match bare(value):
+                        case Binary(op="|", left=left, right=right):
+                            match bare(left), bare(right):
+                                case Load(lvalue=LValue(root=same)), Const(value=int(bit)) if same is root:
+                                    if bit > 1 and not bit & bit - 1:
+                                        found.add(root)
+    return found
+
+
+def _less_one(e: Expr) -> Const | None:
+    """The N of a mask `N - 1` or `~(N - 1)`, if N is a constant and no power of two; None: there is none."""
     for part in _chain(e):
-        inner = part.source if isinstance(part, Const) and part.source is not None else part
-        if isinstance(inner, Not):
-            mask = bare(inner.operand)
-            return mask if isinstance(mask, Const) and mask.value not in (0, 1) else None
+        match part:
+            case Unary(op="~", operand=operand):
+                return _less_one(operand)
+            case Binary(op="-", left=left, right=Const(value=1)):
+                count = bare(left)
+                if isinstance(count, Const) and isinstance(count.value, int) and count.value > 2:
+                    return count if count.value & count.value - 1 else None
     return None
 
 

@@ -136,7 +136,8 @@ class _Loop:
         self.loop = loop
         self.function = function
         self.threads = threads
-        self.inside = [loop, *(s for block in blocks(loop) for s in statements(block))]
+        #: The statements of a turn after which another one can follow.
+        self.inside = [loop, *(s for block in blocks(loop) for s in _turning(block, inner=False))]
         self.written = {variable for s in self.inside for variable in _written(s)}
         #: Locals that its turns change -> the values assigned to them (None: not known).
         self.given: dict[Variable, list[Expr | None]] = {}
@@ -230,6 +231,16 @@ class _Loop:
                 return False
         values = [value for values in self.given.values() for value in values if value is not None]
         return all(not self.changed(value) or _counts_or_looks(value) for value in values)
+
+
+def _turning(block: list[Stmt], *, inner: bool) -> Iterator[Stmt]:
+    """The statements of a block, without the blocks whose end leaves the loop.  In an inner loop only `return` does."""
+    for s in block:
+        yield s
+        within = inner or isinstance(s, While | For)
+        for b in blocks(s):
+            if not b or not isinstance(b[-1], Return if within else Return | Break):
+                yield from _turning(b, inner=within)
 
 
 def _terms(test: Expr | None) -> Iterator[Expr | None]:

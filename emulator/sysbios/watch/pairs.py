@@ -1,8 +1,9 @@
 """Words that must be read or written together, found in the source of a program without the kernel.
 
-The source shows them even where a run does not: a carry from minutes to hours is rare.  There are four forms:
+The source shows them even where a run does not: a carry from minutes to hours is rare.  There are five forms:
 
 - An interrupt routine sets several words of one object.  Another function computes with two of them at once.
+- A routine sets words of a structure at one time.  Another function copies the whole structure and uses two of them.
 - A routine increments an index and uses it with other objects.  Another function sets the index and one of these.
 - A routine and another function move the same index of a ring buffer.
 - A routine fills objects only while a flag is 0, and sets the flag.  Another function clears the flag before it reads
@@ -14,15 +15,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any, Final, NamedTuple
 
-from emulator.c28x.ctypes import ArrayType, IntType
+from emulator.c28x.ctypes import ArrayType, IntType, StructType, scalars
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     AddressOf,
     Assign,
     Binary,
+    Break,
     Call,
+    CallPointer,
     Compare,
     Const,
+    Continue,
     CopyStruct,
     Declare,
     Expr,
@@ -34,11 +38,14 @@ from emulator.c28x.tree import (
     Logic,
     LValue,
     Not,
+    RegisterLoad,
+    Return,
     Stmt,
+    Switch,
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import bare, blocks, leaves, parts, roots, statements, within
+from emulator.c28x.tree_queries import assigned, bare, blocks, leaves, parts, roots, statements, within
 
 #: Operators that combine the values of both operands.
 _COMBINE: Final = ("+", "-", "*", "/", "%")
@@ -82,7 +89,160 @@ def pairs(modules: Iterable[Module]) -> dict[str, list[Pair]]:
                     routines = frozenset.intersection(*(frozenset(written[path, word]) for word in here))
                     if routines:
                         found.setdefault(path, []).append(Pair(here, routines, (f.where.file, f.name)))
+    _add_copied(own, found)
     return found
+
+
+def _add_copied(own: dict[str, Function], found: dict[str, list[Pair]]) -> None:
+    """Add the words of structures that a routine sets together, and that another function copies together.
+
+    Words are set together in one block, and not all of them are counters.  A copy for which a test decides (a flag, a
+    loop that copies again) is left out.
+    """
+    together: dict[str, list[tuple[str, frozenset[int]]]] = {}
+    inside: set[str] = set()
+    telling: set[str] = set()
+    for routine, reached in _routines(own):
+        for f in reached:
+            inside.add(f.path)
+            telling |= _written(f.body) | _read_addresses(f)
+            for block in _blocks(f.body):
+                for path, words in _set_together(block).items():
+                    together.setdefault(path, []).append((routine.name, words))
+    ways = {f.path: _Ways(f, telling) for f in own.values() if together and f.path not in inside}
+    decided = {below.path for way in ways.values() for path in way.decided for below in _reached(path, own)}
+    for path, way in ways.items():
+        for source, used in _copies(way) if path not in decided else ():
+            about = source.declaration.path
+            for routine_name, words in together.get(about, ()):
+                if len(words & used) > 1:
+                    reader = (way.function.where.file, way.function.name)
+                    found.setdefault(about, []).append(Pair(words & used, frozenset({routine_name}), reader))
+
+
+def _read_addresses(f: Function) -> set[str]:
+    """The objects at file scope whose address a function takes."""
+    addresses = (p.lvalue for p in within(f.body) if isinstance(p, AddressOf))
+    return {path for lvalue in addresses if (path := _path(lvalue)) is not None}
+
+
+def _set_together(block: list[Stmt]) -> dict[str, frozenset[int]]:
+    """The words of structures that the statements of a block itself set: several, and not all of them counters."""
+    found: dict[str, set[int]] = {}
+    counted: dict[str, set[int]] = {}
+    for s in block:
+        match s:
+            case Assign(target=LValue(root=Variable(kind="global", ctype=StructType()) as root, indices=[]) as target):
+                path = root.declaration.path
+                found.setdefault(path, set()).add(target.words)
+                if _counts(s.value, target):
+                    counted.setdefault(path, set()).add(target.words)
+            case CopyStruct(target=LValue(root=Variable(kind="global", ctype=StructType() as whole) as root)):
+                if s.target.ctype == whole:
+                    found.setdefault(root.declaration.path, set()).update(_words(whole))
+    return {
+        path: frozenset(words) for path, words in found.items()
+        if len(words) > 1 and words != counted.get(path, set())
+    }  # fmt: skip
+
+
+def _counts(value: Expr, target: LValue) -> bool:
+    """Whether a value is that of its target, stepped by a constant: it says the same one step later."""
+    match bare(value):
+        case Binary(op="+" | "-", left=left, right=right):
+            stepped = bare(left)
+            return isinstance(bare(right), Const) and isinstance(stepped, Load) and stepped.lvalue == target
+    return False
+
+
+def _words(ctype: StructType) -> frozenset[int]:
+    return frozenset(offset for offset, _ in scalars(ctype))
+
+
+def _copies(way: _Ways) -> Iterator[tuple[Variable, frozenset[int]]]:
+    """The structures at file scope that a function copies as a whole, and the words of the copies that are used."""
+    for s in way.undecided:
+        target: Variable | Expr | None = None
+        source: LValue | None = None
+        match s:
+            case CopyStruct(target=LValue(root=target), source=source):
+                pass
+            case Declare(variable=target, value=Load(lvalue=source)):
+                pass
+        match source:
+            case LValue(root=Variable(kind="global", ctype=StructType() as whole) as root, ctype=ctype) if (
+                ctype == whole and not whole.word_backed and not _has_array(whole)
+            ):
+                yield root, _used_words(way.function, target, whole)
+
+
+def _has_array(ctype: StructType) -> bool:
+    return any(isinstance(member.ctype, ArrayType) for member in ctype.members)
+
+
+def _used_words(f: Function, copy: Variable | Expr | None, whole: StructType) -> frozenset[int]:
+    """The words of a copy that a function reads; all of them if others may read it too."""
+    if not isinstance(copy, Variable) or copy.kind == "global":
+        return _words(whole)
+    used: set[int] = set()
+    for p in within(f.body):
+        match p:
+            case AddressOf(lvalue=LValue(root=root)) if root is copy:
+                return _words(whole)
+            case Load(lvalue=LValue(root=root, ctype=ctype, words=words)) if root is copy:
+                if isinstance(ctype, StructType):
+                    return _words(whole)
+                used.add(words)
+    for s in statements(f.body):
+        if isinstance(s, CopyStruct) and s.source.root is copy:
+            return _words(whole)
+    return frozenset(used)
+
+
+class _Ways:
+    """Which statements of a function run whatever the routines have told it.
+
+    `telling` are the objects that the routines write.  A test that reads one of them, a register or the result of a
+    call may be what keeps `main` and a routine apart; so may a local that has such a value.
+    """
+
+    def __init__(self, function: Function, telling: set[str]) -> None:
+        self.function = function
+        self._telling = telling
+        #: Locals that have such a value.
+        self._told: set[Variable] = set()
+        for s in statements(function.body):
+            root = assigned(s)
+            if root is not None and root.kind != "global" and any(map(self._tells, roots(s))):
+                self._told.add(root)
+        self.undecided: list[Stmt] = []
+        #: The functions (paths) that are called where such a test decides.
+        self.decided: set[str] = set()
+        self._walk(function.body, free=True)
+
+    def _walk(self, body: list[Stmt], *, free: bool) -> bool:
+        """Follow a block that is entered whatever the routines have told (`free`); whether its end is reached so."""
+        for s in body:
+            if free:
+                self.undecided.append(s)
+            else:
+                self.decided |= {p.function.path for root in roots(s) for p in parts(root) if isinstance(p, Call)}
+            test = s.test if isinstance(s, If | While) else s.subject if isinstance(s, Switch) else None
+            told = test is not None and self._tells(test)
+            ends = [self._walk(block, free=free and not told) for block in blocks(s)]
+            leaves_ = any(isinstance(inner, Return | Break | Continue) for b in blocks(s) for inner in statements(b))
+            if (told and (leaves_ or isinstance(s, While))) or not all(ends):
+                free = False
+        return free
+
+    def _tells(self, e: Any) -> bool:
+        for p in parts(e):
+            match p:
+                case Call() | CallPointer() | RegisterLoad() | LValue(root=Expr()):
+                    return True
+                case LValue(root=Variable() as root) if root in self._told or root.declaration.path in self._telling:
+                    return True
+        return False
 
 
 def continued(modules: Iterable[Module]) -> dict[str, set[tuple[str, str]]]:

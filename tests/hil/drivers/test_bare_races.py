@@ -100,6 +100,14 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
          "if (Ready) { Ready = 0; Sum = Count + Waiting; }", [("race", "Count")]),
         ("if (Ready) { Seen = Now; Ready = 0; }", "if (!Ready) { Ready = 1; Now.hours++; Now.minutes++; }",
          [("race", "Now")]),
+        # A structure that is copied as a whole; its words are set together.
+        ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; }", "Seen = Now;", [("race", "Now")]),
+        ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; }",
+         "struct TIME t; t = Now; if (t.hours == 5) Sum = t.minutes;", [("race", "Now")]),
+        ("struct TIME t = {1, 2}; if (++Count == 9999) Now = t;",
+         "struct TIME t = Now; Sum = t.hours; Sum ^= t.minutes;", [("race", "Now")]),
+        ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; }",
+         "static Uint16 turns; if (++turns >= 3) { turns = 0; Seen = Now; }", [("race", "Now")]),
         ("Millis++;", "Copy = Millis;", [("unmasked-long", "Millis")]),
         # By halves, in two accesses.
         ("Millis++;", "volatile Uint16 *half = (volatile Uint16 *)&Millis; Copy = half[0] | (Uint32)half[1] << 16;",
@@ -193,6 +201,22 @@ def test_what_an_interrupt_can_come_into_is_told(
          "if (Ready) { Sum = Count + Waiting; Ready = 0; } Words[0] = Count;"),
         ("if (Ready) { Seen = Now; Ready = 0; }", "if (!Ready) { Now.hours++; Now.minutes++; Ready = 1; }"),
         ("Millis++;", "DINT; Copy = Millis; EINT;"),
+        # A structure that is copied while the routine is held off; when a flag says so; until two copies are the same.
+        ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; }", "DINT; Seen = Now; EINT;"),
+        ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; Ready = 1; }",
+         "if (Ready) { Seen = Now; Ready = 0; }"),
+        ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; Ready = 1; }",
+         "if (!Ready) return; Ready = 0; Seen = Now;"),
+        ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; Ready = 1; }",
+         "Uint16 news = Ready; if (news) { Ready = 0; Seen = Now; }"),
+        ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; Waiting++; }",
+         "Uint16 n; do { n = Waiting; Seen = Now; } while (n != Waiting);"),
+        ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; }",
+         "struct TIME t; do { Seen = Now; t = Now; } while (t.minutes != Seen.minutes || t.hours != Seen.hours);"),
+        # One word of the copy is used; two counters, each good for itself; words that are set at different times.
+        ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; }", "struct TIME t; t = Now; Sum = t.hours;"),
+        ("if (++Count == 9999) { Now.minutes++; Now.hours++; }", "Seen = Now;"),
+        ("if (++Count == 9999) Now.minutes = Count; if (Count == 5000) Now.hours = 3;", "Seen = Now;"),
     ],
 )
 def test_what_is_kept_apart_is_told_nothing(routine: str, turn: str, tmp_path: Path) -> None:

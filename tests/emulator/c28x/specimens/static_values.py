@@ -575,4 +575,19 @@ def Interval() -> uint16:
 """,
         ("Interval", ()),
     ),
+    static_pair(
+        "mask-gaps",
+        "a ring of twelve",
+        """
+TAIL_SIZE = 12
+def Next(i: uint16) -> uint16:
+    return (i + 1) & (TAIL_SIZE - 1)  # <-
+""",
+        """
+TAIL_SIZE = 16
+def Next(i: uint16) -> uint16:
+    return (i + 1) & (TAIL_SIZE - 1)
+""",
+        ("Next", (3,)),
+    ),
 )

@@ -62,6 +62,42 @@ def Wait(limit: int16) -> int16:
     ),
     static_pair(
         "poll-not-volatile",
+        "a wait that is given up, and says so in the same object",
+        """
+state: uint16 = 2
+lost: volatile[uint16] = 0
+ticks: volatile[uint16] = 9
+def Isr() -> void:
+    state = 2
+def Tick() -> void:
+    ticks += 1
+def Wait() -> int16:
+    while state == 1:  # <-
+        if ticks >= 9:
+            state = 0
+            lost += 1
+            return 0
+    return state
+""",
+        """
+state: uint16 = 2
+lost: volatile[uint16] = 0
+ticks: volatile[uint16] = 9
+def Isr() -> void:
+    state = 2
+def Tick() -> void:
+    ticks += 1
+def Wait() -> int16:
+    while state == 1:
+        if ticks >= 9:
+            state = 0
+            lost += 1
+    return state
+""",
+        ("Wait", ()),
+    ),
+    static_pair(
+        "poll-not-volatile",
         "an endless loop with a way out",
         """
 mode: uint16 = 2

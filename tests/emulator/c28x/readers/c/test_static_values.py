@@ -129,3 +129,33 @@ def test_a_quotient_of_sizes_is_a_number_of_elements_whatever_the_size_of_one(te
 def test_the_not_of_a_mask_is_told(statement: str, wrong: bool) -> None:
     head = "#define MASK 0x10u\n#define ON 1\n#define OFF 0\nunsigned f(unsigned x)\n{\n"
     assert (("mixed-logic", 6) in findings_of(f"{head}    {statement}\n    return x;\n}}\n")) == wrong
+
+
+@pytest.mark.parametrize(
+    ("shared", "wrong"), [("Flags |= OTHER;", True), ("Flags |= MASK;", False), ("Flags = OTHER | !Flags;", False)]
+)
+def test_the_not_of_bit_0_is_told_of_a_word_with_other_flags(shared: str, wrong: bool) -> None:
+    head = "#define MASK 1u\n#define OTHER 2u\nvolatile unsigned Flags = 0;\nvoid f(void)\n{\n"
+    text = f"{head}    Flags &= !MASK;\n}}\nvoid g(void)\n{{\n    {shared}\n}}\n"
+    assert (("mixed-logic", 6) in findings_of(text)) == wrong
+
+
+@pytest.mark.parametrize(
+    ("size", "statement", "wrong"),
+    [
+        ("60u", "x = (x + 1u) & MASK;", True),
+        ("60u", "x &= ~MASK;", True),
+        ("3", "return x & (SIZE - 1);", True),
+        ("100u", "if ((MASK & x) == 0) x = 1;", True),
+        ("64u", "x = (x + 1u) & MASK;", False),
+        ("60u", "x = (x + 1u) % SIZE;", False),
+        ("1u", "x &= MASK;", False),
+        ("0x3Bu", "x &= SIZE;", False),  # written as a mask
+        ("60u", "x = x < MASK ? x + 1 : 0;", False),
+        ("60u", "x |= MASK;", False),
+        ("60u", "x &= x - 1;", False),
+    ],
+)
+def test_a_mask_of_a_number_that_is_no_power_of_two_is_told(size: str, statement: str, wrong: bool) -> None:
+    head = f"#define SIZE {size}\n#define MASK (SIZE - 1u)\n\nunsigned f(unsigned x)\n{{\n"
+    assert (("mask-gaps", 6) in findings_of(f"{head}    {statement}\n    return x;\n}}\n")) == wrong
