@@ -7,12 +7,13 @@ from random import Random
 from typing import Any, Final
 
 from emulator.c28x.link import Linked
-from emulator.chip import ADC_PIE, I2C_PIE, SCI_PIE, SPI_PIE, Chip
+from emulator.chip import ADC_PIE, CAN_PIE, I2C_PIE, SCI_PIE, SPI_PIE, Chip
 from emulator.connections import Connections
 from emulator.device_functions import DeviceFunctions
 from emulator.peripherals.cpu_timer import CpuTimer
 from emulator.peripherals.dma import CHANNELS, PERINTFRC, RUN
 from emulator.peripherals.pie import DIRECT_VECTORS, vector_id
+from emulator.registers.can import CAN_CTL
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
 from emulator.registers.cpu_timer import TCR
@@ -131,6 +132,11 @@ class System(Chip):
             receive, transmit = SCI_PIE[letter]
             self._gate(watch, receive, (block, "SCIFFRX", 1 << 5), (block, "SCICTL2", 1 << 1))
             self._gate(watch, transmit, (block, "SCIFFTX", 1 << 5), (block, "SCICTL2", 1 << 0))
+        for letter, lines in CAN_PIE.items():
+            block = f"Can{letter.lower()}Regs"
+            watch.can(self.blocks[block])
+            for line, enable in zip(lines, (CAN_CTL.IE0, CAN_CTL.IE1), strict=True):
+                self._gate(watch, line, (block, "CAN_CTL", enable.mask))
         self._gate(watch, (1, 7), ("CpuTimer0Regs", "TCR", 1 << 14))
         for register, begins, number in self._beginnings():
             watch.starts(number, register, begins)

@@ -35,9 +35,10 @@ Without a kernel, the finding is at the statement of `main` that must mask the i
 integer needs no mask there: an index with one writer, a flag, a counter that `main` only reads. An index that a routine
 steps and uses does need one, if `main` sets it together with another object that the routine uses in a decision.
 Some pairs rarely change within a run (hours and minutes). Then the source shows that the routine sets both and that
-`main` computes with both, or copies the whole structure and uses both. A flag that `main` clears before it has copied what the flag stands for lets the routine
-write again too early, if the routine tests this flag. What `main` did before it started a transfer is ordered before
-the interrupt at its end.
+`main` computes with both, or copies the whole structure and uses both. A copy for which a test of what the routine sets
+decides is not reported. A flag that `main` clears before it has copied what the flag stands for lets the routine write
+again too early, if the routine tests this flag. What `main` did before it started a transfer is ordered before the
+interrupt at its end.
 
 Host tools see nothing: the host has none of these threads and locks.
 
@@ -91,7 +92,7 @@ The tool does not compare the name of a gate with the object that it protects. I
 """, "BIOS, GateMutexPri",
     ),
     _rule(
-        "transaction-cut", Severity.ERROR, "Two tasks share a peripheral without mutual exclusion.", """
+        "transaction-cut", Severity.ERROR, "Two threads share a peripheral without mutual exclusion.", """
 A conversion lasts from its trigger until its result is read. A word on the SPI lasts from SPITXBUF to SPIRXBUF, a
 transfer as long as its slave is selected, a message on a UART from its first to its last character. If a higher task
 starts its own on the same SOC, interrupt flag, shift register or transmitter, the lower one reads the other's result,
@@ -100,8 +101,13 @@ waits for a flag that was cleared, or sends characters in between.
 The SOCs and interrupt flags of an ADC are separate: two tasks with one each are not reported. Neither is a handler that
 clears the flag of a conversion that a task started. The finding says whether a cut happened in this run or can happen.
 
-**Fix:** a gate for each peripheral, held for the whole transaction.
-""", "TRM ADC (ADCSOCFRC1, ADCINTFLGCLR), SPI (SPITXBUF), SCI (SCITXBUF)",
+Without a kernel, it is reported that `main` writes a message interface of the CAN (IF1 or IF2) which an interrupt
+routine uses too: the routine can exchange the registers between the data and the command of `main`. A statement of
+`main` for which a test of what the routine sets decides is not reported, and neither is one while the interrupt is
+masked or the module is in initialisation.
+
+**Fix:** a gate for each peripheral, held for the whole transaction; on the CAN, IF1 for `main` and IF2 for the routine.
+""", "TRM ADC (ADCSOCFRC1, ADCINTFLGCLR), SPI (SPITXBUF), SCI (SCITXBUF), CAN (IF1 and IF2)",
     ),
     _rule(
         "gate-unused", Severity.NOTE, "A gate is created and never entered.", """

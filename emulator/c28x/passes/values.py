@@ -333,7 +333,9 @@ class ValueChecks(ConstantChecks):
             case Binary(op="&" | "|" | "^", right=right) if _compared_mask(right):
                 text = source_text(e)
                 self.report_here("mixed-logic", f"{text}: the comparison comes first and gives 0 or 1", text)
-            case Binary(op="&" | "|" | "^", left=a, right=b) if mask := self.not_of_mask(a, b) or self.not_of_mask(b, a):
+            case Binary(op="&" | "|" | "^", left=left, right=right) if (
+                mask := self.not_of_mask(left, right) or self.not_of_mask(right, left)
+            ):
                 text = f"!{source_text(mask)}"
                 self.report_here("mixed-logic", f"{text} is 0: ~ inverts the bits of a mask", text)
             case Binary(op="&", left=left, right=right) if (count := _less_one(right) or _less_one(left)) is not None:
@@ -354,8 +356,8 @@ class ValueChecks(ConstantChecks):
             inner = part.source if isinstance(part, Const) and part.source is not None else part
             if isinstance(inner, Not):
                 match bare(inner.operand), bare(other):
-                    case Const(value=1) as mask, Load(lvalue=LValue(root=Variable() as root)) if root in self.flag_words:
-                        return mask
+                    case Const(value=1) as mask, Load(lvalue=LValue(root=Variable() as word)):
+                        return mask if word in self.flag_words else None
                     case Const(value=value) as mask, _ if value not in (0, 1):
                         return mask
                 return None

@@ -20,6 +20,7 @@ from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.mailbox import Mailbox
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
+from emulator.sysbios.watch.interfaces import CanBlock, Interfaces
 from emulator.sysbios.watch.inversion import Inversion
 from emulator.sysbios.watch.lost_events import LostEvents
 from emulator.sysbios.watch.lost_posts import LostPosts
@@ -94,6 +95,7 @@ class KernelWatch:
         self.releases = Releases(threads, locator, names, findings, calls)
         self.lost_posts = LostPosts(locator, names, findings, calls, linked)
         self.lost_events = LostEvents(threads, locator, findings, linked.program.modules.values())
+        self.interfaces = Interfaces(threads, locator, findings, linked.program.modules.values())
         #: Register -> the interrupts that a write to it can bring, each with a test of the word that is written.
         self._started: dict[WatchedRegister, list[tuple[int, Callable[[int], bool]]]] = {}
         self.starvation = StarvationWatch(threads, locator, findings, self.releases, calls, starved_cycles)
@@ -221,6 +223,10 @@ class KernelWatch:
     def select(self, regs: WatchedBlock, chip_select: SelectWire) -> None:
         """Watch the transfers to one slave of an SPI master."""
         self.transactions.watch_select(regs.name, chip_select)
+
+    def can(self, regs: CanBlock) -> None:
+        """Watch the message interfaces of a CAN."""
+        self.interfaces.watch(regs)
 
     def sci(self, regs: WatchedBlock, character_cycles: Callable[[], int]) -> None:
         """Watch what an SCI sends and from which buffer.  `character_cycles()` is the time of one character."""

@@ -21,12 +21,9 @@ from emulator.c28x.tree import (
     AddressOf,
     Assign,
     Binary,
-    Break,
     Call,
-    CallPointer,
     Compare,
     Const,
-    Continue,
     CopyStruct,
     Declare,
     Expr,
@@ -38,14 +35,12 @@ from emulator.c28x.tree import (
     Logic,
     LValue,
     Not,
-    RegisterLoad,
-    Return,
     Stmt,
-    Switch,
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import assigned, bare, blocks, leaves, parts, roots, statements, within
+from emulator.c28x.tree_queries import bare, blocks, leaves, parts, roots, statements, within
+from emulator.sysbios.watch.ways import Ways, below, free_ways, interrupt_routines
 
 #: Operators that combine the values of both operands.
 _COMBINE: Final = ("+", "-", "*", "/", "%")
@@ -59,6 +54,8 @@ class Pair(NamedTuple):
     words: frozenset[int]
     routines: frozenset[str]
     reader: tuple[str, str]
+    #: The line that uses them; 0: the whole function.
+    line: int = 0
 
 
 class HandOver(NamedTuple):
@@ -73,7 +70,7 @@ def pairs(modules: Iterable[Module]) -> dict[str, list[Pair]]:
     own = {f.path: f for module in modules for f in module.functions}
     written: dict[_Word, set[str]] = {}
     inside: set[str] = set()
-    for routine, reached in _routines(own):
+    for routine, reached in interrupt_routines(own):
         for f in reached:
             inside.add(f.path)
             for word in _writes(f):
@@ -102,22 +99,21 @@ def _add_copied(own: dict[str, Function], found: dict[str, list[Pair]]) -> None:
     together: dict[str, list[tuple[str, frozenset[int]]]] = {}
     inside: set[str] = set()
     telling: set[str] = set()
-    for routine, reached in _routines(own):
+    for routine, reached in interrupt_routines(own):
         for f in reached:
             inside.add(f.path)
             telling |= _written(f.body) | _read_addresses(f)
             for block in _blocks(f.body):
                 for path, words in _set_together(block).items():
                     together.setdefault(path, []).append((routine.name, words))
-    ways = {f.path: _Ways(f, telling) for f in own.values() if together and f.path not in inside}
-    decided = {below.path for way in ways.values() for path in way.decided for below in _reached(path, own)}
-    for path, way in ways.items():
-        for source, used in _copies(way) if path not in decided else ():
+    others = [f for f in own.values() if together and f.path not in inside]
+    for way in free_ways(others, own, telling):
+        for source, used, line in _copies(way):
             about = source.declaration.path
             for routine_name, words in together.get(about, ()):
                 if len(words & used) > 1:
                     reader = (way.function.where.file, way.function.name)
-                    found.setdefault(about, []).append(Pair(words & used, frozenset({routine_name}), reader))
+                    found.setdefault(about, []).append(Pair(words & used, frozenset({routine_name}), reader, line))
 
 
 def _read_addresses(f: Function) -> set[str]:
@@ -159,8 +155,9 @@ def _words(ctype: StructType) -> frozenset[int]:
     return frozenset(offset for offset, _ in scalars(ctype))
 
 
-def _copies(way: _Ways) -> Iterator[tuple[Variable, frozenset[int]]]:
-    """The structures at file scope that a function copies as a whole, and the words of the copies that are used."""
+def _copies(way: Ways) -> Iterator[tuple[Variable, frozenset[int], int]]:
+    """The structures at file scope that a function copies as a whole, the words of the copies that are used, the line.
+    """
     for s in way.undecided:
         target: Variable | Expr | None = None
         source: LValue | None = None
@@ -173,7 +170,7 @@ def _copies(way: _Ways) -> Iterator[tuple[Variable, frozenset[int]]]:
             case LValue(root=Variable(kind="global", ctype=StructType() as whole) as root, ctype=ctype) if (
                 ctype == whole and not whole.word_backed and not _has_array(whole)
             ):
-                yield root, _used_words(way.function, target, whole)
+                yield root, _used_words(way.function, target, whole), s.line
 
 
 def _has_array(ctype: StructType) -> bool:
@@ -199,52 +196,6 @@ def _used_words(f: Function, copy: Variable | Expr | None, whole: StructType) ->
     return frozenset(used)
 
 
-class _Ways:
-    """Which statements of a function run whatever the routines have told it.
-
-    `telling` are the objects that the routines write.  A test that reads one of them, a register or the result of a
-    call may be what keeps `main` and a routine apart; so may a local that has such a value.
-    """
-
-    def __init__(self, function: Function, telling: set[str]) -> None:
-        self.function = function
-        self._telling = telling
-        #: Locals that have such a value.
-        self._told: set[Variable] = set()
-        for s in statements(function.body):
-            root = assigned(s)
-            if root is not None and root.kind != "global" and any(map(self._tells, roots(s))):
-                self._told.add(root)
-        self.undecided: list[Stmt] = []
-        #: The functions (paths) that are called where such a test decides.
-        self.decided: set[str] = set()
-        self._walk(function.body, free=True)
-
-    def _walk(self, body: list[Stmt], *, free: bool) -> bool:
-        """Follow a block that is entered whatever the routines have told (`free`); whether its end is reached so."""
-        for s in body:
-            if free:
-                self.undecided.append(s)
-            else:
-                self.decided |= {p.function.path for root in roots(s) for p in parts(root) if isinstance(p, Call)}
-            test = s.test if isinstance(s, If | While) else s.subject if isinstance(s, Switch) else None
-            told = test is not None and self._tells(test)
-            ends = [self._walk(block, free=free and not told) for block in blocks(s)]
-            leaves_ = any(isinstance(inner, Return | Break | Continue) for b in blocks(s) for inner in statements(b))
-            if (told and (leaves_ or isinstance(s, While))) or not all(ends):
-                free = False
-        return free
-
-    def _tells(self, e: Any) -> bool:
-        for p in parts(e):
-            match p:
-                case Call() | CallPointer() | RegisterLoad() | LValue(root=Expr()):
-                    return True
-                case LValue(root=Variable() as root) if root in self._told or root.declaration.path in self._telling:
-                    return True
-        return False
-
-
 def continued(modules: Iterable[Module]) -> dict[str, set[tuple[str, str]]]:
     """Counts and indices that a routine both changes and depends on: object path -> (routine, function).
 
@@ -253,7 +204,7 @@ def continued(modules: Iterable[Module]) -> dict[str, set[tuple[str, str]]]:
     own = {f.path: f for module in modules for f in module.functions}
     stepped: dict[str, dict[str, set[str]]] = {}
     inside: set[str] = set()
-    for routine, reached in _routines(own):
+    for routine, reached in interrupt_routines(own):
         inside |= {f.path for f in reached}
         used = {path for f in reached for path in _used(f)}
         steps = {path for f in reached for path in _steps(f)}
@@ -293,7 +244,7 @@ def turned_by_both(modules: Iterable[Module]) -> dict[str, set[str]]:
     own = {f.path: f for module in modules for f in module.functions}
     by_routine: dict[str, set[str]] = {}
     inside: set[str] = set()
-    for routine, reached in _routines(own):
+    for routine, reached in interrupt_routines(own):
         for f in reached:
             inside.add(f.path)
             for path in _turns(f):
@@ -307,7 +258,7 @@ def handed_over(modules: Iterable[Module]) -> dict[str, set[HandOver]]:
     own = {f.path: f for module in modules for f in module.functions}
     awaited: dict[tuple[str, bool], dict[str, set[str]]] = {}
     inside: set[str] = set()
-    for routine, reached in _routines(own):
+    for routine, reached in interrupt_routines(own):
         for f in reached:
             inside.add(f.path)
             for flag, raised, body in _branches(f.body):
@@ -323,7 +274,7 @@ def handed_over(modules: Iterable[Module]) -> dict[str, set[HandOver]]:
                     continue
                 behind = block[number + 1 :]
                 for called in {p.function.path for p in within(behind) if isinstance(p, Call)}:
-                    behind = [*behind, *(s for other in _reached(called, own) for s in other.body)]
+                    behind = [*behind, *(s for other in below(called, own) for s in other.body)]
                 late = (_written if key[1] else _read)(behind)
                 for routine_name, used in awaited[key].items():
                     for path in used & late:
@@ -427,24 +378,6 @@ def _used(f: Function) -> Iterator[str]:
             root = p.root if isinstance(p, LValue) else None
             if isinstance(root, Variable) and root.kind == "global" and root.ctype.leaves == 1:
                 yield root.declaration.path
-
-
-def _routines(own: dict[str, Function]) -> Iterator[tuple[Function, list[Function]]]:
-    """The interrupt routines, each with itself and the functions that it calls, directly or not."""
-    for routine in own.values():
-        if routine.interrupt:
-            yield routine, _reached(routine.path, own)
-
-
-def _reached(path: str, own: dict[str, Function]) -> list[Function]:
-    seen: dict[str, Function] = {}
-    waiting = [path]
-    while waiting:
-        path = waiting.pop()
-        if path in own and path not in seen:
-            seen[path] = own[path]
-            waiting += own[path].calls
-    return list(seen.values())
 
 
 def _word(e: Any) -> _Word | None:

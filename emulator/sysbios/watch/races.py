@@ -203,7 +203,7 @@ class Races:
         assert shared.pairs is not None
         statement = self._locator.here()
         for pair in shared.pairs if shared.rank < _RANK["race"] else ():
-            if offset not in pair.words or self._locator.function(statement) != pair.reader:
+            if offset not in pair.words or not self._reads(pair, statement):
                 continue
             for routine in threads.all:
                 if not isinstance(routine.what, Routine) or routine.what.name not in pair.routines:
@@ -216,6 +216,11 @@ class Races:
                 if len(read) > 1:
                     self._by_text(shared, statement, self._sentence(shared, "race", False, threads.main, routine, None))
                     return
+
+    def _reads(self, pair: Pair, statement: StatementNumber) -> bool:
+        """Whether a statement is one that uses the words of a pair together."""
+        place = self._locator.place(statement)
+        return place is not None and (place.file, place.function) == pair.reader and pair.line in (0, place.line)
 
     def _shared(self, obj: Object) -> SharedObject:
         known = self._locals.get(obj)

@@ -108,6 +108,8 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
          "struct TIME t = Now; Sum = t.hours; Sum ^= t.minutes;", [("race", "Now")]),
         ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; }",
          "static Uint16 turns; if (++turns >= 3) { turns = 0; Seen = Now; }", [("race", "Now")]),
+        ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; Ready = 1; }",
+         "if (Ready) { Ready = 0; Sum++; } Seen = Now;", [("race", "Now")]),  # the flag stands for something else
         ("Millis++;", "Copy = Millis;", [("unmasked-long", "Millis")]),
         # By halves, in two accesses.
         ("Millis++;", "volatile Uint16 *half = (volatile Uint16 *)&Millis; Copy = half[0] | (Uint32)half[1] << 16;",
@@ -213,6 +215,10 @@ def test_what_an_interrupt_can_come_into_is_told(
          "Uint16 n; do { n = Waiting; Seen = Now; } while (n != Waiting);"),
         ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; }",
          "struct TIME t; do { Seen = Now; t = Now; } while (t.minutes != Seen.minutes || t.hours != Seen.hours);"),
+        ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; Ready = 1; }",
+         "Uint16 news = 0; if (Ready) { Ready = 0; news = 1; } if (news) Seen = Now;"),
+        ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; Ready = 1; }",
+         "if (Ready) { Ready = 0; Half = 1; } if (Half == 1) { Seen = Now; Half = 0; }"),
         # One word of the copy is used; two counters, each good for itself; words that are set at different times.
         ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; }", "struct TIME t; t = Now; Sum = t.hours;"),
         ("if (++Count == 9999) { Now.minutes++; Now.hours++; }", "Seen = Now;"),

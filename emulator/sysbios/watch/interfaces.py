@@ -1,0 +1,132 @@
+"""Message interfaces of a CAN that `main` and an interrupt routine use: `transaction-cut`, without the kernel.
+
+A message takes several writes to an interface (IF1 or IF2): its identifier, its data, and the command that moves them.
+If a routine uses the same interface between two of them, `main` sends what the routine has left there.  The source
+shows which routines and functions use an interface, and whether a test keeps them apart; the run shows whether the
+routine is held off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+from functools import cached_property, partial
+from typing import Any, Final, NamedTuple, Protocol
+
+from emulator.c28x.findings import Findings
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import Assign, Call, Function, RegisterLoad, RegisterRef, Stmt
+from emulator.c28x.tree_queries import assigned, statements, variables, within
+from emulator.sysbios.watch.statements import StatementLocator
+from emulator.sysbios.watch.threads import Routine, ThreadWatch, excluded
+from emulator.sysbios.watch.ways import below, free_ways, interrupt_routines
+
+#: The registers of an interface that a message is written to.
+WRITTEN: Final = ("MSK", "ARB", "MCTL", "DATA", "DATB", "CMD")
+#: CAN_CTL.Init: the module takes no part in the bus.
+INIT: Final = 1 << 0
+
+
+class CanBlock(Protocol):
+    """The registers of a CAN module (`emulator.registers.core.Block`)."""
+
+    name: str
+    registers: dict[str, Any]
+
+
+class SharedInterface(NamedTuple):
+    """An interface that a routine uses, and a line of `main` that uses it whatever this routine has done."""
+
+    interface: str
+    routine: str
+    line: tuple[str, int]
+
+
+class Interfaces:
+    """Watches the interfaces of all CAN modules."""
+
+    def __init__(
+        self, threads: ThreadWatch, locator: StatementLocator, findings: Findings, modules: Collection[Module]
+    ) -> None:  # fmt: skip
+        self._threads, self._locator, self._findings, self._modules = threads, locator, findings, modules
+        self._told: set[tuple[str, str]] = set()
+
+    def watch(self, regs: CanBlock) -> None:
+        """Watch the two interfaces of a module."""
+        for n in (1, 2):
+            for part in WRITTEN:
+                regs.registers[f"CAN_IF{n}{part}"].tap(partial(self._written, regs, f"{regs.name}.CAN_IF{n}"))
+
+    def _written(self, regs: CanBlock, interface: str, *_access: object) -> None:
+        threads = self._threads
+        if threads.current is not threads.main or not threads.routines or threads.kernel.active:
+            return
+        if regs.registers["CAN_CTL"].value & INIT or not regs.registers["CAN_GLB_INT_EN"].value:
+            return
+        place = self._locator.place(self._locator.here())
+        assert place is not None
+        for routine in threads.all:
+            what = routine.what
+            if not isinstance(what, Routine) or SharedInterface(interface, what.name, place[:2]) not in self._shared:
+                continue
+            if (interface, what.name) in self._told:
+                continue
+            if not excluded(threads.main, threads.protection(), routine, routine.protection):
+                self._told.add((interface, what.name))
+                message = (
+                    f"{interface} is used by main and by {routine}, and the interrupt is not masked: it can exchange "
+                    "the registers between two writes of main"
+                )
+                self._findings.report("transaction-cut", message, object=interface)
+
+    @cached_property
+    def _shared(self) -> set[SharedInterface]:
+        own = {f.path: f for module in self._modules for f in module.functions}
+        routines = list(interrupt_routines(own))
+        inside = {f.path for _, reached in routines for f in reached}
+        others = [f for f in own.values() if f.path not in inside]
+        found: set[SharedInterface] = set()
+        for routine, reached in routines:
+            used = {interface for f in reached for s in statements(f.body) for interface in _interface(s)}
+            if not used:
+                continue
+            telling = set(_set(reached))
+
+            def told(part: Call | RegisterLoad, telling: set[str] = telling) -> bool:
+                return _tells(part, own, telling)
+
+            for way in free_ways(others, own, telling, told):
+                for s in way.undecided:
+                    for interface in used.intersection(_interface(s)):
+                        found.add(SharedInterface(interface, routine.name, (way.function.where.file, s.line)))
+        return found
+
+
+def _interface(s: Stmt) -> Iterator[str]:
+    """The interface that a statement writes."""
+    match s:
+        case Assign(target=RegisterRef(block=block, register=register)) if register.startswith(("CAN_IF1", "CAN_IF2")):
+            yield f"{block}.{register[:7]}"
+
+
+def _set(functions: Iterable[Function]) -> Iterator[str]:
+    """The shared objects that functions set."""
+    for f in functions:
+        for s in statements(f.body):
+            root = assigned(s)
+            if root is not None and root.kind == "global":
+                yield root.declaration.path
+
+
+def _tells(part: Call | RegisterLoad, own: dict[str, Function], telling: set[str]) -> bool:
+    """Whether a register or the result of a call may depend on what a routine has done.  Busy of an interface does not.
+    """
+    if isinstance(part, RegisterLoad):
+        ref = part.register
+        return not (isinstance(ref, RegisterRef) and ref.register in ("CAN_IF1CMD", "CAN_IF2CMD"))
+    for f in below(part.function.path, own):
+        for inner in within(f.body):
+            if isinstance(inner, RegisterLoad) and _tells(inner, own, telling):
+                return True
+        if any(variable.declaration.path in telling for variable in variables(within(f.body))):
+            return True
+    return False
