@@ -62,6 +62,11 @@ DOWN: Final = 1
 STOPPED: Final = 3
 #: Choice of ETSEL -> its compare, and the counter mode in which it never occurs: 4 CAU, 5 CAD, 6 CBU, 7 CBD.
 COMPARES: Final = {4: ("CMPA", DOWN), 5: ("CMPA", UP), 6: ("CMPB", DOWN), 7: ("CMPB", UP)}
+#: Functions and instructions that set INTM to 0, or go on when an interrupt waits although INTM is 1 (IDLE).
+LET_THROUGH: Final = (
+    "EINT", "__enable_interrupts", "__restore_interrupts", "EnableInterrupts", "Hwi_enable", "Hwi_restore",
+    "BIOS_start", "IDLE", "STANDBY", "HALT", "HIB",
+)  # fmt: skip
 #: Words of a FIFO of the SCI.
 FIFO_DEPTH: Final = 16
 #: Value of CTRIPHSEL and CTRIPLSEL: the output of the digital filter.
@@ -105,6 +110,7 @@ class Connections:
             return
         self._adc_triggers()
         self._interrupts()
+        self._always_masked()
         self._latches()
         self._captures()
         self._channels()
@@ -417,6 +423,24 @@ class Connections:
         if self._chip.cpu.ier & 1 << group - 1 or self._source.could("CPU", "IER", 1 << group - 1, bool):
             return None
         return MissingLink(f"bit {group - 1} of IER (M_INT{group}) is 0", f"PieCtrlRegs.PIEIER{group}", f"INTx{n}")
+
+    def _always_masked(self) -> None:
+        """Interrupts that wait in IFR and are enabled in IER, in a program that never sets INTM to 0."""
+        cpu, vectors = self._chip.cpu, self._chip.vectors
+        waiting = cpu.ifr & cpu.ier
+        if not self.started_up or not cpu.intm or not waiting or self._calls(*LET_THROUGH):
+            return
+        routines = [vectors.cpu_routine(line) for line in (13, 14) if waiting & 1 << line - 1]
+        for group in (group for group in range(1, 13) if waiting & 1 << group - 1):
+            routines += [vectors.routine(group, n) for n in range(1, 17) if self._chip.pie.enabled(group, n)]
+        named = [routine for routine in routines if routine is not None]
+        place = self._source.giving("CPU", "IER", waiting, cpu.ier)
+        if named and place is not None:
+            message = (
+                f"INTM is 1 since the reset or the last DINT, and no statement executes EINT: {' and '.join(named)} "
+                f"never run{'s' if len(named) == 1 else ''}, though the interrupt has come and IER lets it through"
+            )  # fmt: skip
+            self._chip.findings.report_at(place, "not-connected", message, object="INTM", how="dynamic")
 
     def _no_source(self, group: int, n: int) -> MissingLink | None:
         """Why the source of a PIE interrupt never gives one; None if it can, or if this is not known."""

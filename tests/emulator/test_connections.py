@@ -130,6 +130,8 @@ def told(tmp_path: Path, text: str, rule: str = "not-connected", seconds: float 
     ("EQep1Regs.QEPCTL.bit.UTE = 1;", "", "QEPCTL.bit.QPEN", "EQep1Regs.QEPCTL.UTE = 0"),
     ("EQep1Regs.QEINT.bit.UTO = 1;", "", "QEPCTL.bit.QPEN", "EQep1Regs.QEINT = 0"),
     (" | M_INT5", "", "PIEIER5.bit.INTx1", "M_INT5"),
+    ("    EINT;\n", "", "IER |= M_INT1", "no statement executes EINT: "),
+    ("    EINT;\n", "    DINT;\n", "IER |= M_INT1", "converted and edge and tick and period and unit never run, "),
     ("SCICTL1.all = 0x0022", "SCICTL1.all = 0x0002", "SCICTL1.all = 0x0002", "SciaRegs.SCICTL1.SWRESET = 0"),
 ])  # fmt: skip
 def test_a_link_that_is_missing_is_named_where_its_register_is_set_or_the_event_is_wanted(
@@ -141,6 +143,20 @@ def test_a_link_that_is_missing_is_named_where_its_register_is_set_or_the_event_
     findings = [f for f in told(tmp_path, text) if f.place is not None and at in lines[f.place.line - 1]]
     assert findings, told(tmp_path, text)
     assert all(why in finding.message for finding in findings)
+
+
+@pytest.mark.parametrize("now", [
+    "    if (Count == 9) EINT;\n",  # on an order that did not come
+    "    __enable_interrupts();\n",
+    "    while (Order != 9) asm(\" IDLE\");\n",  # an interrupt that IER lets through ends IDLE, whatever INTM is
+])  # fmt: skip
+def test_interrupts_that_some_statement_lets_through_are_not_told(tmp_path: Path, now: str) -> None:
+    assert told(tmp_path, RIGHT.replace("    EINT;\n", now)) == []
+
+
+def test_a_timer_that_is_polled_while_ier_is_0_is_not_told(tmp_path: Path) -> None:
+    text = RIGHT.replace("    EINT;\n", "").replace("    IER |= M_INT1 | M_INT3 | M_INT5;\n", "")
+    assert [f for f in told(tmp_path, text) if "EINT" in f.message] == []
 
 
 @pytest.mark.parametrize(("damage", "why"), [
