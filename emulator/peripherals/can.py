@@ -145,6 +145,8 @@ class Can:
         self.ram = MessageRam()
         #: Whether it has ever sent or received a frame without an error.
         self.heard = False
+        #: Whether it repeats a frame that nobody acknowledges any more.
+        self.unheard = False
         #: Frames in loopback that none of its objects took.
         self.passed_by = 0
         #: The bus at the pins; the inner bus, which no other node hears; the bus that it is on now.
@@ -323,6 +325,7 @@ class Can:
     def sent(self) -> None:
         """The frame has arrived."""
         number, self._sending = self._sending, 0
+        self.unheard = False
         if self.error_passive:
             self._suspended_until = self._clock.now + (INTERMISSION_BITS + SUSPEND_BITS) * self.bit_cycles
         self._tec = max(0, self._tec - 1)
@@ -357,6 +360,7 @@ class Can:
             self._rec = min(self._rec + 1, PASSIVE)
         else:
             self._sending = 0
+            self.unheard = error is CanError.ACK and self.heard
             # An error passive sender that only misses the acknowledgement does not count it (ISO 11898-1, exception 1).
             if not (error is CanError.ACK and self.error_passive):
                 self._tec += SENDER_PENALTY

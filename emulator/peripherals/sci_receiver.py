@@ -10,9 +10,9 @@ from math import ceil
 from typing import Final
 
 from emulator.c28x.findings import Cause
-from emulator.clock import Clock, Event
+from emulator.clock import CYCLES_PER_MS, Clock, Event
 from emulator.cpu import Cpu
-from emulator.peripherals.fifo import DEPTH, OVERFLOW, RUN, SHORT, Fifo
+from emulator.peripherals.fifo import DEPTH, INT_ENABLE, LEVEL, OVERFLOW, RUN, SHORT, Fifo
 from emulator.peripherals.sci_sampling import Character, Format, frame_waveform, low_pulse, matches, sample
 from emulator.registers.sci import SciRegs
 from emulator.signals import SerialFrame, SerialLine
@@ -31,6 +31,8 @@ PE: Final = 0x04
 # SCIRXBUF
 SCIFFFE: Final = 0x8000
 SCIFFPE: Final = 0x4000
+#: A message has ended when no character follows its last one for this time (CHOICE).
+PAUSE_CYCLES: Final = 5 * CYCLES_PER_MS
 
 
 def _errors(character: Character) -> int:
@@ -90,6 +92,13 @@ class SciReceiver:
         #: that cleared it.
         self._came_to_closed: int | None = None
         self._closed_by: Cause | None = None
+        #: The statement that set the level of the FIFO's interrupt.
+        self._level_by: Cause | None = None
+        #: When the last character came, how many came without a pause, and how many of them waited in the FIFO then.
+        self._last_came = 0
+        self._in_a_row = self._waited = 0
+        #: How many messages have ended in the FIFO, below its level, and waited there for the next one.
+        self._ends_waited = 0
         #: Whether a character has come since reset, and the reads of SCIRXBUF before the first one.
         self._received = False
         self._premature = 0
@@ -127,6 +136,7 @@ class SciReceiver:
         self._ever_read, self._lost_unread = False, ""
         self._overflow_answered = False
         self._came_to_closed = None
+        self._in_a_row = self._waited = self._ends_waited = 0
         self.loopback = self.channel_held = False
         self.fifo.reset()
 
@@ -235,6 +245,8 @@ class SciReceiver:
         if not fifo.running:
             self._came_too_late()
             return
+        if not self.loopback:
+            self._check_pause()
         was_empty = not fifo.words
         word = data | (SCIFFFE if errors & FE else 0) | (SCIFFPE if errors & PE else 0)
         kept = fifo.push(word)
@@ -244,10 +256,31 @@ class SciReceiver:
             self._lost("the receive FIFO was full: its oldest character is lost")
             self._overflow_answered = False
             raised = OE
+        self._waited = len(fifo.words)
         # FE and PE show when their character reaches the head of the FIFO, OE at once.
         if was_empty or not kept:
             raised |= self._head_errors()
         self._raise(raised)
+
+    def _check_pause(self) -> None:
+        """A character has come.  Was the end of the message before it still in the FIFO, below the level?"""
+        now, own, fifo = self._clock.now, self._own_format(), self.fifo
+        since, self._last_came = now - self._last_came, now
+        if since < 2 * own.frame_bits * own.bit_cycles:
+            self._in_a_row += 1
+            return
+        ended, self._in_a_row = self._in_a_row > 1, 1
+        register, waiting = self._ffrx.value, len(fifo.words)
+        below = register & INT_ENABLE and 0 < waiting < register & LEVEL
+        if ended and since > PAUSE_CYCLES and below and waiting == self._waited:
+            self._ends_waited += 1
+            if self._ends_waited == SHORT:
+                self._cpu.findings.report(
+                    "fifo-level",
+                    f"{fifo.path}.RXFFIL = {register & LEVEL}: {SHORT} messages have ended with fewer characters in "
+                    "the FIFO, which then waited there for the next message",
+                    object=fifo.path, cause=self._level_by,
+                )  # fmt: skip
 
     def _head_errors(self) -> int:
         word = self.fifo.words[0]
@@ -316,6 +349,8 @@ class SciReceiver:
         self.fifo.write(word, lanes)
         self._update_ready()
         after = self._ffrx.value
+        if (before ^ after) & LEVEL:
+            self._level_by = self._cpu.findings.mark()
         if before & RUN and not after & RUN:
             self._closed(before, unread)
         elif after & RUN:

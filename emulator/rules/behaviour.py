@@ -189,10 +189,11 @@ The machine continues with an old value after its source is silent: a motor foll
 heater follows a sensor that is dead.
 
 The variable keeps its last value, and nothing in it says how old it is. `hil check FILE... --silence` finds this. It
-runs a whole program a second time, three times as long as usual, and cuts serial lines and I2C parts off; a source may
-also be silent by itself. It follows each value with its time of arrival from the register or mailbox where it came in,
-through objects, parameters and results, also to an object through a pointer, to the statement that writes the output (a
-compare value, a DAC, a pin that is switched under a test of the value or by `GPIO_WritePin`).
+runs a whole program a second time, three times as long as usual, and cuts off serial lines, I2C parts and the other
+nodes of a CAN; a source may also be silent by itself. It follows each value with its time of arrival from the register
+or mailbox where it came in, through objects, parameters and results, also to an object through a pointer, to the
+statement that writes the output (a compare value, a DAC, a pin that is switched under a test of the value or by
+`GPIO_WritePin`).
 
 It reports the statement that still writes a value other than 0 when the source has been silent for at least ten of its
 longest intervals so far, until the end of the silence or of the run. A value of a part on the I2C is also reported if

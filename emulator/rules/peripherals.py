@@ -488,16 +488,23 @@ write there is lost.
     _rule(
         "fifo-level",
         Severity.WARNING,
-        "An interrupt of a receive FIFO comes at more words than its routine takes.",
+        "Words wait in a receive FIFO, because its interrupt comes at more words than there are.",
         """
 Words stay in the FIFO and are taken as the beginning of the next block, so that two blocks are mixed and each word
-is late.
+is late. Or the end of a message waits there, and is answered only when the next message comes.
 
-The interrupt comes at `RXFFIL` words. The finding is made at the read when the routine has acknowledged three times in
-a row with fewer words taken, and some left. A routine that takes as many as the level, or all of them (`RXFFST`), is
-right, and so is one that leaves all of them to a task.
+The interrupt comes at `RXFFIL` words. There are two findings:
 
-**Fix:** set `RXFFIL` to the number of words that the routine takes, or read until `RXFFST` is 0.
+* At the read, when the routine has acknowledged three times in a row with fewer words taken than `RXFFIL`, and some
+  left. A routine that takes as many as the level, or all of them (`RXFFST`), is right, and so is one that leaves all of
+  them to a task.
+* At the statement that sets `RXFFIL`, when three messages of the SCI have ended with fewer characters in the FIFO, and
+  nobody has taken these before the next message. A message is a row of characters without a pause, and ends with a
+  pause of 5 ms. Messages whose lengths are multiples of the level are right, and so is a program that takes the rest
+  by itself (`RXFFST`) after a while.
+
+**Fix:** set `RXFFIL` to the number of words that the routine takes, or read until `RXFFST` is 0. For messages of any
+length set it to 1, or look into the FIFO from a timer too.
 """,
         "TRM, SPI and SCI: FIFO interrupts",
     ),
@@ -945,9 +952,10 @@ The idle loop of a program (`while (1) ;`) reads nothing and is not reported, be
 interrupt routine such a loop is reported, because nothing interrupts the routine.
 
 A program may wait for a button, a byte or an interrupt: `hil check` makes that a note. It stays an error if only
-interrupt routines could end the wait and none of them can run (see `not-connected`), and if a part on the I2C has sent
-no acknowledgment and the loop does not look at `NACK`. `hil check FILE... --silence` runs the program with parts on the
-I2C that no longer answer from the middle of the run on, and so finds waits that hang only then.
+interrupt routines could end the wait and none of them can run (see `not-connected`); if a part on the I2C has sent no
+acknowledgment and the loop does not look at `NACK`; and if no node of a CAN acknowledges a frame any more and the loop
+waits for its end only (`TxRqst`, `TxOk`). `hil check FILE... --silence` runs the program with parts on the I2C and CAN
+nodes that no longer answer from the middle of the run on, and so finds waits that hang only then.
 
 **Fix:** give each wait a limit (a count or a time) and handle the time-out. Check that the event is configured before
 the wait begins.

@@ -95,8 +95,8 @@ def check(
     feed: Feed = None,
     silence: Annotated[
         bool | None,
-        typer.Option("--silence", help="Run driver files again, longer, with silent serial lines and I2C parts: find "
-                     "outputs that follow old values, and waits that hang."),
+        typer.Option("--silence", help="Run driver files again, longer, with silent serial lines, I2C parts and CAN "
+                     "nodes: find outputs that follow old values, and waits that hang."),
     ] = None,
     fail_on: Annotated[
         str | None,

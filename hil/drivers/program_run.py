@@ -17,7 +17,7 @@ from emulator.registers.i2c import I2CSTR
 from hil.drivers.budget import RUN, TimeBudget, computed
 from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
-from hil.drivers.stale import AgeWatch, cut_off_i2c, watched
+from hil.drivers.stale import AgeWatch, cut_off, watched
 from hil.drivers.waiting import (
     EndedParties,
     in_last_loop,
@@ -40,7 +40,7 @@ _REFUSALS: Final = 8
 _BUSY: Final = 0.01
 #: The run that follows ages may be longer by this factor.
 _LONGER: Final = 3
-#: What a run shows when the parts on the I2C no longer answer.
+#: What a run shows when the parts on the I2C and the nodes of a CAN no longer answer.
 _HANGS: Final = ("endless-poll", "endless-retry", "watchdog-in-vain")
 #: The budget of this run.
 _OBSERVED: Final = 2 * RUN
@@ -90,17 +90,19 @@ def run_program(
     kept = tuple(f for f in ran.findings if not is_intended(f, roles))
     if silence:
         known = {(finding.rule, finding.place) for finding in kept}
-        hung = _without_i2c(build, roles, for_s, board_named=board_named)
+        hung = _without_parts(build, roles, for_s, board_named=board_named)
         kept = (*kept, *(f for f in hung if (f.rule, f.place) not in known), *_stale(build, roles, for_s))
     return replace(ran, findings=kept)
 
 
-def _without_i2c(build: Build, roles: Roles, for_s: float, *, board_named: bool) -> list[Finding]:
-    """The loops that wait without a limit when the parts on the I2C no longer answer, from the middle of a run on."""
-    if not any(block.startswith("I2c") for written in roles.registers.values() for block, _ in written):
+def _without_parts(build: Build, roles: Roles, for_s: float, *, board_named: bool) -> list[Finding]:
+    """The loops that wait without a limit when no part on an I2C or a CAN answers, from the middle of a run on."""
+    used = {block[:3] for written in roles.registers.values() for block, _ in written} & {"I2c", "Can"}
+    if not used:
         return []
     ran = _run(build, roles, for_s, lambda fraction: None, patient=True, board_named=board_named, parts_s=for_s / 2)
-    lost = f"from {for_s / 2:.3g} s on, no part on the I2C answers"
+    buses = " and ".join(f"the {kind.upper()}" for kind in sorted(used, reverse=True))
+    lost = f"from {for_s / 2:.3g} s on, nothing on {buses} answers"
     return [
         replace(finding, details=(*finding.details, lost))
         for finding in ran.findings if finding.rule in _HANGS and not is_intended(finding, roles)
@@ -152,10 +154,10 @@ def _run(
     build: Build, roles: Roles, for_s: float, progress: Callable[[float], None], *, patient: bool, board_named: bool,
     parts_s: float | None = None,
 ) -> ProgramOutcome:  # fmt: skip
-    """One run.  `parts_s`: after this time no part on an I2C answers any more."""
+    """One run.  `parts_s`: after this time no part on an I2C or a CAN answers any more."""
     image = _begin(build, roles)
     if parts_s is not None:
-        image.board.clock.after(round(parts_s * SYSCLK_HZ), lambda: cut_off_i2c(image.board))
+        image.board.clock.after(round(parts_s * SYSCLK_HZ), lambda: cut_off(image.board))
     budget = TimeBudget(RUN)
     stop: BaseException | None = None
     stood = EndPosition()
@@ -226,6 +228,7 @@ def _ended_parties(image: Image) -> EndedParties:
     board = image.board
     blocks = [f"I2c{letter.lower()}Regs" for letter in I2C_PIE]
     refused = [block for block in blocks if board.register(block, "I2CSTR").value & I2CSTR.NACK.mask]
+    refused += [f"Can{letter.lower()}Regs" for letter, can in board.can.items() if can.unheard]
     return EndedParties(board.connections.silent if board.connections is not None else (), refused)
 
 

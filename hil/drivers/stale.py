@@ -3,9 +3,9 @@
 The program runs once more, and longer.  Each value that came from outside (a received character, a conversion, a
 message of another task) carries the time at which it came in, from object to object.  So at each write of an output the
 age of its inputs is known.  The same run measures how often a value is usually new at this statement.  A source falls
-silent by itself, or is cut off when the usual time of the run is over: the serial lines, and the parts on the I2C.  If
-the program then goes on, to the end of the silence or of the run, with a value ten times older than any before, it does
-not check its age, or the check has no effect.
+silent by itself, or is cut off when the usual time of the run is over: the serial lines, the parts on the I2C and the
+nodes of a CAN.  If the program then goes on, to the end of the silence or of the run, with a value ten times older than
+any before, it does not check its age, or the check has no effect.
 
 Modelled
     Values that go through objects, parameters, results and locals, also to an object through a pointer parameter; a pin
@@ -65,6 +65,7 @@ from emulator.c28x.tree_queries import (
     variables,
     within,
 )
+from emulator.can_bus import CanPart
 from emulator.clock import CYCLES_PER_MS
 from emulator.registers.cell import Cell
 from hil.board import Board
@@ -74,7 +75,7 @@ from hil.image import Build, Image
 #: Registers, as `block.register`, that take in data from outside, which may fail to come.
 _INPUT: Final = re.compile(
     r"(Sci\w*\.SCIRXBUF|I2c\w*\.I2CDRR|Spi\w*\.SPIRXBUF|Adc\w*ResultRegs\.ADCRESULT\d+|ECap\w*\.CAP[1-4]|"
-    r"GpioDataRegs\.GP[A-F]DAT|EQep\w*\.(QCPRD\w*|QCTMR\w*))$"
+    r"Can\w*\.CAN_IF[123]DAT[AB]|GpioDataRegs\.GP[A-F]DAT|EQep\w*\.(QCPRD\w*|QCTMR\w*))$"
 )
 #: Registers that act on the outside: a level, and a pin.
 _LEVEL: Final = re.compile(r"EPwm\w*\.CMP[AB]$|Dac\w*\.DACVALS$|ECap\w*\.(CAP2|CAP4)$")
@@ -470,7 +471,7 @@ class AgeWatch:
             return usual
         if not self._cut:
             self._cut = now
-            cut_off_i2c(self._board)
+            cut_off(self._board)
             for line in self._board.serial_pins.values():
                 line.disturb(lambda frame: ())
         for seen in self.followed.values():
@@ -520,10 +521,14 @@ def watched(
     return found
 
 
-def cut_off_i2c(board: Board) -> None:
-    """From now on no part on an I2C answers."""
+def cut_off(board: Board) -> None:
+    """From now on no part on an I2C answers, and no node of a CAN but the chip's own."""
     for bus in board.i2c_bus.values():
         bus.connected, bus.missing = False, "nothing answers any more"
+    for can in board.can_bus.values():
+        for node in can.nodes:
+            if isinstance(node, CanPart):
+                can.detach(node)
 
 
 def _ms(cycles: int) -> str:

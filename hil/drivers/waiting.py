@@ -49,6 +49,8 @@ _OUTSIDE: Final = re.compile(
 )
 #: Fields of I2CSTR that a missing acknowledge sets.
 _OF_REFUSAL: Final = ("NACK", "ARDY")
+#: Registers and fields of a CAN that a frame changes only when it is acknowledged.
+_OF_SENT: Final = re.compile(r"CAN_TXRQ\w*|CAN_ES\.TxOk|CAN_IF\dMCTL\.TxRqst")
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +59,8 @@ class EndedParties:
 
     #: Names of interrupt routines that never run again.
     silent: Collection[str] = ()
-    #: Register blocks of I2C modules whose part did not acknowledge.  They wait for the program.
+    #: Register blocks of I2C modules whose part did not acknowledge, which wait for the program, and of CAN controllers
+    #: whose frames nobody acknowledges.
     refused: Collection[str] = ()
 
 
@@ -226,8 +229,12 @@ def reads_outside(function: Function, by_path: dict[str, Function]) -> bool:
 def _outside(node: Any, refused: Collection[str] = ()) -> bool:
     if not isinstance(node, RegisterRef | RegisterAt) or _OUTSIDE.match(_name(node)) is None:
         return False
-    refusal = not isinstance(node, RegisterRef) or node.field is None or node.field.name in _OF_REFUSAL
-    return refusal or node.block not in refused
+    if not isinstance(node, RegisterRef) or node.block not in refused:
+        return True
+    field = node.field.name if node.field is not None else ""
+    if node.block.startswith("Can"):
+        return not _OF_SENT.fullmatch(f"{node.register}.{field}" if field else node.register)
+    return not field or field in _OF_REFUSAL
 
 
 def _loops_at(function: Function, place: Place) -> list[While]:

@@ -214,3 +214,113 @@ def test_a_transaction_is_repeated_without_a_limit(tmp_path: Path, loop: str, to
     assert [lines[f.place.line - 1].strip() for f in findings if f.place is not None] == [
         loop.splitlines()[0]
     ] * told_it  # fmt: skip
+
+
+#: A node that sends 0x123 each millisecond, and acknowledges.
+MASTER = """
+from emulator.can_bus import CanFrame, CanPart
+from emulator.clock import CYCLES_PER_MS
+from hil.board import Board
+
+
+class Master(Board):
+    def solder(self):
+        node = self.on_can("master", CanPart(500_000), bus="A")
+        for ms in range(1, 60):
+            self.clock.schedule(ms * CYCLES_PER_MS, lambda: node.send(CanFrame(0x123, b"12")))
+"""
+#: A frame a millisecond; SENT is done until it is sent.  What comes drives ePWM1.
+SENDER = """#include "F28x_Project.h"
+volatile Uint16 Order, Age, Lost;
+void main(void)
+{
+    Uint16 n;
+    InitSysCtrl();
+    EALLOW;
+    CpuSysRegs.PCLKCR10.bit.CAN_A = 1;
+    CpuSysRegs.PCLKCR2.bit.EPWM1 = 1;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 1;
+    EDIS;
+    GPIO_SetupPinMux(36, GPIO_MUX_CPU1, 6);
+    GPIO_SetupPinMux(37, GPIO_MUX_CPU1, 6);
+    EPwm1Regs.TBPRD = 20000;
+    EPwm1Regs.AQCTLA.bit.ZRO = AQ_SET;
+    EPwm1Regs.AQCTLA.bit.CAU = AQ_CLEAR;
+    EPwm1Regs.TBCTL.bit.CTRMODE = TB_COUNT_UP;
+    CanaRegs.CAN_CTL.bit.Init = 1;
+    CanaRegs.CAN_CTL.bit.CCE = 1;
+    CanaRegs.CAN_BTR.all = 19uL | (13uL << 8) | (4uL << 12);
+    CanaRegs.CAN_CTL.bit.CCE = 0;
+    CanaRegs.CAN_IF1ARB.all = 0xA0000000uL | (0x55uL << 18);
+    CanaRegs.CAN_IF1MCTL.all = 0x0082uL;
+    CanaRegs.CAN_IF1CMD.all = 0x00B00003uL;
+    CanaRegs.CAN_IF2ARB.all = 0x80000000uL | (0x123uL << 18);
+    CanaRegs.CAN_IF2MCTL.all = 0x0082uL;
+    CanaRegs.CAN_IF2CMD.all = 0x00B00004uL;
+    DELAY_US(10);
+    CanaRegs.CAN_CTL.bit.Init = 0;
+    Order = 0;
+    Age = 100;
+    for (;;) {
+        CanaRegs.CAN_IF1DATA.all = Order;
+        CanaRegs.CAN_IF1CMD.all = 0x00870003uL;
+        SENT
+        DELAY_US(1000);
+        if (Age < 100)
+            Age++;
+        if (CanaRegs.CAN_NDAT_21 & 8uL) {
+            CanaRegs.CAN_IF2CMD.all = 0x00070004uL;
+            while (CanaRegs.CAN_IF2CMD.bit.Busy)
+                ;
+            Order = CanaRegs.CAN_IF2DATA.bit.Data_0;
+            Age = 0;
+        }
+        AGED
+        EPwm1Regs.CMPA.bit.CMPA = Order * 100;
+    }
+}
+"""
+LIMITED = "for (n = 0; n < 1000 && (CanaRegs.CAN_TXRQ_21 & 4uL); n++) ;"
+AGED = "if (Age > 5) Order = 0;"
+
+
+def silent(tmp_path: Path, text: str, *, silence: bool = True) -> list[tuple[str, str]]:
+    """The findings about waits and old values: rule, and the line."""
+    (tmp_path / "master.py").write_text(MASTER, encoding="utf-8")
+    (tmp_path / "drv.c").write_text(text, encoding="utf-8")
+    board = load(str(tmp_path / "master.py"))
+    wanted = DriverFiles([tmp_path / "drv.c"], calls=1, board=board, board_named=True, seconds=0.05, silence=silence)
+    findings = [f for f in check_files(wanted).findings if f.rule in ("endless-poll", "stale-value")]
+    assert all(f.how == "dynamic" for f in findings)
+    return [(f.rule, text.splitlines()[f.place.line - 1].strip()) for f in findings if f.place is not None]
+
+
+@pytest.mark.parametrize(("sent", "hangs"), [
+    (LIMITED, False),
+    ("while (CanaRegs.CAN_TXRQ_21 & 4uL) ;", True),
+    ("while (!CanaRegs.CAN_ES.bit.TxOk) ;", True),
+    # It looks at what the controller says of a bus without other nodes.
+    ("while ((CanaRegs.CAN_TXRQ_21 & 4uL) && !CanaRegs.CAN_ES.bit.EPass) ;", False),
+])  # fmt: skip
+def test_a_wait_for_a_frame_that_nobody_acknowledges_any_more(tmp_path: Path, sent: str, hangs: bool) -> None:
+    text = SENDER.replace("SENT", sent).replace("AGED", AGED)
+    assert silent(tmp_path, text) == [("endless-poll", sent)] * hangs
+    assert not silent(tmp_path, text, silence=False)
+
+
+@pytest.mark.parametrize("aged", [AGED, ""])
+def test_an_output_that_follows_what_a_can_node_said_last(tmp_path: Path, aged: str) -> None:
+    text = SENDER.replace("SENT", LIMITED).replace("AGED", aged)
+    assert silent(tmp_path, text) == [("stale-value", "EPwm1Regs.CMPA.bit.CMPA = Order * 100;")] * (not aged)
+
+
+def test_a_wait_for_the_next_order_is_no_wait_for_an_acknowledge(tmp_path: Path) -> None:
+    text = SENDER.replace("SENT", LIMITED).replace("AGED", AGED)
+    text = text.replace("if (CanaRegs.CAN_NDAT_21 & 8uL) {", "while (!(CanaRegs.CAN_NDAT_21 & 8uL)) ;\n        {")
+    (tmp_path / "master.py").write_text(MASTER, encoding="utf-8")
+    (tmp_path / "drv.c").write_text(text, encoding="utf-8")
+    wanted = DriverFiles(
+        [tmp_path / "drv.c"], calls=1, board=load(str(tmp_path / "master.py")), board_named=True, seconds=0.05,
+        silence=True,
+    )  # fmt: skip
+    assert {f.how for f in check_files(wanted).findings if f.rule == "endless-poll"} <= {"generated"}
