@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter, deque
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 from emulator.c28x.findings import Finding, Findings
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, ms, us
@@ -29,6 +29,10 @@ BUSY_INTERRUPT_US: Final = 100
 #: The samples of this many ticks are kept.
 _SAMPLES: Final = 10_000
 _TICK: Final = "Clock_tick"
+
+_DOING: Final = {"delay": "was in DelayUs", "poll": "polled", "": "computed"}
+#: A thread that has asked so often in vain without waiting, and has not blocked since, asks instead of waiting.
+VAIN_PENDS: Final = 20
 
 #: Thread, statement, and what it does there: "poll", "delay" or "" (it computes).
 Sample = tuple[Thread, StatementNumber, str]
@@ -72,11 +76,14 @@ class StarvationWatch:
         self._running: Thread | None = None
         self._samples: deque[tuple[int, Sample]] = deque(maxlen=_SAMPLES)
         self._busy: BusyWait | None = None
+        #: Statements by which a thread has asked in vain without waiting since it last blocked, and how often.
+        self._vain: dict[Thread, Counter[StatementNumber]] = {}
         #: Thread -> microseconds that it waits in DelayUs now; the number of calls of DelayUs so far.
         self._delays: dict[Thread, float] = {}
         self._calls = 0
         calls.before("DelayUs", "DELAY_US", callback=self._delay)
         calls.after("DelayUs", "DELAY_US", callback=self._delayed)
+        calls.after("Semaphore_pend", "Mailbox_pend", "Event_pend", callback=self._pended)
 
     def listen(self, trace: Trace) -> None:
         """Listen to the scheduler and to the tick."""
@@ -107,6 +114,8 @@ class StarvationWatch:
         old, new = self._running, self._threads.current
         if old is not None and old.level > 0 and isinstance(old.what, Task) and old.what.mode == READY:
             self._waiting[old] = ReadyTask(cycles, self._threads.usage())
+        elif old is not None:
+            self._vain.pop(old, None)
         self._running = new
         waiting = self._waiting.pop(new, None)
         if waiting is not None:
@@ -153,6 +162,10 @@ class StarvationWatch:
         elif isinstance(busy.finding.value, float):
             busy.finding.value = max(busy.finding.value, us(lasted))
 
+    def _pended(self, taken: int, *arguments: Any) -> None:
+        if not taken and arguments[-1] == 0:  # BIOS_NO_WAIT
+            self._vain.setdefault(self._threads.current, Counter())[self._locator.here()] += 1
+
     def _delay(self, microseconds: float) -> None:
         self._calls += 1
         self._delays[self._threads.current] = microseconds
@@ -178,14 +191,17 @@ class StarvationWatch:
         if blamed is None or not used:
             return
         (culprit, statement, kind), ticks = blamed
+        doing = f"{_DOING[kind]} here at {ticks} of the ticks"
+        asked = self._vain.get(culprit)
+        if not kind and asked is not None and asked.total() >= VAIN_PENDS:
+            (statement, _times), doing = asked.most_common(1)[0], "never blocks: it asks here with BIOS_NO_WAIT"
         place = self._locator.place(statement)
         if place is None:
             return
-        doing = {"delay": "was in DelayUs", "poll": "polled", "": "computed"}[kind]
         share = next((cycles for t, cycles in used if t is culprit), 0)
         message = (
             f"{thread} was ready from {ms(waiting.since):.3f} ms and got no CPU for {ms(waited):.3f} ms: {culprit} "
-            f"used it for {ms(share):.3f} ms and {doing} here at {ticks} of the ticks"
+            f"used it for {ms(share):.3f} ms and {doing}"
         )
         details = tuple(f"{t} ran for {ms(cycles):.3f} ms of it" for t, cycles in used[:4])
         if waiting.finding is None:

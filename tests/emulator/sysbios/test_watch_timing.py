@@ -178,6 +178,21 @@ def test_starvation_names_the_busy_wait_and_its_length() -> None:
     assert "was in DelayUs" in finding.message
 
 
+ASKS = "if Semaphore_pend(semC, BIOS_NO_WAIT) == TRUE:"
+COMPUTES = "total = total * 3 + 1"
+
+
+@pytest.mark.parametrize(("turns", "statement"), [(300, ASKS), (30_000, COMPUTES)])
+def test_starvation_names_the_semaphore_that_is_asked_and_not_waited_for(turns: int, statement: str) -> None:
+    """With few turns between, it asks all the time; with many, it is the computation that lasts."""
+    high = f"n = 0\nwhile 1:\n    {ASKS}\n        n += 1\n    for i in range({turns}):\n        {COMPUTES}"
+    source = two_tasks("total: uint32 = 0\n", high, "pass", clocks="every(postA, 10, 20)\nevery(postB, 11, 40)")
+    specimen = Watched(source).run(160)
+    finding = specimen.one("starvation")
+    assert finding.object == "Low"
+    assert specimen.statement(finding) == statement
+
+
 def test_a_burst_that_is_worked_off_is_no_pile_up() -> None:
     """A handler or task may post several times at once: counting is what the semaphore is for."""
     burst = "for i in range(5):\n    Semaphore_post(semB)"
