@@ -8,12 +8,12 @@ nodes of a CAN.  If the program then goes on, to the end of the silence or of th
 any before, it does not check its age, or the check has no effect.
 
 Modelled
-    Values that go through objects, parameters, results and locals, also to an object through a pointer parameter; a pin
-    that is set or cleared under a test of them, or by `GPIO_WritePin`.
+    Values that go through objects, parameters, results and locals, also to and from an object through a pointer
+    parameter; a pin that is set or cleared under a test of them, or by `GPIO_WritePin`.
     An object that gets a constant has no age any more: that is how a program forgets what is too old.
 Not modelled
-    Values that are read through a pointer, elements of arrays apart, the DMA.  A local that is given a value from
-    elsewhere on one of its ways has no age.  An output that is 0 moves nothing.
+    Values that are read through any other pointer, elements of arrays apart, the DMA.  A local that is given a value
+    from elsewhere on one of its ways has no age, unless that is its limit.  An output that is 0 moves nothing.
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ from emulator.c28x.tree import (
     Assign,
     Call,
     CallPointer,
+    Compare,
     Conditional,
     Const,
     CopyStruct,
@@ -121,6 +122,8 @@ class ValueSources:
                     if line:
                         self.at.setdefault((s.where.file, line), []).append((s, function, tests))
                 match s:
+                    case Assign(target=LValue(root=Variable() as root), value=value) if _limits(root, value, tests):
+                        pass
                     case Assign(target=LValue(root=Variable() as root), value=value) | Declare(
                         variable=root, value=Expr() as value
                     ):  # fmt: skip
@@ -188,7 +191,10 @@ class ValueSources:
                 if given is not None and root in given:
                     return given[root]
                 return self._parameter(root, calls) if root.kind == "parameter" else self._local(root, calls, given)
-            case Load() | AddressOf() | CallPointer():
+            case Load(lvalue=LValue(root=Expr() as pointer) as lvalue):
+                targets = self._targets(pointer, calls)
+                return frozenset((path, None if lvalue.indices else word + lvalue.words) for path, word in targets)
+            case AddressOf() | CallPointer():
                 return _NOTHING
             case RegisterLoad(register=RegisterRef() as register):
                 name = _name(register)
@@ -217,16 +223,30 @@ class ValueSources:
         """The inputs of a parameter: those of the argument in the present call."""
         if not calls or v in self._within:
             return _NOTHING
-        place, callee = calls[0]
-        given = []
-        for s, _, _ in self.at.get((place.file, place.line), ()):
-            for p in (p for root in roots(s) for p in parts(root)):
-                if isinstance(p, Call) and p.function.name == callee:
-                    given += [a for a, q in zip(p.arguments, p.function.parameters, strict=False) if q is v]
         self._within.add(v)
-        found = [self.origins(a, calls[1:]) for a in given]
+        found = [self.origins(a, calls[1:]) for a in self._given(v, calls[0])]
         self._within.discard(v)
         return frozenset.intersection(*found) if found else _NOTHING
+
+    def _targets(self, pointer: Expr, calls: list[tuple[Place, str]]) -> set[tuple[str, int]]:
+        """The objects and words to which a pointer parameter points in the present call, or an address."""
+        match bare(pointer):
+            case AddressOf(lvalue=LValue(root=Variable() as root, indices=[], words=words)):
+                return {(root.declaration.path, words)}
+            case Load(lvalue=LValue(root=Variable(kind="parameter") as root, indices=[])) if calls:
+                given = self._given(root, calls[0])
+                return set().union(*(self._targets(argument, calls[1:]) for argument in given))
+        return set()
+
+    def _given(self, v: Variable, call: tuple[Place, str]) -> list[Expr]:
+        """The arguments that a call passes to a parameter."""
+        place, callee = call
+        return [
+            a for s, _, _ in self.at.get((place.file, place.line), ())
+            for p in (p for root in roots(s) for p in parts(root))
+            if isinstance(p, Call) and p.function.name == callee
+            for a, q in zip(p.arguments, p.function.parameters, strict=False) if q is v
+        ]  # fmt: skip
 
     def _result(self, function: Function, arguments: list[frozenset[Origin]]) -> frozenset[Origin]:
         body = self._functions.get(function.path)
@@ -549,6 +569,17 @@ def _output(s: Stmt) -> Actuation | None:
         case Evaluate(value=Call(function=Function(extern=True, name="GPIO_WritePin"), arguments=[pin, value])):
             return Actuation(_SET, value, f"pin {source_text(pin)}")
     return None
+
+
+def _limits(v: Variable, value: Expr, tests: Iterable[Expr]) -> bool:
+    """Whether an assignment limits a local: `if (x > MAX) x = MAX;`."""
+    limit = bare(value)
+    for test in tests:
+        if isinstance(limit, Const) and isinstance(test, Compare) and test.op in ("<", ">", "<=", ">="):
+            sides = bare(test.left), bare(test.right)
+            if any(isinstance(a, Load) and a.lvalue.root is v and b == limit for a, b in (sides, sides[::-1])):
+                return v.plain
+    return False
 
 
 def _pointed(argument: Expr) -> Iterator[str]:

@@ -184,6 +184,40 @@ int main(void)
 """
 
 
+def through_a_pointer(limit: str) -> str:
+    """Drive gets a pointer to a copy of the order, passes it on, and limits what it reads there."""
+    head = "void Drive(void)\n{\n    Uint16 duty = Duty;\n"
+    text = RIGHT.replace(head, """struct ORDER { Uint16 number; Uint16 duty; };
+static struct ORDER Order;
+static void Move(const struct ORDER *order)
+{
+    Uint16 duty = order->duty;
+""")
+    text = text.replace("    EPwm1Regs.CMPA.bit.CMPA", f"    {limit}\n    EPwm1Regs.CMPA.bit.CMPA")
+    drive = """static void Drive(const struct ORDER *order)
+{
+    Move(order);
+}
+void main(void)"""
+    text = text.replace("void main(void)", drive)
+    return text.replace("        Drive();", "        Order.duty = Duty;\n        Drive(&Order);")
+
+
+@pytest.mark.parametrize(("limit", "found"), [
+    ("if (duty > 90) duty = 90;", 1),
+    ("if (90 < duty) duty = 90; if (duty <= 20) duty = 20;", 1),
+    ("if (Now_Ms > 120) duty = 90;", 0),  # no limit of its own: another source
+])  # fmt: skip
+def test_a_value_that_is_read_through_a_pointer_and_limited_grows_old(tmp_path: Path, limit: str, found: int) -> None:
+    text = through_a_pointer(limit)
+    assert not stale(tmp_path, text)
+    findings = stale(tmp_path, text.replace(AGE, ""))
+    assert len(findings) == found
+    for finding in findings:
+        assert finding.place is not None
+        assert "EPwm1Regs.CMPA" in text.replace(AGE, "").splitlines()[finding.place.line - 1]
+
+
 def test_an_order_of_another_task_grows_old_too(tmp_path: Path) -> None:
     assert not stale(tmp_path, ORDERED)
     text = ORDERED.replace("Clock_getTicks() - came > 30", "came == 0")
