@@ -3,7 +3,8 @@
 `hil build` compiles the modules that take most of the time into extension modules, and with them the robot's firmware
 (`program`).  Names and results are the same, at about four times the speed.  They lie in a folder of their own.  A
 manifest there names every source that they may depend on, with its SHA-256.  If one source differs, the whole build is
-ignored: so the program always runs the sources as they are.  `HIL_PURE=1` ignores the build too.
+ignored: so the program always runs the sources as they are.  Programs of firmware have a folder each, in one that is
+named after those sources: a program that was compiled with others is never found.  `HIL_PURE=1` ignores the build too.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ from typing import Any, Final
 
 #: The folder of the packages.  Sources are named relative to it.
 ROOT: Final = Path(__file__).parent.parent
+#: In the folder of a build: which sources it was made from, and where its modules are.
+MANIFEST: Final = "manifest.json"
 #: The build for this interpreter; another one has its own beside it.
 STORE: Final = Path(__file__).with_name("_compiled") / str(get_config_var("SOABI"))
 
@@ -44,14 +47,21 @@ def digest(source: Path) -> str:
     return sha256(source.read_bytes()).hexdigest()
 
 
+def programs_of(store: Path, sources: dict[str, str]) -> Path:
+    """The folder of the programs that were compiled with these sources (name -> digest)."""
+    return store / f"programs-{sha256(json.dumps(sources, sort_keys=True).encode()).hexdigest()[:16]}"
+
+
 def find_build(store: Path = STORE, root: Path = ROOT) -> tuple[str, dict[str, str]]:
     """The state of the build in `store` ("none", "stale", "fresh"), and the paths of its modules if it is fresh."""
     try:
-        manifest = json.loads((store / "manifest.json").read_text("utf-8"))
-        fresh = all(digest(root / name) == known for name, known in manifest["sources"].items())
+        manifest = json.loads((store / MANIFEST).read_text("utf-8"))
+        sources = manifest["sources"]
+        fresh = all(digest(root / name) == known for name, known in sources.items())
         files = {name: str(store / file) for name, file in manifest["modules"].items()}
         if fresh and all(map(os.path.exists, files.values())):
-            return "fresh", files
+            programs = programs_of(store, sources).glob("*/*")
+            return "fresh", files | {file.name.partition(".")[0]: str(file) for file in programs}
     except (OSError, ValueError, LookupError, TypeError, AttributeError):
         pass  # no manifest, a source that is gone, a file of another form
     return ("stale" if store.exists() else "none"), {}

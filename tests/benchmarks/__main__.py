@@ -3,21 +3,23 @@ of `rows.py`: what people wait for, as ratios.
 
 Everything takes part: world, devices, peripherals, kernel, six tasks, the serial line.  A wall-clock figure depends
 on the machine, so each run is bracketed by a plain Python loop, and the cost is given in iterations of it too: that
-figure can be compared between machines and days.  For scale: an AVR instruction simulator runs the five drivers alone
-at about 34.
+figure can be compared between machines and days.  For scale, the drivers alone and an AVR instruction simulator at the
+same work (`drivers.py`).
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import math
+from dataclasses import replace
 from pathlib import Path
 from time import perf_counter, process_time
 
 from emulator import compiled
 from hil.bench import Bench
 from hil.machine import Setup
-from tests.benchmarks import order_latency, rows
+from tests.benchmarks import drivers, forks, order_latency, rows
 
 
 def loop_ns(iterations: int = 300_000) -> float:
@@ -29,9 +31,9 @@ def loop_ns(iterations: int = 300_000) -> float:
     return (process_time() - start) / iterations * 1e9
 
 
-def measure(order: bytes, *, realistic: bool, seconds: float, rounds: int) -> dict[str, float]:
+def measure(order: bytes, setup: Setup, *, seconds: float, rounds: int) -> dict[str, float]:
     """The best of `rounds` stretches of `seconds` virtual seconds after `order`."""
-    bench = Bench(Setup(realistic=realistic), traced=False)
+    bench = Bench(setup, traced=False)
     bench.boot()
     bench.feed(order)
     bench.run_for(1.0)
@@ -66,23 +68,30 @@ def main() -> None:
     if options.rows:
         rows.run(options)
         return
+    ideal = Setup(realistic=False)
     cases = {
-        "standing": (b"", False), "mission": (b"#MISN\r", False), "mission, realistic": (b"#MISN\r", True),
+        "standing": (b"", ideal), "mission": (forks.ORDER, ideal),
+        "mission, realistic": (forks.ORDER, Setup(realistic=True)),
+        "mission, watched": (forks.ORDER, replace(ideal, watch=True, static=True)),
     }  # fmt: skip
     results = {
-        name: measure(order, realistic=realistic, seconds=options.seconds, rounds=options.rounds)
-        for name, (order, realistic) in cases.items()
+        name: measure(order, setup, seconds=options.seconds, rounds=options.rounds)
+        for name, (order, setup) in cases.items()
     }
+    alone = drivers.measure(math.ceil(options.seconds), options.rounds)
+    copies = forks.measure(math.ceil(20 * options.seconds))
     latency = order_latency.measure(options.orders)
     if options.json:
-        print(json.dumps({"mode": compiled.MODE, **results, "order latency": latency, "rows": rows.measured(options)},
-                         indent=2))  # fmt: skip
+        whole = {"mode": compiled.MODE, **results, "drivers": alone, "copies": copies, "order latency": latency}
+        print(json.dumps({**whole, "rows": rows.measured(options)}, indent=2))
         return
     print(f"{'whole robot, ' + compiled.MODE:30} {'x real time':>12} {'x CPU time':>12} {'loops / simulated s':>21}")
     for name, result in results.items():
         print(
             f"{name:30} {result['pace_wall']:12.1f} {result['pace_cpu']:12.1f} {result['loops_per_simulated_s']:21,.0f}"
         )
+    drivers.show(alone)
+    forks.show(copies)
     order_latency.show(latency)
     rows.run(options)
 

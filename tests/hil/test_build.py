@@ -58,10 +58,13 @@ def tree(tmp_path: Path) -> Path:
     store = tmp_path / compiled.STORE.relative_to(compiled.ROOT)
     store.mkdir(parents=True)
     (store / "clock.so").touch()
-    sources = {p.relative_to(tmp_path).as_posix(): compiled.digest(p) for p in tmp_path.rglob("*.py")}
-    manifest = {"sources": sources, "modules": {MODULE: "clock.so"}}
-    (store / "manifest.json").write_text(json.dumps(manifest), "utf-8")
+    manifest = {"sources": sources_of(tmp_path), "modules": {MODULE: "clock.so"}}
+    (store / compiled.MANIFEST).write_text(json.dumps(manifest), "utf-8")
     return tmp_path
+
+
+def sources_of(tree: Path) -> dict[str, str]:
+    return {p.relative_to(tree).as_posix(): compiled.digest(p) for p in sorted(tree.rglob("*.py"))}
 
 
 def store_of(tree: Path) -> Path:
@@ -88,7 +91,7 @@ def test_after_any_change_the_source_runs(tree: Path, source: str) -> None:
 @pytest.mark.parametrize("damage", ["source gone", "module gone", "no manifest", "manifest cut", "another form"])
 def test_a_build_that_is_not_whole_is_left_alone(tree: Path, damage: str) -> None:
     store = store_of(tree)
-    manifest = store / "manifest.json"
+    manifest = store / compiled.MANIFEST
     if damage == "source gone":
         (tree / "emulator" / "trace.py").unlink()
     elif damage == "module gone":
@@ -100,6 +103,86 @@ def test_a_build_that_is_not_whole_is_left_alone(tree: Path, damage: str) -> Non
     else:
         manifest.write_text("[]", "utf-8")
     assert compiled.find_build(store, tree) == ("stale", {})
+
+
+def test_a_program_is_found_beside_the_build_that_it_was_compiled_with(tree: Path) -> None:
+    store, sources = store_of(tree), sources_of(tree)
+    one, other = compiled.programs_of(store, sources), compiled.programs_of(store, {**sources, MODULE: "0"})
+    for place, name in ((one, "program_1"), (other, "program_2")):
+        (place / name).mkdir(parents=True)
+        (place / name / f"{name}.cpython.so").touch()
+    state, files = compiled.find_build(store, tree)
+    assert state == "fresh"
+    assert files == {
+        MODULE: str(store / "clock.so"), "program_1": str(one / "program_1" / "program_1.cpython.so"),
+    }  # fmt: skip
+
+
+@pytest.fixture
+def small(tree: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
+    """`hil build` in `tree` for programs of these identities: a module of C each, and its library."""
+    setuptools = pytest.importorskip("setuptools", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
+    pytest.importorskip("mypyc", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
+    if shutil.which(os.environ.get("CC", "cc")) is None:
+        pytest.skip("needs a C compiler: apt install gcc")
+    compiled.programs_of(store_of(tree), sources_of(tree)).mkdir()
+    (store_of(tree) / build.KEPT).mkdir()
+    (store_of(tree) / build.KEPT / "emulator").touch()
+
+    def translate(_root: Path, target: Path, programs: dict[str, object]) -> list[Any]:
+        assert [file.name for file in target.iterdir()] == ["emulator"]
+        extensions = []
+        for program in map(compiled.program_name, programs):
+            for name in (f"{build._group(program)}__mypyc", program):
+                source = target / f"{name}.c"
+                source.write_text(f"#include <Python.h>\nPyMODINIT_FUNC PyInit_{name}(void) {{ return NULL; }}\n")
+                extensions.append(setuptools.Extension(name, [str(source)]))
+        return [*extensions, setuptools.Extension(MODULE, ["of the build that is there.c"])]
+
+    def made(*identities: str, meanwhile: Callable[[], object] = lambda: None) -> int:
+        monkeypatch.setattr(build, "programs", lambda own: dict.fromkeys(identities))
+        monkeypatch.setattr(build, "translate", lambda *of: (meanwhile(), translate(*of))[1])
+        return build.build(root=tree, store=store_of(tree))
+
+    return made
+
+
+def test_a_program_that_is_missing_is_compiled_alone_and_put_beside_the_others(
+    tree: Path, small: Callable[..., int]
+) -> None:
+    assert small("a" * 64) == 1
+    _, one = compiled.find_build(store_of(tree), tree)
+    assert set(one) == {MODULE, f"program_{'a' * 16}", f"c2000_program_{'a' * 16}__mypyc"}
+    assert small("b" * 64, "a" * 64) == 1
+    state, both = compiled.find_build(store_of(tree), tree)
+    assert state == "fresh"
+    assert both.items() > one.items()
+    assert set(both) - set(one) == {f"program_{'b' * 16}", f"c2000_program_{'b' * 16}__mypyc"}
+    assert small("a" * 64, "b" * 64, meanwhile=lambda: pytest.fail("it was translated")) == 0
+    assert [each.name for each in store_of(tree).parent.iterdir()] == [store_of(tree).name]
+
+
+def test_two_builds_of_a_program_at_once_leave_one(tree: Path, small: Callable[..., int]) -> None:
+    assert small("a" * 64, meanwhile=lambda: small("a" * 64)) == 1
+    assert len(compiled.find_build(store_of(tree), tree)[1]) == 3
+
+
+@pytest.mark.parametrize("change", ["a source", "the build"])
+def test_a_program_is_left_out_when_something_has_changed_meanwhile(
+    change: str, tree: Path, small: Callable[..., int]
+) -> None:
+    def changed() -> None:
+        if change == "a source":
+            (tree / "emulator" / "clock.py").write_text("", "utf-8")
+        else:
+            build.clean(store_of(tree))
+            store_of(tree).mkdir()
+
+    with pytest.raises(build.BuildError, match="run hil build again"):
+        small("a" * 64, meanwhile=changed)
+    assert not [*store_of(tree).glob("programs-*/*")]
+    assert compiled.find_build(store_of(tree), tree) == ("stale", {})
+    assert [each.name for each in store_of(tree).parent.iterdir()] == [store_of(tree).name]
 
 
 def test_without_a_build_and_after_removing_it_python_runs(tree: Path) -> None:
@@ -122,6 +205,7 @@ def test_without_a_compiler_the_command_says_what_is_missing(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setitem(sys.modules, "mypyc", None)
+    monkeypatch.setattr(build, "find_build", lambda store, root: ("none", {}))
     assert invoke(["build"]) == 2
     err = capsys.readouterr().err
     assert err.startswith("hil: error: ")
@@ -138,7 +222,7 @@ def test_without_a_c_compiler_nothing_is_translated_and_the_build_before_stays(
     if sys.platform == "win32":
         pytest.skip("Visual C++ is found without CC")
     monkeypatch.setenv("CC", str(tree / "no-such-compiler"))
-    monkeypatch.setattr(build, "translate", lambda root, target, texts: pytest.fail("it was translated"))
+    monkeypatch.setattr(build, "translate", lambda root, target, programs: pytest.fail("it was translated"))
     with pytest.raises(build.BuildError, match="no-such-compiler") as told:
         build.build(root=tree, store=store_of(tree))
     assert str(told.value).endswith(build.STILL)
@@ -191,7 +275,7 @@ def test_why_lists_every_function_that_is_not_compiled_each_with_its_reason(
 def test_each_reason_is_that_of_a_source() -> None:
     for reason, patterns in build.STAYS.items():
         for pattern in patterns:
-            assert set(build._matching(build.ROOT, pattern)) - set(build.listed()), (reason, pattern)
+            assert set(build._matching(compiled.ROOT, pattern)) - set(build.listed()), (reason, pattern)
 
 
 def test_what_goes_together_with_why(capsys: pytest.CaptureFixture[str]) -> None:
@@ -245,10 +329,19 @@ def test_every_listed_module_can_be_translated(tmp_path: Path) -> None:
     """Up to C; no compiler is needed.  Fails for what mypyc does not take, in the module's own terms."""
     pytest.importorskip("mypyc.build", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
     pytest.importorskip("setuptools", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
-    texts = build.programs()
-    names = {extension.name for extension in build.translate(build.ROOT, tmp_path, texts)}
+    programs = build.programs()
+    names = {extension.name for extension in build.translate(compiled.ROOT, tmp_path / "first", programs)}
     assert {name.removesuffix(".py").replace("/", ".") for name in build.listed()} <= names
-    assert {compiled.program_name(identity) for identity in texts} <= names
+    assert {compiled.program_name(identity) for identity in programs} <= names
+
+    # A further program, with what is kept of that, wherever it lies now: its C alone.
+    there = shutil.copytree(tmp_path / "first", tmp_path / "second")
+    before = {file.name for file in (there / "c").iterdir()}
+    (program, *_) = programs.values()
+    more = {extension.name for extension in build.translate(compiled.ROOT, there, {"f" * 64: program})}
+    name = compiled.program_name("f" * 64)
+    assert {name, f"{build._group(name)}__mypyc"} <= more
+    assert all(name in made for made in {file.name for file in (there / "c").iterdir()} - before)
 
 
 @pytest.mark.skipif(compiled.MODE != "compiled", reason="needs `hil build` (extra speed)")
