@@ -67,6 +67,8 @@ LET_THROUGH: Final = (
     "EINT", "__enable_interrupts", "__restore_interrupts", "EnableInterrupts", "Hwi_enable", "Hwi_restore",
     "BIOS_start", "IDLE", "STANDBY", "HALT", "HIB",
 )  # fmt: skip
+#: Channels of an ADC that are pins (DS, analog subsystem); the others are inside of the chip.
+ADC_PINS: Final = (*range(6), 14, 15)
 #: Words of a FIFO of the SCI.
 FIFO_DEPTH: Final = 16
 #: Value of CTRIPHSEL and CTRIPLSEL: the output of the digital filter.
@@ -109,6 +111,7 @@ class Connections:
         if not source.whole:
             return
         self._adc_triggers()
+        self._adc_inputs()
         self._interrupts()
         self._always_masked()
         self._latches()
@@ -246,6 +249,32 @@ class Connections:
             self._could(f"DmaClaSrcSelRegs.DMACHSRCSEL{1 + n // 4}", lambda word: word == number, f"CH{n + 1}")
             for n in range(DMA_CHANNELS)
         )
+
+    def _adc_inputs(self) -> None:
+        """Inputs that a program converts and that nothing drives, where it never converts one that a part drives."""
+        for letter, inputs in self._chip.analog.items():
+            block, results = f"Adc{letter.lower()}Regs", f"Adc{letter.lower()}ResultRegs"
+            if self._value(f"{block}.ADCCTL2", "SIGNALMODE"):
+                continue  # a channel is two inputs
+            controls = [f"{block}.ADCSOC{n}CTL" for n in range(16)]
+            chosen = {n: self._value(control, "CHSEL") for n, control in enumerate(controls) if self._writes(control)}
+            unread = [
+                n for n in ADC_PINS if inputs[n].driver and n not in chosen.values()
+                and not any(self._could(control, n.__eq__, "CHSEL") for control in controls)
+            ]  # fmt: skip
+            for n, channel in chosen.items() if unread else ():
+                if channel not in ADC_PINS or inputs[channel].driven or (results, f"ADCRESULT{n}") not in (
+                    self._source.reads
+                ):  # fmt: skip
+                    continue
+                place = self._wanting(controls[n], "CHSEL") or self._source.last(*_split(controls[n]))
+                if place is not None:
+                    self._chip.findings.report_at(
+                        place, "adc-input-open",
+                        f"SOC{n} converts ADCIN{letter}{channel}, which nothing drives; {inputs[unread[0]].driver} "
+                        f"drives ADCIN{letter}{unread[0]}, which no SOC converts",
+                        object=controls[n], how="dynamic",
+                    )  # fmt: skip
 
     def _driven_inputs(self) -> None:
         """Pins that the program sets and clears, and that no statement makes outputs."""

@@ -256,6 +256,16 @@ class AnalogWire:
         self.stepped.emit()
 
     @property
+    def driver(self) -> str:
+        """What drives it from outside of the chip; empty: nothing."""
+        return self._who
+
+    @property
+    def driven(self) -> bool:
+        """Whether anything drives it, inside of the chip or outside."""
+        return self._chip is not None or bool(self._who)
+
+    @property
     def steady(self) -> bool:
         """Whether the voltage cannot change without `stepped`."""
         return self._outside_steady if self._chip is None else self._chip_steady

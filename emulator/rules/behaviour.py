@@ -149,7 +149,9 @@ shows the defect.
 
 You can declare the unit of a value in a comment where it is declared: `// hil: unit cm` at an object; above a function
 for its result; `// hil: unit v mm/s` for its parameter `v`. Then `hil check` reports each place where a value with one
-unit goes to an object with another, and each sum or comparison of two units.
+unit goes to an object with another, and each sum or comparison of two units. The C library's angles are in radians:
+what goes to a value in degrees, or comes from one, is reported. A weighted mean (`0.98 * a + 0.02 * b`) is a sum of
+its parts.
 
 **Fix:** put the unit into the name, convert at one place, and send what the protocol specifies.
 """,

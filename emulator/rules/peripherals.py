@@ -361,6 +361,22 @@ The sampling capacitor needs a window of at least 75 ns (12 bits) or 320 ns (16 
         "DS, ADC timing; TRM ADC: ACQPS",
     ),
     _rule(
+        "adc-input-open",
+        Severity.WARNING,
+        "The program converts an input of the ADC to which nothing is connected.",
+        """
+The result has no meaning: the input floats, and often follows the channel that was converted before it.
+
+The board has a part at another input of the same ADC, which the program never converts. So `CHSEL` probably names the
+wrong channel. The finding is made at the end of a run, at the statement that sets `CHSEL`, if the program reads the
+result. A program that converts all inputs that the board uses, and others too, is not reported. Without a board of its
+own (`--board`) a program may be meant for other parts: then the finding is a note.
+
+**Fix:** set `CHSEL` to the input that the part is connected to; see the schematic.
+""",
+        "TRM ADC: ADCSOCxCTL, CHSEL; DS, analog subsystem",
+    ),
+    _rule(
         "adc-clock",
         Severity.ERROR,
         "The ADC's clock is above its limit.",

@@ -13,8 +13,8 @@ from hil.reports.model import rule_of
 
 #: Rules about what is wired to the chip, and names of the parts on the board of the robot.
 _WIRED: Final = (
-    "burst-repeats", "contention", "device-clock", "device-register", "serial-rate", "spi-mode", "spi-no-device",
-    "spi-transaction-cut",
+    "adc-input-open", "burst-repeats", "contention", "device-clock", "device-register", "serial-rate", "spi-mode",
+    "spi-no-device", "spi-transaction-cut",
 )  # fmt: skip
 _PARTS: Final = re.compile(r"sonar |AN of sonar |L3G4200D|XBee")
 
@@ -51,4 +51,5 @@ def of_unused_part(finding: Finding, sonar_starts: Iterable[Wire], chip_selects:
         return not any(start.driven() for start in sonar_starts)
     if finding.rule == "spi-no-device":
         return not any(select.driven() for select in chip_selects)
-    return finding.rule in ("contention", "serial-rate")  # a program of its own may have another peer
+    # A program of its own may have another peer, or a part at another input.
+    return finding.rule in ("adc-input-open", "contention", "serial-rate")

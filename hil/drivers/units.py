@@ -7,13 +7,15 @@
 
 Units are names: `cm` is not `mm`, and nothing is converted.  A value keeps its unit through assignments, casts, signs
 and sums, and in local variables that take only values of this unit.  A product, a quotient and a number have no known
-unit.
+unit.  But a mean keeps the unit of its parts: a sum of products with constants that add up to 1, as in a filter.
+Angles of the C library are in radians: they go to no value that is declared in degrees.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from typing import Final
 
 from emulator.c28x.declarations import UserDeclaration, declarations
 from emulator.c28x.sites import Place
@@ -24,6 +26,7 @@ from emulator.c28x.tree import (
     Call,
     Compare,
     Conditional,
+    Const,
     Convert,
     Declare,
     Expr,
@@ -36,10 +39,18 @@ from emulator.c28x.tree import (
     Variable,
     Where,
 )
-from emulator.c28x.tree_queries import parts, roots, source_text, statements
+from emulator.c28x.tree_queries import bare, parts, roots, source_text, statements
 
 #: Operators whose operands must have the same unit; the result has this unit too.
-_KEEPS = ("+", "-")
+_KEEPS: Final = ("+", "-")
+#: The unit of angles in the C library, which no declaration can name, and names of another unit of angles.
+RADIANS: Final = "radians of the C library"
+_DEGREES: Final = ("deg", "degree", "degrees", "°")
+#: Functions of the C library whose result is an angle, and those whose argument is one.
+_ANGLES: Final = ("acos", "asin", "atan", "atan2")
+_OF_ANGLES: Final = ("cos", "sin", "tan")
+#: The weights of a mean add up to 1, but for the rounding of floats.
+_ROUNDING: Final = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,10 +136,14 @@ class _Units:
     def _check_expression(self, e: Expr, where: Where, report: Callable[[Where, str, str], None]) -> None:
         match e:
             case Binary(op="+" | "-" as op, left=left, right=right) | Compare(op=op, left=left, right=right):
+                if isinstance(e, Binary):
+                    left, right = _averaged(e) or (left, right)
                 one, other = self._unit(left), self._unit(right)
-                if one and other and one != other:
+                if _differ(one, other):
                     what = f"{source_text(left)} {op} {source_text(right)}"
                     report(where, f"{source_text(left)} is in {one}, {source_text(right)} in {other}", what)
+            case Call(function=callee, arguments=[value]) if callee.extern and callee.name in _OF_ANGLES:
+                self._check_target(value, RADIANS, where, report, f"the angle of {callee.name}")
             case Call(function=callee, arguments=arguments):
                 for parameter, value in zip(callee.parameters, arguments, strict=False):
                     self._check_target(value, self.variables.get(parameter, ""), where, report,
@@ -150,7 +165,7 @@ class _Units:
         self, value: Expr, wanted: str, where: Where, report: Callable[[Where, str, str], None], target: str
     ) -> None:
         unit = self._unit(value)
-        if wanted and unit and wanted != unit:
+        if _differ(wanted, unit):
             report(where, f"{source_text(value)} is in {unit}, {target} in {wanted}", target)
 
     def _unit(self, e: Expr) -> str:
@@ -158,16 +173,47 @@ class _Units:
         match e:
             case Load(lvalue=LValue(root=Variable() as root)):
                 return self.variables.get(root, "")
+            case Call(function=function) if function.extern and function.name in _ANGLES:
+                return RADIANS
             case Call(function=function):
                 return self.results.get(function.path, "")
             case Convert(operand=operand) | Unary(op="-", operand=operand):
                 return self._unit(operand)
             case Binary(op=op, left=left, right=right) if op in _KEEPS:
+                left, right = _averaged(e) or (left, right)
                 return self._unit(left) or self._unit(right)
             case Conditional(then=then, otherwise=otherwise):
                 one, other = self._unit(then), self._unit(otherwise)
                 return one if one == other else ""
         return ""
+
+
+def _differ(one: str, other: str) -> bool:
+    """Whether two units are known and not the same.  Those of the C library may be declared by any name but degrees."""
+    if not one or not other or one == other:
+        return False
+    if RADIANS in (one, other):
+        return (other if one == RADIANS else one) in _DEGREES
+    return True
+
+
+def _averaged(e: Binary) -> tuple[Expr, Expr] | None:
+    """The two values of which a sum is a weighted mean; None: it is none."""
+    left, right = _weighted(e.left), _weighted(e.right)
+    if e.op != "+" or left is None or right is None or abs(left[0] + right[0] - 1) > _ROUNDING:
+        return None
+    return left[1], right[1]
+
+
+def _weighted(e: Expr) -> tuple[float, Expr] | None:
+    """The weight of a product with a constant between 0 and 1, and its other factor."""
+    match bare(e):
+        case Binary(op="*", left=left, right=right):
+            for weight, value in ((left, right), (right, left)):
+                constant = bare(weight)
+                if isinstance(constant, Const) and isinstance(constant.value, float) and 0 < constant.value < 1:
+                    return constant.value, value
+    return None
 
 
 def _assignments(function: Function) -> Iterator[tuple[LValue, Expr]]:

@@ -98,6 +98,35 @@ def test_a_unit_goes_where_it_is_wanted(tmp_path: Path, body: str, messages: lis
     assert told(tmp_path, text, "unit") == messages
 
 
+ANGLES = """#include <math.h>
+float tilt;      // hil: unit deg
+float turned;    // hil: unit rad
+float heading;   // hil: unit turns
+float gone;      // hil: unit m
+"""
+
+
+@pytest.mark.parametrize(("body", "messages"), [
+    ("tilt = atan2f(gone, 2.0f);", ["atan2(...) is in radians of the C library, tilt in deg"]),
+    ("gone = sinf(tilt);", ["tilt is in deg, the angle of sin in radians of the C library"]),
+    ("float a = atanf(gone); if (a > tilt) gone = 0.0f;", ["a is in radians of the C library, tilt in deg"]),
+    # A unit that is declared by another name may be the same one; a factor converts it.
+    ("turned = atan2f(gone, 2.0f); gone = cosf(turned); heading = asinf(gone);", []),
+    ("tilt = atan2f(gone, 2.0f) * 57.29578f; gone = sinf(tilt * 0.01745329f);", []),
+    # A mean keeps the unit of its parts, whose weights add up to 1; another sum of products need not.
+    ("tilt = 0.98f * tilt + 0.02f * turned;", ["tilt is in deg, turned in rad"]),
+    ("tilt = 0.98f * tilt + (1.0f - 0.98f) * turned;", ["tilt is in deg, turned in rad"]),
+    ("tilt = turned * 0.25f + tilt * 0.75f;",
+     ["turned is in rad, tilt in deg", "turned * 0.25 + tilt * 0.75 is in rad, tilt in deg"]),
+    ("gone = 0.9f * gone + 0.1f * gone; tilt = 0.5f * tilt + 57.29578f * turned;", []),
+    ("tilt = 0.5f * tilt + 0.25f * turned;", []),
+])  # fmt: skip
+def test_angles_and_means_have_a_unit_too(tmp_path: Path, body: str, messages: list[str]) -> None:
+    text = f"{ANGLES}void f(void) {{ {body} }}\n"
+    assert told(tmp_path, text, "unit") == messages
+
+
+
 def test_python_declares_in_the_same_words(tmp_path: Path) -> None:
     text = (
         "from emulator.c28x.language import *\n\n"

@@ -173,3 +173,66 @@ def test_the_interrupt_flag_of_a_trip_holds_the_next_one_back(tmp_path: Path, cl
     # A routine may leave a flag for what comes later: 100 ms are too long for that.
     findings = found(tmp_path, HEAD + TRIP.format(clear=clear), "flag-not-cleared", seconds=0.15)
     assert [(f.object, f.place.function) for f in findings if f.place] == [("EPwm1Regs.TZFLG.INT", "Tripped")] * told
+
+
+#: A pot at ADCINB2, a thermistor at ADCINB3.
+SENSORS = """from hil.board import Board
+
+class Volts:
+    def volts(self, cycles):
+        return 1.0
+
+class Own(Board):
+    def solder(self):
+        self.on_adc("pot", Volts(), adc="B", channel=2)
+        self.on_adc("thermistor", Volts(), adc="B", channel=3)
+"""
+CONVERTS = HEAD + """void main(void)
+{
+    InitSysCtrl();
+    EALLOW;
+    CpuSysRegs.PCLKCR13.bit.ADC_B = 1;
+    AdcbRegs.ADCCTL2.bit.PRESCALE = 6;
+    AdcbRegs.ADCCTL1.bit.ADCPWDNZ = 1;
+    DELAY_US(1000);
+    AdcbRegs.ADCSOC0CTL.bit.CHSEL = 2;
+    AdcbRegs.ADCSOC0CTL.bit.ACQPS = 14;
+    AdcbRegs.ADCSOC1CTL.bit.ACQPS = 14;
+    AdcbRegs.ADCSOC1CTL.bit.CHSEL = 3;
+    EDIS;
+    for (;;) {
+        AdcbRegs.ADCSOCFRC1.all = 3;
+        DELAY_US(100);
+        Seen = AdcbResultRegs.ADCRESULT0 + AdcbResultRegs.ADCRESULT1;
+    }
+}
+"""
+
+
+@pytest.mark.parametrize("named", [True, False])
+@pytest.mark.parametrize(("was", "now", "at"), [
+    ("", "", ""),
+    ("CHSEL = 3;", "CHSEL = 4;", "CHSEL = 4;"),
+    # It keeps its reset value, 0.
+    ("    AdcbRegs.ADCSOC1CTL.bit.CHSEL = 3;\n", "", "ADCSOC1CTL.bit.ACQPS"),
+    # Both parts are converted, and another input, too.
+    ("CHSEL = 3;", "CHSEL = 3; AdcbRegs.ADCSOC2CTL.bit.CHSEL = 5; Seen = AdcbResultRegs.ADCRESULT2;", ""),
+    # Another statement chooses the part.
+    ("        DELAY_US(100);", "        DELAY_US(100);\n        if (Seen == 7) AdcbRegs.ADCSOC1CTL.bit.CHSEL = 3;\n"
+     "        else AdcbRegs.ADCSOC1CTL.bit.CHSEL = 4;", ""),
+    # Channels inside of the chip are no inputs; nobody reads this result.
+    ("CHSEL = 3;", "CHSEL = 12;", ""),
+    ("CHSEL = 3;", "CHSEL = 4;\n#define ADCRESULT1 ADCRESULT0", ""),
+])  # fmt: skip
+def test_an_input_that_nothing_drives(tmp_path: Path, was: str, now: str, at: str, named: bool) -> None:
+    assert not was or CONVERTS.count(was) == 1
+    text = CONVERTS.replace(was, now) if was else CONVERTS
+    (tmp_path / "own.py").write_text(SENSORS, encoding="utf-8")
+    (tmp_path / "drv.c").write_text(text, encoding="utf-8")
+    board = load(str(tmp_path / "own.py"))
+    checked = check_files(DriverFiles([tmp_path / "drv.c"], seconds=0.003, board=board, board_named=named))
+    findings = [f for f in checked.findings if f.rule == "adc-input-open"]
+    assert [(f.how, "thermistor drives ADCINB3" in f.message) for f in findings] == [
+        ("dynamic" if named else "generated", True)
+    ] * bool(at)
+    assert all(f.place is not None and at in text.splitlines()[f.place.line - 1] for f in findings)
