@@ -36,7 +36,7 @@ class Driver:
     description: str
     seconds: float
     damages: tuple[Damage, ...]
-    #: The value of `--board` for it; empty: none.
+    #: The value of `--board` for it; empty: none.  A file is one beside the driver.
     board: str = ""
 
     @property
@@ -124,7 +124,8 @@ def check(driver: Driver, text: str) -> Result:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / driver.file.name
         file.write_text(text, encoding="utf-8")
-        board = load(driver.board or "robot")
+        beside = driver.file.parent / driver.board
+        board = load(str(beside) if driver.board.endswith(".py") else driver.board or "robot")
         wanted = DriverFiles([file], seconds=driver.seconds, board=board, board_named=bool(driver.board), silence=True)
         findings = check_files(wanted).findings
     policy = Policy()
