@@ -10,8 +10,11 @@ import ast
 import contextlib
 import json
 import os
+import re
 import shutil
+import subprocess
 import sys
+import sysconfig
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -78,8 +81,8 @@ STAYS: Final = {
 }  # fmt: skip
 #: When firmware does.
 FIRMWARE_STAYS: Final = (
-    "firmware: compiled for a run of the whole robot; Python made from its source when it is watched, debugged or "
-    "counted, and on any other board"
+    "firmware: compiled for a run of the whole robot; Python made from its source when it is debugged or counted, and "
+    "on any other board"
 )
 #: What every error of a build ends with.
 STILL: Final = "without a compiled build everything runs in plain Python, at about a quarter of the pace"
@@ -150,12 +153,15 @@ def _from(root: Path, file: str) -> str:
 def programs(own: Iterable[Path] = ()) -> dict[str, Linked]:
     """Each program of the robot that is compiled, by its identity.
 
-    They are its firmware, the same with all corrections, and its firmware with the C files `own`, if there are any.
-    Raises ValueError for C files that cannot be linked.
+    They are its firmware, the same with all corrections, and its firmware with the C files `own`, if there are any:
+    each as it runs, and as it is watched.  Raises ValueError for C files that cannot be linked.
     """
     own = list(own)
     variants: list[tuple[list[str], list[Path]]] = [([], []), ([ALL], []), *([([], own)] if own else [])]
-    linked = [link(RobotBoard(), charge_by_call=True, fixes=fixes, firmware=files).linked for fixes, files in variants]
+    linked = [
+        link(RobotBoard(), charge_by_call=True, fixes=fixes, firmware=files, watch=watch).linked
+        for fixes, files in variants for watch in (False, True)
+    ]  # fmt: skip
     return {each.identity: each for each in linked}
 
 
@@ -255,6 +261,44 @@ def _put_beside(made: Path, place: Path) -> None:
         except OSError:
             if not (place / program.name).exists():
                 raise
+
+
+def wheel(target: Path, *, root: Path = ROOT, store: Path = STORE) -> Path:
+    """The wheel of this checkout with its compiled build in it, in the folder `target`: for this Python and system.
+
+    What `KEPT` has is left out.  Raises BuildError if there is no build of these sources, or no checkout.
+    """
+    if not (root / "pyproject.toml").exists():
+        raise BuildError(f"a wheel is made of a checkout, and {root} is none: it has no pyproject.toml")
+    if find_build(store, root)[0] != "fresh":
+        raise BuildError("there is no build of these sources")
+    if not has("wheel"):
+        raise BuildError(hint("wheel"))
+    target.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="wheel-", dir=target) as folder:
+        work = Path(folder)
+        _run("pip", "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", str(work), str(root))
+        (pure,) = work.glob("*.whl")
+        _run("wheel", "unpack", str(pure), "--dest", str(work))
+        pure.unlink()
+        (unpacked,) = (path for path in work.iterdir() if path.is_dir())
+        shutil.copytree(store, unpacked / store.relative_to(root), ignore=shutil.ignore_patterns(KEPT))
+        (about,) = unpacked.glob("*.dist-info/WHEEL")
+        about.write_text(about.read_text("utf-8").replace("Root-Is-Purelib: true", "Root-Is-Purelib: false"), "utf-8")
+        _run("wheel", "pack", str(unpacked), "--dest-dir", str(work))
+        python = f"cp{sys.version_info.major}{sys.version_info.minor}"
+        system = re.sub("[-.]", "_", sysconfig.get_platform())
+        tags = ("--python-tag", python, "--abi-tag", python, "--platform-tag", system)
+        _run("wheel", "tags", "--remove", *tags, str(work / pure.name))
+        (made,) = work.glob("*.whl")
+        return made.rename(target / made.name)
+
+
+def _run(module: str, *arguments: str) -> None:
+    """Run `python -m module`.  Raises BuildError with the end of what it said if it fails."""
+    done = subprocess.run([sys.executable, "-m", module, *arguments], capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise BuildError(f"{module} failed: {' '.join((done.stderr or done.stdout).split()[-30:])}")
 
 
 def clean(store: Path = STORE) -> bool:

@@ -22,6 +22,7 @@ EXTRAS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType({
     "pyarrow": ("Parquet needs pyarrow", "trace"),
     "mypyc": ("the compiled build needs mypyc", "speed"),
     "setuptools": ("the compiled build needs setuptools", "speed"),
+    "wheel": ("a wheel with the compiled build needs wheel", "speed"),
     "sphinx": ("the site needs Sphinx", "docs"),
 })  # fmt: skip
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import builtins
 from collections.abc import Callable, Mapping, Sequence
+from inspect import unwrap
 from math import isinf
 from numbers import Integral, Real
 from types import CodeType
@@ -89,6 +90,7 @@ class Linked:
         self.coverage = coverage or Coverage()
         self.objects: dict[str, Object] = {}
         self.functions: dict[str, Callable[..., Any]] = {}
+        self._paths: dict[Callable[..., Any], str] = {}
         #: The generated Python text of each function.
         self.sources: dict[str, str] = {}
         self.last_locals: dict[str, dict[str, Any]] = {}
@@ -127,6 +129,10 @@ class Linked:
     def interpreted(self) -> bool:
         """Whether its functions run as Python; else they are methods of a compiled program."""
         return self._methods is None
+
+    def path_of(self, function: Callable[..., Any]) -> str:
+        """The `module.name` of a function of the program, as the kernel keeps it; "" for another one."""
+        return self._paths.get(unwrap(function), "")
 
     def watch_with(self, watcher: Callable[[Object, int, bool], None]) -> None:
         """From now on, call `watcher(object, word, write)` at every access.  Needs an image linked with `watch`."""
@@ -266,6 +272,7 @@ class Linked:
             defined = PyFunction(_numbered(code, first, compiled.function.name), self.namespace)
             defined.__qualname__ = path
         self.functions[path] = defined
+        self._paths[defined] = path
         function, where = compiled.function, compiled.function.where
         self.runtime.signatures[defined] = function.ctype
         self.runtime.findings.beginnings[defined] = Place(

@@ -24,6 +24,15 @@ def build(
         list[Path] | None,
         typer.Option("--firmware", metavar="DIR", help="Compile the robot with your C files too; repeatable."),
     ] = None,
+    wheel: Annotated[
+        Path | None,
+        typer.Option(
+            "--wheel",
+            metavar="FOLDER",
+            show_default=False,
+            help="Put a wheel with the compiled build into this folder, for computers without a C compiler.",
+        ),
+    ] = None,
     json_output: Annotated[bool, typer.Option("--json", help="With --why: print one JSON object on stdout.")] = False,
 ) -> None:
     """Compile the emulator: the same results, about four times as fast.  It needs a C compiler and two minutes.
@@ -34,13 +43,14 @@ def build(
     [bold]Examples[/bold]
       hil build
       hil build --firmware my_robot
+      hil build --wheel dist
       hil build --clean
       hil build --why | grep Read_Distance
     """
     if clean and why:
         raise UserError("--clean removes a build, --why builds none: give one of them")
-    if firmware and (clean or why):
-        raise UserError("--firmware compiles; --clean and --why do not: give one of them")
+    if (firmware or wheel) and (clean or why):
+        raise UserError(f"--{'firmware' if firmware else 'wheel'} compiles; --clean and --why do not: give one of them")
     if json_output and not why:
         raise UserError("--json needs --why")
     with user_errors():
@@ -54,6 +64,8 @@ def build(
                 print(f"{modules} modules compiled into {STORE}" if modules > 1 else f"1 module compiled into {STORE}")
             else:
                 print(f"nothing to compile: {STORE} has it all")
+            if wheel is not None:
+                print(builder.wheel(wheel))
 
 
 def _why(*, json_output: bool) -> None:

@@ -247,6 +247,27 @@ def test_no_compiler_makes_one_operation_of_a_product_and_a_sum(
     assert kind != "unix" or "-ffp-contract=off" in options
 
 
+def test_a_wheel_is_made_of_a_checkout_with_its_build(tree: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+    target = tmp_path_factory.mktemp("wheels")
+    with pytest.raises(build.BuildError, match="no pyproject"):
+        build.wheel(target, root=tree, store=store_of(tree))
+    (tree / "pyproject.toml").touch()
+    build.clean(store_of(tree))
+    with pytest.raises(build.BuildError, match="no build of these sources"):
+        build.wheel(target, root=tree, store=store_of(tree))
+    assert not [*target.iterdir()]
+
+
+def test_a_wheel_that_cannot_be_made_is_one_line(tree: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+    pytest.importorskip("wheel", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
+    (tree / "pyproject.toml").write_text("[build-system", "utf-8")
+    target = tmp_path_factory.mktemp("wheels")
+    with pytest.raises(build.BuildError, match="pip failed: ") as told:
+        build.wheel(target, root=tree, store=store_of(tree))
+    assert "\n" not in str(told.value)
+    assert not [*target.iterdir()]
+
+
 def test_why_lists_every_function_that_is_not_compiled_each_with_its_reason(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
@@ -355,13 +376,14 @@ def test_both_ways_give_the_same_bytes_and_the_same_findings(more: tuple[str, ..
     assert one["findings"] or "--fix" in more
 
 
+@pytest.mark.parametrize("watch", [False, True])
 @pytest.mark.parametrize("fixes", [(), ("all",)])
 def test_a_robot_whose_functions_are_methods_drives_alike(
-    fixes: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+    fixes: tuple[str, ...], watch: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def driven(program: Callable[[str], Any]) -> tuple[Any, ...]:
         monkeypatch.setattr(compiled, "program", program)
-        bench = Bench("room", fixes=fixes)
+        bench = Bench("room", fixes=fixes, watch=watch)
         bench.boot()
         bench.feed("#MISN\r")
         bench.run_for(1.0)
@@ -372,7 +394,7 @@ def test_a_robot_whose_functions_are_methods_drives_alike(
         return type(bench.firmware.linked.namespace), (bench.uart_sha256, bench.trace_sha256, told)
 
     told_as: list[str] = []
-    program = link(RobotBoard(), fixes=fixes).linked
+    program = link(RobotBoard(), fixes=fixes, watch=watch).linked
     text = as_methods.module(program.compiled, program.first)
     functions, one = driven(lambda _identity: None)
     methods, other = driven({program.identity: text}.get)

@@ -90,7 +90,7 @@ class KernelWatch:
         self.waits = TimeoutWatch(threads, locator, names, findings, self.gates, calls, linked)
         self.inversion = Inversion(threads, locator, names, findings, self.gates, calls)
         self.standstill = Standstill(
-            threads, locator, names, findings, self.gates, Posters(kernel, linked, names), calls
+            threads, locator, names, findings, self.gates, Posters(kernel, linked, names), calls, linked
         )
         self.releases = Releases(threads, locator, names, findings, calls)
         self.lost_posts = LostPosts(locator, names, findings, calls, linked)

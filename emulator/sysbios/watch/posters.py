@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from inspect import unwrap
 from typing import Any
 
 from emulator.c28x.link import Linked
@@ -44,7 +43,7 @@ class Posters:
             return None
         found: set[Task] = set()
         for what, function in self._threads():
-            path = getattr(unwrap(function), "__qualname__", "")
+            path = self._linked.path_of(function)
             if path not in self._posted:
                 return None
             reached = _reached(self._mentioned, path)

@@ -11,10 +11,10 @@ ended by a post.  Part of a program, without its `main`, gets no such finding: t
 from __future__ import annotations
 
 from functools import partial
-from inspect import unwrap
 from typing import Any, Final
 
 from emulator.c28x.findings import Findings
+from emulator.c28x.link import Linked
 from emulator.c28x.sites import Place
 from emulator.sysbios.clock import ClockObject
 from emulator.sysbios.core import WAIT_FOREVER
@@ -44,7 +44,7 @@ class Standstill:
 
     def __init__(
         self, threads: ThreadWatch, locator: StatementLocator, names: HandleNames, findings: Findings, gates: Gates,
-        posters: Posters, calls: Calls,
+        posters: Posters, calls: Calls, linked: Linked,
     ) -> None:  # fmt: skip
         self._threads = threads
         self._locator = locator
@@ -52,6 +52,7 @@ class Standstill:
         self._findings = findings
         self._gates = gates
         self._posters = posters
+        self._linked = linked
         self._pends: dict[Thread, tuple[Semaphore, StatementNumber]] = {}
         #: Waits for events and mailboxes: the function, the kernel object, and the statement.
         self._waits: dict[Thread, tuple[str, Any, StatementNumber]] = {}
@@ -190,7 +191,7 @@ class Standstill:
         """Report a wait that only the functions of Clocks end, which run once and have run."""
         ended: list[Place] = []
         for path in self._names.callers(ENDS[self._function(thread)], what):
-            of = [clock for clock in self._clocks if path == getattr(unwrap(clock.function), "__qualname__", "")]
+            of = [clock for clock in self._clocks if path == self._linked.path_of(clock.function)]
             if not of or not self._names.only_given_to(path, "Clock_create"):
                 return
             if any(clock.active or clock.period or self._names.could("Clock_start", clock) for clock in of):
