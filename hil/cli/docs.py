@@ -74,7 +74,6 @@ def _table() -> Table:
 def _site(target: Path) -> None:
     from hil.docs.site.build import build
 
-    terminal = show.console()
-    with terminal.status("the notebook") as status:
-        count = build(target, lambda name: status.update(name))
+    with show.busy("the notebook") as told:
+        count = build(target, told)
     show.print_line(f"{target / 'index.html'}: {count} pages")

@@ -35,7 +35,7 @@ def export(
       hil export --channels
     """
     with show.user_errors():
-        from hil.instruments.export import FORMATS
+        from hil.instruments.export import FORMATS, writer_of
         from hil.instruments.export import export as write
         from hil.instruments.trace_file import CHANNELS, read
 
@@ -51,14 +51,17 @@ def export(
             return
         if trace is None or target is None:
             raise show.UserError("give a trace file and a file to write: hil export run.trace run.vcd")
+        writer_of(target)
         check_target(target)
-        found = read(trace)
-        if channel:
-            try:
-                found = found.only(channel)
-            except ValueError as error:
-                raise show.UserError(f"{trace}: {error}") from None
-        write(found, target)
+        with show.busy(f"reading {trace}", quiet=json_output) as told:
+            found = read(trace)
+            if channel:
+                try:
+                    found = found.only(channel)
+                except ValueError as error:
+                    raise show.UserError(f"{trace}: {error}") from None
+            told(f"writing {target}")
+            write(found, target)
         if json_output:
             show.print_json({"file": str(target), "events": len(found.events), "channels": list(found.channels)})
         else:

@@ -360,7 +360,8 @@ def run(
             _print_summary(summary, session)
             display.print_decided(ended=True)
         if plot is not None and isinstance(machine, RobotMachine):
-            told = accounts.plot(plot, session, machine, setup, hurried=stop.requested)
+            with show.busy(f"drawing {plot}", quiet=json_output):
+                told = accounts.plot(plot, session, machine, setup, hurried=stop.requested)
             if not json_output:
                 show.print_line(told)
         if isinstance(stopped, PortError):

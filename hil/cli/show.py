@@ -182,6 +182,22 @@ def progress(what: str, *, quiet: bool = False) -> Iterator[Callable[[float], No
         yield lambda part: bar.update(task, completed=part)
 
 
+@contextmanager
+def busy(what: str, *, quiet: bool = False) -> Iterator[Callable[[str], None]]:
+    """A moving sign with a text in a terminal, for work of unknown length; call it with another text to replace it.
+
+    Elsewhere, or if `quiet`, it shows nothing.
+    """
+    from rich.text import Text
+
+    terminal = console()
+    if quiet or not terminal.is_terminal:
+        yield lambda _text: None
+        return
+    with terminal.status(Text(what)) as status:
+        yield lambda text: status.update(Text(text))
+
+
 def print_json(data: Mapping[str, Any]) -> None:
     """Exactly one JSON object on stdout.
 

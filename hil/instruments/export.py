@@ -25,11 +25,17 @@ FORMATS: Final[Mapping[str, tuple[Callable[[str | Path, RecordedTrace], None], s
 })  # fmt: skip
 
 
-def export(trace: RecordedTrace, target: str | Path) -> None:
-    """Write a trace in the format of the suffix of `target`.  Raises ValueError for an unknown suffix."""
+def writer_of(target: str | Path) -> Callable[[str | Path, RecordedTrace], None]:
+    """The function that writes the format of a file's suffix.  Raises ValueError for an unknown suffix."""
     suffix = Path(target).suffix.lower()
     known = FORMATS.get(suffix)
     if known is None:
         raise ValueError(f"{target}: no format for {suffix or 'a name without suffix'}: expected {', '.join(FORMATS)}")
+    return known[0]
+
+
+def export(trace: RecordedTrace, target: str | Path) -> None:
+    """Write a trace in the format of the suffix of `target`.  Raises ValueError for an unknown suffix."""
+    write = writer_of(target)
     with replacing(target) as new:
-        known[0](new, trace)
+        write(new, trace)

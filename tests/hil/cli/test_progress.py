@@ -42,3 +42,20 @@ def test_progress_is_shown_in_a_terminal_and_not_in_a_pipe(
     assert invoke(command) == 0
     shown = screen.getvalue()
     assert all(f"{what} " in shown and "━" in shown for what in told)
+
+
+def test_work_of_unknown_length_shows_in_a_terminal_what_it_does(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    trace = tmp_path / "[red]run.trace"
+    drive = ["run", "--no-port", "--pace", "max", "--for", "0.3", "--json", "--trace"]
+    assert invoke([*drive, str(trace)]) == 0
+    capsys.readouterr()
+    command = ["export", str(trace), str(tmp_path / "run.csv")]
+    assert invoke(command) == 0
+    piped = capsys.readouterr()
+    assert "reading" not in piped.out + piped.err
+    screen = io.StringIO()
+    monkeypatch.setattr(show, "console", lambda: Console(file=screen, force_terminal=True, width=1000))
+    assert invoke(command) == 0
+    assert f"reading {trace}" in screen.getvalue()
