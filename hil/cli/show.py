@@ -239,16 +239,18 @@ def policy() -> Policy:
 
 
 def print_findings(findings: Iterable[Finding]) -> None:
-    """The findings of a run as every command shows them; nothing if there are none.  Raises ValueError."""
+    """The findings of a run as every command shows them, or that there are none.  Raises ValueError."""
     from hil.reports.model import report_of
 
     print_report(report_of(findings))
 
 
 def print_report(report: Report) -> None:
-    """A report as the end of a command shows it: the worst findings as a table; nothing if there are none."""
+    """A report as the end of a command shows it: how many findings there are, the worst as a table."""
     from hil.reports import terminal
 
+    if not report.entries:
+        print_line(terminal.summary(()))
     terminal.print_report(report, console(), most=terminal.MAX_SHOWN)
 
 

@@ -63,7 +63,7 @@ def test_what_is_put_to_the_sensors_is_what_the_program_sends(folder: Path, caps
     assert (told["virtual_s"], told["findings"], told["ended"]) == (0.35, [], False)
     assert not {"world", "xbee", "fixes"} & told["setup"].keys()
     assert invoke(["replay", "run.wire"]) == 0
-    assert capsys.readouterr().out.startswith("byte-equal: ")
+    assert capsys.readouterr().out.startswith("no findings\nbyte-equal: ")
 
 
 def test_neither_robot_nor_world_is_loaded(folder: Path) -> None:
@@ -100,7 +100,7 @@ def test_a_program_in_c_shaped_python_on_a_bare_chip(
     (tmp_path / "lamp.py").write_text(project.LAMP)
     assert invoke(["run", "--board", "bare", "--firmware", "lamp.py", "--pace", "max", "--for", "0.02"]) == 0
     out = capsys.readouterr().out
-    assert out.startswith("port: none, bare has no line to a PC\nvirtual time 0.020 s in ")
+    assert out.startswith("port: none, bare has no line to a PC\nno findings\nvirtual time 0.020 s in ")
     assert "0 bytes from the board" in out
 
 

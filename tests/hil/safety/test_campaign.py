@@ -98,7 +98,7 @@ def test_a_full_disk_does_not_keep_failures_from_being_told(
         (folder / f"campaign-1-{number}.scenario.toml" / "inside").mkdir(parents=True)
     assert invoke(["campaign", "--keep", str(folder)]) == 2
     said = capsys.readouterr()
-    assert said.out == "run 1: it drives\nrun 3: it stopped\n3 of 5 runs held, seed 1\n"
+    assert said.out == "no findings\nrun 1: it drives\nrun 3: it stopped\n3 of 5 runs held, seed 1\n"
     assert re.fullmatch(rf"hil: error: {folder}/campaign-1-1.scenario.toml: .+ \(and 1 more\)\n", said.err)
 
 
