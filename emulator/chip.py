@@ -159,8 +159,8 @@ class Chip:
         self.pie = Pie(clock, cpu, self._block("PieCtrlRegs", PieCtrlRegs))
         core, vectors = CpuRegs("CPU", 0, cpu), made["PieVectTable"]
         assert isinstance(vectors, PieVectTable)
-        core.bind("IER", read=lambda: cpu.ier, write=lambda word, _lanes: cpu.write_ier(word))
-        core.bind("IFR", read=lambda: cpu.ifr, write=lambda word, _lanes: cpu.write_ifr(word))
+        core.bind("IER", read=lambda: cpu.ier, write=lambda word, _lanes: cpu.write_ier(word), steady=True)
+        core.bind("IFR", read=lambda: cpu.ifr, write=lambda word, _lanes: cpu.write_ifr(word), steady=True)
         self.vectors = VectorTable(cpu, self.pie, vectors)
         #: Blocks that C names and whose registers are not words of the memory here.
         self._named: dict[str, Block] = {"CPU": core, "PieVectTable": vectors}

@@ -246,6 +246,11 @@ class Clock:
             self.waited += skipped
 
     @property
+    def scheduled(self) -> int:
+        """How many events were ever scheduled."""
+        return self._sequence
+
+    @property
     def events_run(self) -> int:
         """How many events have run since the clock was made."""
         waiting = sum(event[3] is not None for event in self._heap) - 1 + (self._soonest is not None)

@@ -225,7 +225,7 @@ class Runtime:
         #: Whether time skips the turns of a loop that change nothing.
         self.skips_turns = False
         #: After the last such turn: the time, the time of the next event, and the occurrences of findings.
-        self._idle_turn = (-1, -1, -1)
+        self._idle_turn = (-1, -1, -1, -1)
         memory.take_policy_from(self)
 
     # Reports
@@ -1142,15 +1142,15 @@ class Runtime:
     def turn(self, began: int, until: int) -> None:
         """A turn of a loop that began at `began` has changed nothing (pass `idle_turns`).
 
-        If no event came in it and the turn before it was such a one too, the next ones are the same.  Time skips those
-        that end before the next event, and before `until`.
+        If no event came in it or was scheduled, and the turn before it was such a one too, the next ones are the same.
+        Time skips those that end before the next event, and before `until`.
         """
         if not self.skips_turns:
             return
         clock, findings = self.clock, self.findings
-        if self._idle_turn == (began, clock.next, findings.occurrences):
+        if self._idle_turn == (began, clock.next, clock.scheduled, findings.occurrences):
             clock.skip_turns(clock.now - began, until)
-        self._idle_turn = (clock.now, clock.next, findings.occurrences)
+        self._idle_turn = (clock.now, clock.next, clock.scheduled, findings.occurrences)
 
     def idle(self, number: int) -> None:
         """An endless loop without a body has no more events to wait for: raises Idling."""

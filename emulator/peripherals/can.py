@@ -188,12 +188,15 @@ class Can:
         bind("CAN_GLB_INT_CLR", write=self._write_CAN_GLB_INT_CLR)
         bind("CAN_IP_MUX21", write=self._write_CAN_IP_MUX21)
         for name, bit in (("TXRQ", TXRQST), ("NDAT", NEWDAT), ("IPEN", INTPND)):
-            bind(f"CAN_{name}_21", read=partial(self.ram.flags, bit))
-            bind(f"CAN_{name}_X", read=partial(self._groups, partial(self.ram.flags, bit)))
-        bind("CAN_MVAL_21", read=self.ram.valid_objects)
-        bind("CAN_MVAL_X", read=partial(self._groups, self.ram.valid_objects))
+            bind(f"CAN_{name}_21", read=partial(self.ram.flags, bit), steady=True)
+            bind(f"CAN_{name}_X", read=partial(self._groups, partial(self.ram.flags, bit)), steady=True)
+        bind("CAN_MVAL_21", read=self.ram.valid_objects, steady=True)
+        bind("CAN_MVAL_X", read=partial(self._groups, self.ram.valid_objects), steady=True)
         for n in self._transfers:
-            bind(f"CAN_IF{n}CMD", read=partial(self._read_CAN_IFxCMD, n), write=partial(self._write_CAN_IFxCMD, n))
+            bind(
+                f"CAN_IF{n}CMD", read=partial(self._read_CAN_IFxCMD, n), write=partial(self._write_CAN_IFxCMD, n),
+                steady=True,
+            )  # fmt: skip
             for part in PARTS:
                 bind(
                     f"CAN_IF{n}{part}", read=partial(self._read_interface, n, part),

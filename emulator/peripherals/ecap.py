@@ -111,7 +111,7 @@ class ECap:
         bind("ECCTL1", write=self._write_ECCTL1)
         bind("ECCTL2", write=self._write_ECCTL2)
         bind("ECEINT", write=self._write_ECEINT)
-        bind("ECFLG", read=self._read_ECFLG)
+        bind("ECFLG", read=self._read_ECFLG, steady=True)
         bind("ECCLR", write=self._write_ECCLR)
         bind("ECFRC", write=self._write_ECFRC)
 

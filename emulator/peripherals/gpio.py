@@ -95,7 +95,7 @@ class GpioPort:
         self._odr = self._ctrl["ODR"]
         self._inv = self._ctrl["INV"]
         self._lock = self._ctrl["LOCK"]
-        data.bind(f"{prefix}DAT", read=self._read_DAT, write=self._write_DAT)
+        data.bind(f"{prefix}DAT", read=self._read_DAT, write=self._write_DAT, steady=True)
         data.bind(f"{prefix}SET", write=self._write_SET)
         data.bind(f"{prefix}CLEAR", write=self._write_CLEAR)
         data.bind(f"{prefix}TOGGLE", write=self._write_TOGGLE)

@@ -102,7 +102,7 @@ class Sci:
             regs.bind(baud.name, write=partial(self._write_baud, baud))
         regs.bind("SCICCR", write=self._write_SCICCR)
         regs.bind("SCICTL1", write=self._write_SCICTL1)
-        regs.bind("SCICTL2", read=self._read_SCICTL2)
+        regs.bind("SCICTL2", read=self._read_SCICTL2, steady=True)
         regs.bind("SCITXBUF", write=self._write_SCITXBUF)
         regs.bind("SCIFFTX", write=self._write_SCIFFTX)
 

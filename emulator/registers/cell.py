@@ -61,8 +61,8 @@ class Cell:
     write_only: ClassVar[bool] = False
 
     __slots__ = (
-        "_chosen", "_followers", "_plain", "_taps", "address", "block", "gate", "modify", "name", "on_read", "on_write",
-        "read", "value", "write",
+        "_chosen", "_followers", "_plain", "_taps", "address", "block", "gate", "modify", "name", "on_read",
+        "on_read_steady", "on_write", "read", "value", "write",
     )  # fmt: skip
 
     def __init__(self, block: Owner, name: str, address: int) -> None:
@@ -72,6 +72,8 @@ class Cell:
         self.value = self.reset_value
         self.on_read: Callable[[], int] | None = None
         self.on_write: Callable[[int, int], None] | None = None
+        #: Whether `on_read` gives the same again, and does nothing else, as long as no event comes.
+        self.on_read_steady = False
         self._followers: list[tuple[dict[str, Any], str, str]] = []
         self._taps: dict[Seen, bool] = {}
         #: Whether the access functions are those of the present state; else the first access chooses them.
@@ -134,7 +136,7 @@ class Cell:
 
         "read", "write" and "modify" are functions.  "source" is an object whose attribute `value` is what the CPU reads:
         the register itself, as long as reading is only looking.  "gate" is `gate`, "cleared" the register that it
-        clears.
+        clears, "steady" is `steady`.
         """
         self._followers.append((namespace, name, access))
         self._choose()
@@ -159,6 +161,12 @@ class Cell:
         """Whether reading is nothing but looking at the stored word, as long as the module's clock is on."""
         masked = self.read_mask != (1 << self.bits) - 1 and self.write_only
         return self.on_read is None and not masked
+
+    @property
+    def steady(self) -> bool:
+        """Whether one read is as good as many, as long as no event comes: they give the same, and nobody notices them."""
+        watched = any(self._taps.values())
+        return self.block.clocked and not watched and (self.on_read is None or self.on_read_steady)
 
     @property
     def source(self) -> Cell | Source:

@@ -277,10 +277,13 @@ class Block:
                 register.bind()
 
     def bind(self, name: str, *, read: Callable[[], int] | None = None,
-             write: Callable[[int, int], None] | None = None) -> None:  # fmt: skip
-        """Give register `name` behaviour.  `write(word, lanes)` replaces the plain store."""
+             write: Callable[[int, int], None] | None = None, steady: bool = False) -> None:  # fmt: skip
+        """Give register `name` behaviour.  `write(word, lanes)` replaces the plain store.
+
+        `steady`: `read` gives the same again, and does nothing else, as long as no event comes.
+        """
         register = self.registers[name]
-        register.on_read = read
+        register.on_read, register.on_read_steady = read, steady
         register.on_write = write
         register.bind()
 

@@ -148,7 +148,7 @@ class PythonWriter:
         self.fresh = 0
         self.around: list[_Breakable] = []
         #: The loops with turns that time may skip, and what ends the idleness of a turn.  Nobody counts or stops there.
-        self.idle_loops, self.busy = idle_turns(function) if watch and not (coverage or steps) else (set(), {})
+        self.idle_loops, self.busy = idle_turns(function) if watch and not (coverage or steps) else ({}, {})
         #: Identity of a loop -> the variable with the beginning of its turn, and the text of its time limit.
         self.turn_of: dict[int, str] = {}
         self.limits: dict[int, str] = {}
@@ -504,7 +504,10 @@ class PythonWriter:
         self.flush()
         if id(loop) in self.idle_loops:
             began = self.turn_of[id(loop)]
-            self.put(f"if {began} >= 0: _c_turn({began}, {self.limits.get(id(loop), '_c_NEVER')})")
+            idle = " and ".join(
+                [f"{began} >= 0", *(self.names.register(ref, "steady") for ref in self.idle_loops[id(loop)])]
+            )
+            self.put(f"if {idle}: _c_turn({began}, {self.limits.get(id(loop), '_c_NEVER')})")
         self.where = where
         if isinstance(loop, For):
             self.step(loop)

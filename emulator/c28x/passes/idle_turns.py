@@ -1,8 +1,10 @@
 """Pass `idle_turns`: the turns of a loop that change nothing, so that the next one does the same.
 
-A turn is idle if it only reads named objects, compares them, and sets locals that it does not read before.  As long as
-no event comes, each turn after an idle one is idle too, and takes the same cycles.  So time can skip whole turns
-(`Runtime.turn`), up to the next event.
+A turn is idle if it only reads named objects and registers, compares them, and sets locals that it does not read
+before.  As long as no event comes, each turn after an idle one is idle too, and takes the same cycles.  So time can
+skip whole turns (`Runtime.turn`), up to the next event.
+
+A register may change by itself, or notice that it is read.  The loop asks each of them at run time (`Cell.steady`).
 
 `while (1) { now = Ticks; if (now - last >= 10) { last = now; Report(); } }` has such turns: those in which the test
 fails.  What begins a turn that is not idle is marked.
@@ -15,6 +17,8 @@ from collections.abc import Iterable
 from emulator.c28x.tree import (
     Assign,
     Break,
+    Call,
+    CallPointer,
     Continue,
     Declare,
     Expr,
@@ -23,21 +27,23 @@ from emulator.c28x.tree import (
     If,
     LValue,
     RegisterAt,
+    RegisterLoad,
     RegisterRef,
     Return,
     Stmt,
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import OBSERVABLE, parts, polls, statements
+from emulator.c28x.tree_queries import parts, polls, statements
 
 
-def idle_turns(function: Function) -> tuple[set[int], dict[int, list[int]]]:
+def idle_turns(function: Function) -> tuple[dict[int, list[RegisterRef]], dict[int, list[int]]]:
     """The loops of a function that have idle turns, and the statements that end the idleness of a turn.
 
-    Returns identities: of loops, and of statements, each with those of the loops whose turn it is part of.
+    Returns identities: of loops, each with the registers that idle turns read, and of statements, each with those of
+    the loops whose turn it is part of.
     """
-    loops: set[int] = set()
+    loops: dict[int, list[RegisterRef]] = {}
     marks: dict[int, list[int]] = {}
     for s in statements(function.body):
         if isinstance(s, While) and s.body and not polls(s):
@@ -47,7 +53,7 @@ def idle_turns(function: Function) -> tuple[set[int], dict[int, list[int]]]:
                 turn = _Turn(turn.carried | turn.set & turn.read)
                 idle = turn.of(s)
             if idle:
-                loops.add(id(s))
+                loops[id(s)] = list(turn.registers.values())
                 for statement in turn.busy:
                     marks.setdefault(id(statement), []).append(id(s))
     return loops, marks
@@ -63,6 +69,8 @@ class _Turn:
         #: The locals that idle turns set, and those that they read before they have set them.
         self.set: set[Variable] = set()
         self.read: set[Variable] = set()
+        #: The registers that they read, by block and name.
+        self.registers: dict[tuple[str, str], RegisterRef] = {}
         #: Whether a `continue` ends an idle turn; a test that follows it.
         self.carries_on = False
         self.last: list[Expr] = []
@@ -120,13 +128,14 @@ class _Turn:
             for part in parts(value):
                 if isinstance(part, LValue) and isinstance(part.root, Variable) and part.root not in known:
                     self.read.add(part.root)
+                elif isinstance(part, RegisterLoad) and isinstance(part.register, RegisterRef):
+                    self.registers.setdefault((part.register.block, part.register.register), part.register)
 
 
 def _pure(values: Iterable[Expr]) -> bool:
-    """Whether expressions only read named objects: no register, no call, no pointer."""
+    """Whether expressions only read named objects and registers: no call, no pointer."""
     for part in (p for value in values for p in parts(value)):
-        if isinstance(part, (*OBSERVABLE, RegisterRef, RegisterAt)):
-            return False
-        if isinstance(part, LValue) and isinstance(part.root, Expr):
-            return False
+        match part:
+            case Call() | CallPointer() | LValue(root=Expr()) | RegisterLoad(register=RegisterAt()):
+                return False
     return True
