@@ -27,7 +27,7 @@ from emulator.c28x.program import Program
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Where
-from emulator.c28x.tree_queries import compared, limited
+from emulator.c28x.tree_queries import compared, limited, made_float
 
 
 @reading(0)
@@ -52,6 +52,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
     cut_pulses = pulses(modules, entries)
     names_compared = compared(f for module in modules for f in module.functions)
     names_limited = limited(f for module in modules for f in module.functions)
+    floats_made = made_float(f for module in modules for f in module.functions)
     costs = Costs(float_division(options.float_division))
     owners: set[str] = set()
     functions = []
@@ -66,7 +67,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
             frame.lay_out(function, options.room, residue=options.residue)
             Guards(
                 function, watch=options.watch, ieee=options.ieee, room=options.room, compared=names_compared,
-                limited=names_limited, stamps=suspicions, pulses=cut_pulses,
+                limited=names_limited, made_float=floats_made, stamps=suspicions, pulses=cut_pulses,
             ).run()  # fmt: skip
             costs.leave(function)
             mark_copy_and_clear(function)

@@ -48,6 +48,8 @@ LOOP_LIMIT_S: Final = 0.2
 _STAMPS: Final = 64
 #: A longer time between two captures is reported at the third use.  One may come from an edge that was missed.
 WRONG_PULSES: Final = 3
+#: CHOICE: a number from -1 down to this one counts as a small negative one (`sign_lost`).
+SMALL: Final = -4096
 #: CHOICE: a float passed for an integer parameter that never reaches this value was not meant as an integer.
 _FEW: Final = 10
 FILLS: Final = ("zero", "ones", "nan", "random:SEED", "stack", "trap")
@@ -985,6 +987,8 @@ class Runtime:
     def sign_lost(self, value: int, number: int) -> int:
         """A negative number that is converted to unsigned."""
         site = self.sites[number]
+        if site.kind == "small" and value < SMALL:
+            return value
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         taken = value & (1 << ctype.bits) - 1

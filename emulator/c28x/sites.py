@@ -65,7 +65,8 @@ class Site:
     #: Arithmetic: the wider type that the result is converted to; the rule that a wrap violates.
     widened: str = ""
     rule: str = ""
-    #: "shift" or "sign": the cause of a result out of range; "idle": a loop that is written without an end.
+    #: "shift" or "sign": the cause of a result out of range; "small": only a small negative number counts; "idle": a
+    #: loop that is written without an end.
     kind: str = ""
     #: The result is an unsigned difference of two variables.
     difference: bool = False

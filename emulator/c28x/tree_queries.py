@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import Any, Final, get_args, get_type_hints
 
 from emulator.c28x import tree
-from emulator.c28x.ctypes import FloatType, IntType, PointerType
+from emulator.c28x.ctypes import FloatType, IntType, PointerType, StructType
 from emulator.c28x.tree import (
     FOUND,
     AddressOf,
@@ -359,6 +359,34 @@ def limited(functions: Iterable[Function]) -> set[Variable]:
                     given = [x.value for x in then if isinstance(x, Assign | Return) and isinstance(x.value, Expr)]
                     if any(_same(value, limit) for value in given):
                         found.add(root)
+    return found
+
+
+#: A scalar by what holds it, whichever object that is: the object itself or the structure, and the offset in words.
+NamedScalar = tuple[Variable | StructType, int]
+
+
+def named_scalar(lvalue: LValue) -> NamedScalar | None:
+    """The scalar that an lvalue names: a variable, or a member of a structure; None for an element of an array."""
+    match lvalue:
+        case LValue(indices=[], bits=None, root=Variable(ctype=StructType() as holder), words=words):
+            return holder, words
+        case LValue(indices=[], bits=None, root=Variable() as holder, words=words):
+            return holder, words
+        case LValue(indices=[], bits=None, root=Expr(ctype=PointerType(target=StructType() as holder)), words=words):
+            return holder, words
+    return None
+
+
+def made_float(functions: Iterable[Function]) -> set[NamedScalar]:
+    """The unsigned scalars of 16 bits whose value some expression converts to a float."""
+    found: set[NamedScalar] = set()
+    for function in functions:
+        for p in within(function.body):
+            match p:
+                case Convert(ctype=FloatType(), operand=Load(ctype=IntType(signed=False, bits=16), lvalue=lvalue)):
+                    if (named := named_scalar(lvalue)) is not None:
+                        found.add(named)
     return found
 
 

@@ -156,7 +156,7 @@ source has a minus or a negative constant there.
     _rule(
         "sign-lost",
         Severity.ERROR,
-        "A negative number was taken as an unsigned one, and then limited, scaled or divided.",
+        "A negative number was taken as an unsigned one, and then limited, scaled, divided or made a float.",
         """
 Full power for a small negative error.
 
@@ -165,7 +165,10 @@ of it. `(int32) SWING * (Uint16) position` multiplies by 65535. An unsigned para
 caller's argument.
 
 The finding is made where a negative number becomes unsigned, if the object or parameter is limited above, or if a cast
-makes it unsigned and the result is then widened and multiplied, divided, or converted to float.
+makes it unsigned and the result is then widened and multiplied, divided, or converted to float. So it is if the source
+casts a number to a signed type, an unsigned object or member takes it, and another expression makes a float of that
+(`raw.x = (int16)(high << 8 | low);` with `Uint16 x`). Then only -4096 to -1 count: a cast may be needless, but a small
+negative number is none of the upper half of an unsigned range.
 
 These are not reported: additions and subtractions, which give the right result; masks and shifts; a factor above
 65535; a test that rejects the number (`if (x >= N) return;`), because it rejects negative ones too.

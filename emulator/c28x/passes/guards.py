@@ -93,12 +93,14 @@ from emulator.c28x.tree import (
     While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
+    NamedScalar,
     averaged,
     bare,
     blocks,
     children,
     computes_alone,
     different,
+    named_scalar,
     parts,
     polls,
     register_text,
@@ -130,12 +132,13 @@ class Guards:
 
     `watch`: the image is watched; `ieee`: float division follows IEEE; `room`: path of an array -> its length, instead
     of that of its type; `compared`: variables that occur in a comparison or a subscript; `limited`: unsigned variables
-    that some function limits; `stamps`: the suspicions of pass `stamps`; `pulses`: the result of pass `pulses`.
+    that some function limits; `made_float`: unsigned scalars that some function makes floats of; `stamps`: the
+    suspicions of pass `stamps`; `pulses`: the result of pass `pulses`.
     """
 
     def __init__(
         self, function: Function, *, watch: bool, ieee: bool, room: Mapping[str, int], compared: Set[Variable],
-        limited: Set[Variable], stamps: Mapping[int, str], pulses: Mapping[int, str],
+        limited: Set[Variable], made_float: Set[NamedScalar], stamps: Mapping[int, str], pulses: Mapping[int, str],
     ) -> None:  # fmt: skip
         self.function = function
         self.watch = watch
@@ -143,6 +146,7 @@ class Guards:
         self.room = room
         self.compared = compared
         self.limited = limited
+        self.made_float = made_float
         self.stamps = stamps
         self.pulses = pulses
         self.where = function.where
@@ -186,6 +190,7 @@ class Guards:
                     self.leaves_for_all(target.root, value)
                     if not target.indices:
                         self.limited_later(target.root, value)
+                        self.float_later(target, value)
                     self.check_access(target)
                 else:
                     self.value(value)
@@ -274,6 +279,17 @@ class Guards:
         """Check a value of a variable that is limited as unsigned: a negative number would become the largest."""
         if isinstance(root, Variable) and root in self.limited:
             self.not_negative(value, "is limited")
+
+    def float_later(self, target: LValue, value: Expr) -> None:
+        """Check a number that the source casts to signed and then stores as unsigned, where its value becomes a float.
+
+        A small negative number is none of the upper half of an unsigned range.
+        """
+        cast = as_unsigned(value)
+        if isinstance(cast, Convert) and cast.explicit and named_scalar(target) in self.made_float:
+            later = "becomes a float later"
+            site = self.site(cast.ctype, source_text(cast), at=cast.where, widened=later, kind="small")
+            cast.leaving = Guard("sign-lost", site)
 
     def not_negative(self, e: Expr, then: str) -> None:
         """Check a signed number that is converted to unsigned of the same width; `then`: how it is used as a number."""

@@ -308,6 +308,55 @@ def Duty(error: int32) -> int16:
     ),
     Pair(
         "sign-lost",
+        "a signed word in an unsigned member",
+        (("Take", (0xFFF6,)),),
+        """
+class raw(struct):
+    x: uint16
+    y: uint16
+Raw: raw = (0, 0)
+def Store(r: ptr[raw], word: uint16) -> void:
+    r.y = int16(word)  # <-
+def Rate(r: ptr[raw]) -> float32:
+    return r.y / float32(32.8)
+def Take(word: uint16) -> float32:
+    Store(addressof(Raw), word)
+    return Rate(addressof(Raw))
+""",
+        """
+class raw(struct):
+    x: uint16
+    y: int16
+Raw: raw = (0, 0)
+def Store(r: ptr[raw], word: uint16) -> void:
+    r.x = int16(word)
+    r.y = int16(word)
+def Rate(r: ptr[raw]) -> float32:
+    return r.y / float32(32.8) + float32(int16(r.x))
+def Take(word: uint16) -> float32:
+    Store(addressof(Raw), word)
+    return Rate(addressof(Raw))
+""",
+    ),
+    Pair(
+        "sign-lost",
+        "a signed word of a sensor in an unsigned object",
+        (("Celsius", (0xFF38,)),),
+        """
+Word: uint16 = 0
+def Celsius(word: uint16) -> float32:
+    Word = int16(word)  # <-
+    return Word * float32(0.0625)
+""",
+        """
+Word: uint16 = 0
+def Celsius(word: uint16) -> float32:
+    Word = int16(word ^ 0x6000)  # 0x9F38, in the upper half of an unsigned range
+    return Word * float32(0.0625)
+""",
+    ),
+    Pair(
+        "sign-lost",
         "a cast before the product is widened",
         (("Width", (-1024,)),),
         """
