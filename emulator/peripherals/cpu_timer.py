@@ -5,8 +5,8 @@ than SYSCLK, which timer 2 can have (`set_tick`).
 Not modelled: FREE and SOFT (nothing halts).
 Time: the prescaler counts SYSCLK down from TDDRH:TDDR, and TIM counts its underflows; the period is (PRD+1)*(TDDR+1)
 cycles.  Counters are computed when they are read.  An underflow is a clock event only where it changes something: TIF
-is clear, TIE is set, or a trigger has a listener.  A caller that knows that the next interrupts only take CPU time can
-handle them together (`skip`).
+is clear, TIE is set, a trigger has a listener, or the program has seen TIF and may see it again.  A caller that knows
+that the next interrupts only take CPU time can handle them together (`skip`).
 Reported: TIF that is read as 1, and again as 1 after an underflow, without a clear in between (`flag-not-cleared`).
 Sources: TRM CPU timers; HDR F2837xS_cputimer.h.
 """
@@ -45,7 +45,9 @@ class CpuTimer:
             ("TPR", self._read_TPR, self._write_TPR),
             ("TPRH", self._read_TPRH, self._write_TPRH),
         ):
-            regs.bind(name, read=read, write=write)
+            regs.bind(name, read=read, write=write, steady=name == "TCR")
+        #: The event at `_next_underflow`: a poll of TCR goes on there.
+        self._next_check: Event | None = None
         self._event: Event | None = None
         #: SYSCLK cycles of one period of the clock that is counted.
         self._tick = 1
@@ -197,6 +199,8 @@ class CpuTimer:
         elif self._next_underflow is None:
             self._sync()
             self._next_underflow = self._clock.now + self._psc + 1 + self._tim.value * (self._reload() + 1)
+            self._clock.cancel(self._next_check)
+            self._next_check = self._clock.schedule(self._next_underflow, self._check_again)
         elif self._clock.now >= self._next_underflow:
             path = f"{self._tcr.path}.TIF"
             self._cpu.findings.report(
@@ -207,7 +211,12 @@ class CpuTimer:
             )  # fmt: skip
         return tcr
 
+    def _check_again(self) -> None:
+        self._next_check = None
+
     def _write_TCR(self, word: int, lanes: int = ALL) -> None:
+        self._clock.cancel(self._next_check)
+        self._next_check = None
         self._sync()
         self._tcr.store(word, lanes & LOW)
         self._next_underflow = None

@@ -49,10 +49,13 @@ def test_a_timer_runs_right_out_of_reset_and_sets_only_its_flag() -> None:
     bench.clock.charge(0xFFFF)
     assert (bench.regs.TIM.all, bench.regs.TCR.bit.TIF) == (0, 0)
     bench.clock.charge(1)
-    assert (bench.regs.TIM.all, bench.regs.TCR.bit.TIF, bench.pulses) == (0xFFFF, 1, [])
     # With its flag set nothing changes any more, so nothing is scheduled.
     assert bench.clock.next == NEVER
+    assert (bench.regs.TIM.all, bench.regs.TCR.bit.TIF, bench.pulses) == (0xFFFF, 1, [])
+    # Who has seen the flag once goes on at the next underflow, behind which it is an old one.
+    assert bench.clock.next == bench.clock.now + 65536
     bench.clock.charge(65536 + 5)
+    assert bench.clock.next == NEVER
     assert bench.regs.TIM.all == 0xFFFF - 5
 
 
