@@ -17,7 +17,7 @@ from typing import Any
 from emulator.c28x.position import Calls, Position, frames
 from emulator.c28x.sites import Place, Places
 from emulator.clock import Clock, us
-from emulator.rules import RULES, Severity
+from emulator.rules import RULES, Severity, counted
 from emulator.signal import Signal
 
 
@@ -117,7 +117,7 @@ class Findings:
         return list(self)[index]
 
     def __repr__(self) -> str:
-        return f"<{len(self)} findings of {len({finding.rule for finding in self})} rules>"
+        return f"<{counted(_severity(finding.rule) for finding in self)}>"
 
     def _repr_html_(self) -> str:
         """The findings as a table for notebooks, the worst first."""

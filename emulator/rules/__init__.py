@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import Final
 
 from emulator.rules import arithmetic, behaviour, control, device_time, kernel, memory, peripherals, source, static
-from emulator.rules.rule import Rule, Severity
+from emulator.rules.rule import Rule, Severity, counted
 
-__all__ = ["RULES", "Rule", "Severity"]
+__all__ = ["RULES", "Rule", "Severity", "counted"]
 
 _FAMILIES: Final = (memory, arithmetic, control, static, source, kernel, peripherals, device_time, behaviour)
 

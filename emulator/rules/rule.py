@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 
@@ -17,6 +18,14 @@ class Severity(Enum):
     def rank(self) -> int:
         """0 for a note, 2 for an error."""
         return ("note", "warning", "error").index(self.value)
+
+
+def counted(severities: Iterable[Severity]) -> str:
+    """The number of findings of each severity, the worst first: "11 errors, 35 warnings"; "no findings"."""
+    every = list(severities)
+    counts = [(every.count(severity), severity.value) for severity in reversed(Severity)]
+    texts = [f"{number} {name}{'' if number == 1 else 's'}" for number, name in counts if number]
+    return ", ".join(texts) or "no findings"
 
 
 @dataclass(frozen=True, slots=True)

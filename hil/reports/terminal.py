@@ -12,7 +12,7 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from emulator.rules import Severity
+from emulator.rules import Severity, counted
 from hil.reports.differences import RunDifferences
 from hil.reports.excerpt import excerpt, function_of, location, readable, relative_path, shown
 from hil.reports.model import Report, ReportEntry
@@ -143,10 +143,7 @@ def as_a_compiler(report: Report) -> Iterator[str]:
 
 def summary(entries: Iterable[ReportEntry]) -> str:
     """The number of findings of each severity: "11 errors, 35 warnings"."""
-    severities = [entry.severity for entry in entries]
-    counts = [(severities.count(severity), severity.value) for severity in reversed(Severity)]
-    texts = [f"{number} {name}{'' if number == 1 else 's'}" for number, name in counts if number]
-    return ", ".join(texts) or "no findings"
+    return counted(entry.severity for entry in entries)
 
 
 def last_line(report: Report) -> str:

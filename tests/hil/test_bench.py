@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from dataclasses import fields
 from itertools import pairwise
 
@@ -10,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from emulator.rules import RULES
 from hil.bench import Bench
 from hil.client.decode import OdometryFrame
 from hil.machine import Setup
@@ -96,7 +98,8 @@ def test_findings_have_an_index_and_a_line(driven: Bench) -> None:
         assert finding.object in line
         assert finding.place is None or str(finding.place.line) in line
         assert "/" not in line.partition(" at ")[2].partition(";")[0], "the file without its folders"
-    assert repr(driven.findings).startswith(f"<{len(driven.findings)} findings")
+    count = Counter(RULES[finding.rule].severity.value for finding in driven.findings)
+    assert repr(driven.findings) == f"<{count['error']} errors, {count['warning']} warnings, {count['note']} note>"
     assert "MISSION" in repr(driven)
 
 
