@@ -143,7 +143,7 @@ def _set_together(block: list[Stmt]) -> dict[str, frozenset[int]]:
 
 
 def _counts(value: Expr, target: LValue) -> bool:
-    """Whether a value is that of its target, stepped by a constant: it says the same one step later."""
+    """Whether a value is the old one of its target plus or minus a constant: the object counts."""
     match bare(value):
         case Binary(op="+" | "-", left=left, right=right):
             stepped = bare(left)

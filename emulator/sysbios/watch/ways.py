@@ -100,7 +100,10 @@ class Ways:
             self._walk(function.body, free=True)
 
     def _walk(self, body: list[Stmt], *, free: bool) -> bool:
-        """Follow a block that is entered whatever the routines have told (`free`); whether its end is reached so."""
+        """Follow a block.  `free`: it is entered whatever the routines have told.
+
+        Returns whether its end is reached whatever they have told.
+        """
         for s in body:
             if free:
                 self.undecided.append(s)

@@ -1,4 +1,4 @@
-"""A picture of the tutorial: ``python -m tests.hil.docs.picture tutorial-red.png`` (or ``tutorial-board.png``)."""
+"""A picture of the tutorial: ``python -m tests.hil.docs.picture tutorial-red.png`` (or ``-new``, ``-board``)."""
 
 from __future__ import annotations
 
@@ -27,18 +27,37 @@ TOOK: Final = re.compile(r" in [\d.]+s")
 TUTORIAL: Final = Path(hil.__file__).with_name("docs") / "tutorial.md"
 
 
+def printed(*command: str, folder: str = ".") -> str:
+    """What a command prints in a terminal with 100 columns."""
+    # pytest prints otherwise on a CI machine (CI, BUILD_NUMBER), at another width, and with options of the environment.
+    at_a_desk = {name: value for name, value in os.environ.items() if not OTHERWISE.match(name)}
+    done = subprocess.run(
+        [sys.executable, "-m", *command], capture_output=True, text=True, check=False, cwd=folder,
+        env=at_a_desk | {"COLUMNS": "100"},
+    )  # fmt: skip
+    return TOOK.sub("", done.stdout.strip())
+
+
+def show_terminal(page: Any, title: str, text: str) -> None:
+    with open("/dev/null", "w", encoding="utf-8") as nowhere:
+        console = Console(record=True, width=100, file=nowhere)
+        console.print(Text.from_ansi(text))
+    page.set_content(console.export_svg(title=title, theme=DEFAULT_TERMINAL_THEME))
+
+
+def new(page: Any) -> None:
+    """What `hil new` prints, and the first pytest in its folder."""
+    Path("again").mkdir()
+    made = printed("hil", "new", "ranger", folder="again")
+    passed = printed("pytest", "-q", "--color=yes", folder="again/ranger")
+    show_terminal(page, "hil new ranger", f"$ hil new ranger\n{made}\n\n$ cd ranger\n$ pytest -q\n{passed}")
+
+
 def red_test(page: Any) -> None:
     """What pytest prints when the commented line of the driver is a statement."""
     driver = Path("ranger.c")
     driver.write_text(WRONG.sub(r"\1", driver.read_text(encoding="utf-8")), encoding="utf-8")
-    command = [sys.executable, "-m", "pytest", "-q", "--color=yes", "-k", "0.5"]
-    # pytest prints otherwise on a CI machine (CI, BUILD_NUMBER), at another width, and with options of the environment.
-    at_a_desk = {name: value for name, value in os.environ.items() if not OTHERWISE.match(name)}
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=at_a_desk)
-    with open("/dev/null", "w", encoding="utf-8") as nowhere:
-        console = Console(record=True, width=100, file=nowhere)
-        console.print(Text.from_ansi(TOOK.sub("", done.stdout.strip())))
-    page.set_content(console.export_svg(title="pytest -k 0.5", theme=DEFAULT_TERMINAL_THEME))
+    show_terminal(page, "pytest -k 0.5", printed("pytest", "-q", "--color=yes", "-k", "0.5"))
 
 
 def board(page: Any) -> subprocess.Popen[str]:
@@ -67,8 +86,8 @@ def main() -> None:
         browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
         page = browser.new_page(viewport=SIZE)
         with chdir("ranger"):
-            running = {"tutorial-red": red_test, "tutorial-board": board}[made.stem](page)
-            shown = page.locator("svg").first if made.stem == "tutorial-red" else page
+            running = {"tutorial-new": new, "tutorial-red": red_test, "tutorial-board": board}[made.stem](page)
+            shown = page if running else page.locator("svg").first
             shown.screenshot(path=made, animations="disabled")
             if running is not None:
                 running.terminate()
