@@ -358,4 +358,4 @@ def test_a_wait_for_a_part_that_falls_silent_is_told_where_nobody_looks_at_its_r
     wanted = DriverFiles([tmp_path / "drv.c"], seconds=0.05, calls=1, board=board, board_named=True, silence=silence)
     found = [f for f in check_files(wanted).findings if f.rule == "endless-poll" and f.how == "dynamic"]
     assert ["RRDY" in text.splitlines()[f.place.line - 1] for f in found if f.place] == [True] * told
-    assert all("no part on the I2C answers" in f.details[-1] for f in found)
+    assert all("nothing on the I2C answers" in f.details[-1] for f in found)
