@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final, Protocol
 
-from emulator.clock import NEVER, SYSCLK_HZ, Clock, Event
+from emulator.clock import NEVER, SYSCLK_HZ, Clock, ClockEvent
 from emulator.signal import Signal
 
 #: Generator of the CRC: x^15 + x^14 + x^10 + x^8 + x^7 + x^4 + x^3 + 1.
@@ -225,8 +225,8 @@ class CanBus:
         self._frame: CanFrame | None = None
         self._begun = 0
         self._bit = 1
-        self._event: Event | None = None
-        self._attempt: Event | None = None
+        self._event: ClockEvent | None = None
+        self._attempt: ClockEvent | None = None
         #: The first cycle at which a frame may begin.
         self.free_at = 0
         self._disturbed: list[int] = []

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from heapq import heappop, heappush
-from typing import Any, Final
+from typing import Final
 
 SYSCLK_HZ: Final = 200_000_000
 CYCLES_PER_US: Final = SYSCLK_HZ // 1_000_000
@@ -29,22 +29,30 @@ NEVER: Final = 1 << 62
 FAR: Final = 1 << 61
 
 
-#: A scheduled callback, kept by whoever wants to cancel it: [time, priority, sequence, callback].  A list, because the
-#: heap compares lists and makes them faster than objects of a class; the callback is None once it has run or was
-#: cancelled.
-Event = list[Any]
+class ClockEvent:
+    """Something that happens at a time.  Whoever schedules it keeps it, to cancel it or to schedule it again.
 
+    A subclass with a `run` of its own is called without the detour of a stored callable: for what happens most.
+    """
 
-def event_time(event: Event) -> int:
-    """When an event is due, in cycles."""
-    time: int = event[0]
-    return time
+    __slots__ = ("callback", "number", "priority", "time")
 
+    def __init__(self, callback: Callable[[], None], priority: int = 0) -> None:
+        self.callback = callback
+        self.priority = priority
+        #: When it is due, or was, in cycles.
+        self.time = 0
+        #: Its number in the order of scheduling; 0 while it does not wait.
+        self.number = 0
 
-def event_callback(event: Event | None) -> Callable[[], None] | None:
-    """The callback of an event; None if it has run, was cancelled, or is not an event."""
-    callback: Callable[[], None] | None = None if event is None else event[3]
-    return callback
+    @property
+    def waits(self) -> bool:
+        """Whether it is still to come."""
+        return self.number != 0
+
+    def run(self) -> None:
+        """Do what happens."""
+        self.callback()
 
 
 def _never() -> None:
@@ -76,60 +84,74 @@ class Clock:
         self._attention: Callable[[], None] = no_attention
         #: The first event is kept apart while that is cheap: what is scheduled as the next thing to happen (a
         #: conversion, a transfer) never enters the heap.  It sorts before all of the heap; None: nothing is kept apart.
-        self._soonest: Event | None = None
-        #: Contains an event that never comes, so that there is always a first one.
-        self._heap: list[Event] = [[NEVER, 0, 0, _never]]
+        self._soonest: ClockEvent | None = None
+        #: (time, priority, number, event), void if the event has another number by now.  Contains an event that never
+        #: comes, so that there is always a first one.
+        self._heap: list[tuple[int, int, int, ClockEvent]] = [(NEVER, 0, 0, ClockEvent(_never))]
         self._sequence = 0
         self._cancelled = 0
 
-    def schedule(self, time: int, callback: Callable[[], None], priority: int = 0) -> Event:
+    def schedule(self, time: int, callback: Callable[[], None], priority: int = 0) -> ClockEvent:
         """Run `callback` at `time` (absolute cycles).  Lower `priority` runs first among equal times.
+
+        Raises ValueError for a time that has passed.
+        """
+        event = ClockEvent(callback, priority)
+        self.start(event, time)
+        return event
+
+    def after(self, cycles: int, callback: Callable[[], None], priority: int = 0) -> ClockEvent:
+        """Run `callback` `cycles` from now."""
+        return self.schedule(self.now + cycles, callback, priority)
+
+    def start(self, event: ClockEvent, time: int) -> None:
+        """Run an event, which must not wait yet, at `time` (absolute cycles).
 
         Raises ValueError for a time that has passed.
         """
         if time < self.now:
             raise ValueError(f"event at cycle {time} lies before now ({self.now})")
-        self._sequence = sequence = self._sequence + 1
-        event = [time, priority, sequence, callback]
+        self._sequence = number = self._sequence + 1
+        event.time = time
+        event.number = number
         soonest = self._soonest
         if time < self.next:
             self.next = time
             self._soonest = event
             if soonest is not None:
-                heappush(self._heap, soonest)
-        elif soonest is not None and event < soonest:
+                heappush(self._heap, (soonest.time, soonest.priority, soonest.number, soonest))
+        elif soonest is not None and (
+            time < soonest.time or (time == soonest.time and event.priority < soonest.priority)
+        ):
             self._soonest = event
-            heappush(self._heap, soonest)
+            heappush(self._heap, (soonest.time, soonest.priority, soonest.number, soonest))
         else:
-            heappush(self._heap, event)
-        return event
+            heappush(self._heap, (time, event.priority, number, event))
 
-    def after(self, cycles: int, callback: Callable[[], None], priority: int = 0) -> Event:
-        """Run `callback` `cycles` from now."""
-        return self.schedule(self.now + cycles, callback, priority)
-
-    def cancel(self, event: Event | None) -> None:
-        """Forget an event.  Cancelling one that has run, or None, does nothing."""
-        if event is None or event[3] is None:
+    def cancel(self, event: ClockEvent | None) -> None:
+        """Forget an event.  Cancelling one that does not wait, or None, does nothing."""
+        if event is None or not event.number:
             return
-        event[3] = None
+        event.number = 0
         self._cancelled += 1
         if event is self._soonest:
             self._soonest = None
         heap = self._heap
-        while heap[0][3] is None:
+        while _void(heap[0]):
             heappop(heap)
-        self.next = event_time(self._soonest or heap[0])
+        soonest = self._soonest
+        self.next = heap[0][0] if soonest is None else soonest.time
         if self.need_attention and self.next > self.now:
             self.next = self.now
 
-    def next_besides(self, event: Event) -> int:
+    def next_besides(self, event: ClockEvent) -> int:
         """A time before which nothing but `event` is due (a cancelled event not surfaced yet may make it early)."""
         soonest, heap = self._soonest, self._heap
-        first = heap[0] if soonest is None else soonest
-        if first is not event:
-            return event_time(first)
-        return event_time(heap[0]) if soonest is event else min(map(event_time, heap[1:3]))
+        if soonest is event:
+            return heap[0][0]
+        if soonest is not None:
+            return soonest.time
+        return heap[0][0] if heap[0][3] is not event else min(entry[0] for entry in heap[1:3])
 
     def serve_with(self, attention: Callable[[], None]) -> None:
         """Give the CPU to a new owner: `attention` is called, at the CPU's time, after events that requested it.
@@ -163,20 +185,21 @@ class Clock:
         while True:
             event = self._soonest
             if event is None:
-                event = heap[0]
-                if event[0] > cpu_time:
+                time, _, number, event = heap[0]
+                if time > cpu_time:
                     break
                 heappop(heap)
-            elif event[0] > cpu_time:
-                break
+                if event.number != number:
+                    continue  # cancelled
             else:
+                time = event.time
+                if time > cpu_time:
+                    break
                 self._soonest = None
-            callback = event[3]
-            if callback is not None:
-                event[3] = None
-                self.now = event[0]
-                callback()
-        self.next = event[0]
+            event.number = 0
+            self.now = time
+            event.run()
+        self.next = time
         self.now = cpu_time
         if self.need_attention:
             self.need_attention = False
@@ -219,9 +242,8 @@ class Clock:
             self._soonest = None
             self.next = self._heap[0][0]
             self.now = due
-            callback = event[3]
-            event[3] = None
-            callback()
+            event.number = 0
+            event.run()
             self.now = cpu_time
             if cpu_time >= self.next:
                 self.run_due()
@@ -253,18 +275,25 @@ class Clock:
     @property
     def events_run(self) -> int:
         """How many events have run since the clock was made."""
-        waiting = sum(event[3] is not None for event in self._heap) - 1 + (self._soonest is not None)
-        return self._sequence - self._cancelled - waiting
+        return self._sequence - self._cancelled - len(self._waiting())
 
     def waiting(self) -> list[Callable[[], None]]:
         """The callbacks of the events that wait, in no order."""
-        events = self._heap if self._soonest is None else [*self._heap, self._soonest]
-        return [event[3] for event in events if event[3] is not None and event[3] is not _never]
+        return [event.callback for event in self._waiting()]
+
+    def _waiting(self) -> list[ClockEvent]:
+        events = [entry[3] for entry in self._heap if entry[3].number and not _void(entry)]
+        return events if self._soonest is None else [*events, self._soonest]
 
     @property
     def pending(self) -> int:
         """How many events wait (cancelled ones that have not surfaced yet included)."""
         return len(self._heap) - 1 + (self._soonest is not None)
+
+
+def _void(entry: tuple[int, int, int, ClockEvent]) -> bool:
+    """Whether what waited in an entry of the heap was cancelled."""
+    return entry[3].number != entry[2]
 
 
 def us(cycles: int) -> float:

@@ -11,7 +11,7 @@ from functools import partial
 from typing import Final, Protocol, TypeAlias
 
 from emulator.can_bus import CanPort
-from emulator.clock import Clock, Event
+from emulator.clock import Clock, ClockEvent
 from emulator.signal import Signal
 from emulator.signals import DutyWire, I2cBus, PwmWire, QuadratureWire, SerialFrame, SerialLine, SpiBus, Wire
 
@@ -229,7 +229,7 @@ class QuadratureLevels:
         self._lines: tuple[int | None, int | None] = (None, None)
         self._stops: list[Callable[[], None]] = []
         self._quarter = 0
-        self._sample_event: Event | None = None
+        self._sample_event: ClockEvent | None = None
 
     def connect(self, a: int | None, b: int | None) -> None:
         """Take A and B from these pins.  None: no pin carries the line, so it is low (CHOICE)."""

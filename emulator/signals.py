@@ -192,8 +192,44 @@ class Wire:
                 listener(level)
 
 
+class AnalogSource:
+    """What drives an `AnalogWire`.  A part may be one itself, or give a function of the time."""
+
+    __slots__ = ()
+
+    def volts(self, cycles: int) -> float:
+        """The voltage at that time."""
+        raise NotImplementedError
+
+
+class _FunctionOfTime(AnalogSource):
+    __slots__ = ("_volts",)
+
+    def __init__(self, volts: Callable[[int], float]) -> None:
+        self._volts = volts
+
+    def volts(self, cycles: int) -> float:
+        return self._volts(cycles)
+
+
+class _Sampled(AnalogSource):
+    """A source whose samples have listeners."""
+
+    __slots__ = ("_sampled", "_source")
+
+    def __init__(self, source: AnalogSource, sampled: Signal[int, float]) -> None:
+        self._source = source
+        self._sampled = sampled
+
+    def volts(self, cycles: int) -> float:
+        volts = self._source.volts(cycles)
+        for listener in self._sampled.listeners:
+            listener(cycles, volts)
+        return volts
+
+
 class AnalogWire:
-    """A voltage.  The source that drives the wire, `source(cycles) -> volts`, is called at every sample.
+    """A voltage.  The source that drives the wire, `source.volts(cycles)`, is asked at every sample.
 
     Outside of the chip one source can be on the wire.  While the chip itself drives it, that one does not count.
     A `steady` source gives one voltage until another source replaces it, which `stepped` reports.  Any other source may
@@ -208,27 +244,31 @@ class AnalogWire:
     def __init__(self, name: str) -> None:
         self.name = name
         self._who = ""
-        self._outside: Callable[[int], float] = _no_volts
+        self._outside: AnalogSource = _NO_VOLTS
         self._outside_steady = True
-        self._chip: Callable[[int], float] | None = None
+        self._chip: AnalogSource | None = None
         self._chip_steady = False
         self._has_listeners = False
-        self.source: Callable[[int], float] = self._outside
+        self.source: AnalogSource = self._outside
         #: (cycles, volts): every sample.  It costs nothing without a listener.
         self.sampled: Signal[int, float] = Signal(self._wanted)
         #: Something else drives the wire from now on.
         self.stepped: Signal[[]] = Signal()
 
-    def follow(self, driver: str, source: Callable[[int], float] | None, *, steady: bool = False) -> None:
-        """Let `driver`, outside of the chip, put `source(cycles) -> volts` on the wire from now on; None ends it.
+    def follow(
+        self, driver: str, source: AnalogSource | Callable[[int], float] | None, *, steady: bool = False
+    ) -> None:
+        """Let `driver`, outside of the chip, put `source`, or `source(cycles) -> volts`, on the wire; None ends it.
 
         Raises ValueError while another driver does: two sources on one wire are a short circuit.
         """
         if self._who not in ("", driver):
             raise ValueError(f"{self.name} has two sources: {self._who} and {driver}")
-        self._who, self._outside, self._outside_steady = driver, source or _no_volts, steady or source is None
+        self._who, self._outside_steady = driver, steady or source is None
         if source is None:
-            self._who = ""
+            self._who, self._outside = "", _NO_VOLTS
+        else:
+            self._outside = _source(source)
         self._choose()
         self.stepped.emit()
 
@@ -241,7 +281,7 @@ class AnalogWire:
         self.follow(driver, source, steady=steady)
         return partial(self._put_back, before, was, was_steady)
 
-    def _put_back(self, who: str, source: Callable[[int], float], steady: bool) -> None:
+    def _put_back(self, who: str, source: AnalogSource, steady: bool) -> None:
         self._who = ""
         self.follow(who, source, steady=steady)
 
@@ -251,7 +291,7 @@ class AnalogWire:
 
     def drive(self, source: Callable[[int], float] | None, *, steady: bool = False) -> None:
         """Let the chip drive the wire with `source`; None releases it."""
-        self._chip, self._chip_steady = source, steady
+        self._chip, self._chip_steady = None if source is None else _source(source), steady
         self._choose()
         self.stepped.emit()
 
@@ -272,7 +312,7 @@ class AnalogWire:
 
     def volts(self, cycles: int) -> float:
         """The voltage, for a part that sees it all the time.  It does not count as a sample: no listener is called."""
-        return (self._chip or self._outside)(cycles)
+        return (self._chip or self._outside).volts(cycles)
 
     def _wanted(self, wanted: bool) -> None:
         self._has_listeners = wanted
@@ -281,17 +321,14 @@ class AnalogWire:
     def _choose(self) -> None:
         self.source = self._chip or self._outside
         if self._has_listeners:
-            self.source = partial(self._reporting, self.source)
-
-    def _reporting(self, source: Callable[[int], float], cycles: int) -> float:
-        volts = source(cycles)
-        for listener in self.sampled.listeners:
-            listener(cycles, volts)
-        return volts
+            self.source = _Sampled(self.source, self.sampled)
 
 
-def _no_volts(_cycles: int) -> float:
-    return 0.0
+def _source(source: AnalogSource | Callable[[int], float]) -> AnalogSource:
+    return source if isinstance(source, AnalogSource) else _FunctionOfTime(source)
+
+
+_NO_VOLTS: Final[AnalogSource] = _FunctionOfTime(lambda _cycles: 0.0)
 
 
 class DutyWire:

@@ -34,7 +34,7 @@ from emulator.c28x.position import Position
 from emulator.c28x.runtime import Runtime
 from emulator.clock import Clock
 from emulator.cpu import Cpu
-from emulator.registers.cell import Cell, look
+from emulator.registers.cell import Cell, look, put
 
 class {CLASS}:
     """Its functions."""
@@ -42,10 +42,14 @@ class {CLASS}:
 #: Names that the text uses itself: one of C's that is the same gets the prefix of `escaped`.
 _TAKEN: Final = frozenset({
     CLASS, "Any", "Callable", "Cell", "Clock", "Cpu", "NAMES", "Position", "Runtime", "cast", "f32", "float", "int",
-    "len", "list", "look", "max", "range", "self",
+    "len", "list", "look", "max", "put", "range", "self",
 })  # fmt: skip
 #: What the linker binds to these names is the same for every program.
 _COMMON: Final = {"_range": "range", "_max": "max", "_len": "len", "_c_f32": "f32"}
+#: The ways to access a register that are functions of `emulator/registers/cell.py`, by the end of their name.
+_OF_A_CELL: Final = {"read": "look", "write": "put"}
+#: Registers that hold functions, not words.
+_VECTORS: Final = "_r_PieVectTable_"
 #: The types of what the linker binds, by name and by the end of a register's name.
 _TYPES: Final = {
     "_c_clock": "Clock", "_c_position": "Position", "_c_runtime": "Runtime", "_cpu": "Cpu", "_c_poll_limit": "int",
@@ -227,6 +231,9 @@ class _Method(ast.NodeTransformer):
     def visit_Call(self, node: ast.Call) -> ast.expr:
         """A call of a function of the program or of the runtime.  (A name alone, a pointer, is bound as any other.)"""
         name = node.func.id if isinstance(node.func, ast.Name) else ""
+        access = _OF_A_CELL.get(name.rpartition("_")[2]) if name.startswith("_r_") else None
+        if access is not None and not name.startswith(_VECTORS):
+            return ast.Call(_name(access), [self._register(name), *map(self.visit, node.args)], [])
         if name in self._methods:
             function: ast.expr = ast.Attribute(_name("self"), self._methods[name], ast.Load())
         elif name in self._runtime:
@@ -248,14 +255,18 @@ class _Method(ast.NodeTransformer):
         """The word of a register, and what lets it be stored in place."""
         name = node.value.id if isinstance(node.value, ast.Name) else ""
         if name.startswith("_r_") and name.endswith(("_source", "_gate")):
-            self._bound[register_name(name)] = "Cell"
-            register = ast.Attribute(_name("self"), attribute(register_name(name)), ast.Load())
+            register = self._register(name)
             if name.endswith("_gate"):
                 return ast.Attribute(ast.Attribute(register, "gate", ast.Load()), node.attr, node.ctx)
             if name != self._stored:
                 return ast.Call(_name("look"), [register], [])
             return ast.Attribute(register, node.attr, node.ctx)
         return ast.Attribute(self.visit(node.value), node.attr, node.ctx)
+
+    def _register(self, name: str) -> ast.expr:
+        """The register itself, from the name of a way to access it."""
+        self._bound[register_name(name)] = "Cell"
+        return ast.Attribute(_name("self"), attribute(register_name(name)), ast.Load())
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
         """Arithmetic has numbers.  The sum of an integer and 0.0 is a conversion."""

@@ -18,7 +18,7 @@ import random
 from collections.abc import Callable
 from typing import ClassVar, Final
 
-from emulator.clock import CYCLES_PER_MS, NEVER, SYSCLK_HZ, Clock, Event
+from emulator.clock import CYCLES_PER_MS, NEVER, SYSCLK_HZ, Clock, ClockEvent
 from emulator.devices import l3g4200d_registers as r
 from emulator.devices.l3g4200d_fifo import DEPTH, SampleFifo
 from emulator.devices.l3g4200d_i2c import I2cFrame
@@ -96,7 +96,7 @@ class L3G4200D:
         self.select = self.spi.select
         self.exchange = self.spi.exchange
         self.greatest_clock_hz = GREATEST_CLOCK_HZ
-        self._event: Event | None = None
+        self._event: ClockEvent | None = None
         self._second_cycles = float(SYSCLK_HZ)
         self.interrupt = InterruptGenerator()
         self._temperature_c = temperature_c

@@ -21,7 +21,7 @@ from collections.abc import Callable
 from math import sqrt
 from typing import ClassVar, Final
 
-from emulator.clock import SYSCLK_HZ, Clock, Event
+from emulator.clock import SYSCLK_HZ, Clock, ClockEvent
 from emulator.devices.l3g4200d_spi import GREATEST_CLOCK_HZ, SpiFrame
 from emulator.devices.report import DeviceReport, DiscardedReports
 
@@ -108,7 +108,7 @@ class Lis3dh:
         self.motion_source = motion_source or _at_rest
         self.offset_g = [0.0 if ideal else rng.uniform(-OFFSET_G, OFFSET_G) for _ in range(3)]
         self._rate = 1.0 if ideal else 1.0 + rng.uniform(-ODR_SPREAD, ODR_SPREAD)
-        self._event: Event | None = None
+        self._event: ClockEvent | None = None
         #: Read by the framing: whether SDO answers (always); the disabled axis that a transaction read, if it read no
         #: other axis (else -1).
         self.four_wire = True

@@ -19,7 +19,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Final
 
-from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ, Clock, Event
+from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ, Clock, ClockEvent
 from emulator.devices.lv_maxsonar_analog import RISE_TAU, HeldVoltage
 from emulator.devices.lv_maxsonar_beam import INCH_M, Echo
 from emulator.devices.lv_maxsonar_readings import SonarReadings
@@ -156,11 +156,11 @@ class LvMaxSonar:
         self._calibrated = False
         self._ready = False
         self._busy = False
-        self._start: Event | None = None
+        self._start: ClockEvent | None = None
         #: The end of start-up, of calibration, or of the cycle of ranging.
-        self._next: Event | None = None
-        self._tx_fall: Event | None = None
-        self._pw_fall: Event | None = None
+        self._next: ClockEvent | None = None
+        self._tx_fall: ClockEvent | None = None
+        self._pw_fall: ClockEvent | None = None
         self._blind_in: int | None = None
         self._scale = 1.0 if ideal else _supply_error(vcc_v, rng)
         self._near_error_in = {} if ideal else _near_errors(rng)
@@ -172,7 +172,7 @@ class LvMaxSonar:
             0.0, 0.0 if ideal else vcc_v / 1024.0, rng.getrandbits(32) if not ideal else 0,
             None if watch is None else watch.converted,
         )  # fmt: skip
-        analog.follow(name, self.held.volts)
+        analog.follow(name, self.held)
         # RX is pulled up inside the sensor; TX idles low (inverted RS-232).
         rx.set_pull(1)
         rx.changed.connect(self._rx_changed)

@@ -16,6 +16,7 @@ from typing import Final
 from mypy_extensions import i64
 
 from emulator.clock import CYCLES_PER_US, NEVER
+from emulator.signals import AnalogSource
 
 #: Time constant of an upward step.  CHOICE: first order; 90 % of a step to "no target", whose listening time ends at
 #: 37.5 ms, is done at 44.3 ms, so tau = 6.8 ms / ln 10.  Nearer targets leave more time and complete their step, which
@@ -26,8 +27,8 @@ RISE_TAU: Final = 6_800 * CYCLES_PER_US / math.log(10.0)
 _RIPPLE_HOLD: Final = 100 * CYCLES_PER_US
 
 
-class HeldVoltage:
-    """`volts(cycles)` is the source of the analog wire.  `ripple_v` is the greatest ripple, `salt` its seed."""
+class HeldVoltage(AnalogSource):
+    """The source of the analog wire.  `ripple_v` is the greatest ripple, `salt` its seed."""
 
     __slots__ = (
         "_calm_from", "_calm_until", "_calm_v", "_converted", "_linear", "_quiet_until", "_ripple_now", "_slot",

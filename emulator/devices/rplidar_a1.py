@@ -24,7 +24,7 @@ from collections.abc import Callable
 from math import inf, tau
 from typing import Final
 
-from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ, Clock, Event
+from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ, Clock, ClockEvent
 from emulator.devices.report import DeviceReport, DiscardedReports
 from emulator.devices.serial_pacing import LinePacer, received
 from emulator.signals import SerialFrame, SerialLine
@@ -100,7 +100,7 @@ class RplidarA1:
         self._request: list[int] = []
         self._began = 0
         self._busy_until = 0
-        self._event: Event | None = None
+        self._event: ClockEvent | None = None
         self._turn = 0
         #: The number of requests carried out; that of requests given up, and of bytes outside of requests or broken.
         self.obeyed = 0

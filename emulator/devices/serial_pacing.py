@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable
 
-from emulator.clock import SYSCLK_HZ, Clock, Event
+from emulator.clock import SYSCLK_HZ, Clock, ClockEvent
 from emulator.signals import SerialFrame, SerialLine
 
 #: Start bit, eight data bits, stop bit.
@@ -30,7 +30,7 @@ class LinePacer:
         self._line = line
         self._baud = self._next_baud = baud
         self._queue: deque[int] = deque()
-        self._event: Event | None = None
+        self._event: ClockEvent | None = None
         self._burst_start = 0
         self._sent = 0
 

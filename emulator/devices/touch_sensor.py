@@ -12,7 +12,7 @@ import random
 from collections.abc import Callable
 from typing import Final
 
-from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, Clock, Event
+from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, Clock, ClockEvent
 from emulator.signal import Signal
 from emulator.signals import Wire
 
@@ -54,7 +54,7 @@ class TouchSensor:
         self._fed: bool | None = None
         self._closed = False
         self._rng = rng
-        self._events: list[Event] = []
+        self._events: list[ClockEvent] = []
         #: Voltage of the pin while the contact is closed.
         self.pressed_v = 0.0 if pull_up_ohm is None else supply_v * SERIES_OHM / (pull_up_ohm + SERIES_OHM)
         #: Whether that is a low level by the pin's data sheet.

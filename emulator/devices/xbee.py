@@ -14,7 +14,7 @@ import random
 from collections.abc import Callable
 from typing import Final
 
-from emulator.clock import SYSCLK_HZ, Clock, Event
+from emulator.clock import SYSCLK_HZ, Clock, ClockEvent
 from emulator.devices.serial_pacing import FRAME_BITS, LinePacer, received
 from emulator.devices.xbee_command import CommandMode
 from emulator.devices.xbee_parameters import BAUDS, NOMINAL_BAUDS, XBeeSettings
@@ -69,7 +69,7 @@ class XBeeModule:
         self._di = bytearray()
         self._due = 0
         self._last_character = 0
-        self._silence: Event | None = None
+        self._silence: ClockEvent | None = None
         self._held_back = bytearray()
         self._command = CommandMode(clock, self.settings, self._live, self, report or (lambda _rule, _message: None))
         self._take_effect()

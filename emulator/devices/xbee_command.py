@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final, Protocol
 
-from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Clock, Event
+from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Clock, ClockEvent
 from emulator.devices.xbee_parameters import NAME_LENGTH, PARAMETERS, STORED_ONLY, XBeeSettings
 
 #: CHOICE: a longer line is answered with ERROR.
@@ -61,8 +61,8 @@ class CommandMode:
         self._host = host
         self._report = report
         self._waiting = 0
-        self._guard: Event | None = None
-        self._timeout: Event | None = None
+        self._guard: ClockEvent | None = None
+        self._timeout: ClockEvent | None = None
         # CHOICE: the line was silent before power-on.
         self._last_end = -SYSCLK_HZ * 60
         self._line = bytearray()

@@ -27,13 +27,13 @@ from typing import Final, Literal
 
 from emulator.c28x.findings import Cause
 from emulator.c28x.sites import Place
-from emulator.clock import CYCLES_PER_US, NEVER, Clock, Event, event_callback, event_time
+from emulator.clock import CYCLES_PER_US, NEVER, Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.peripherals.adc_converter import Converter
 from emulator.peripherals.adc_ppb import PostProcessing
 from emulator.peripherals.adc_socs import TRIGSELS, Soc, Socs
 from emulator.registers.adc import AdcRegs, AdcResultRegs
-from emulator.registers.cell import Cell
+from emulator.registers.cell import Cell, Hook
 from emulator.registers.core import ALL
 from emulator.signal import Signal
 from emulator.signals import AnalogWire
@@ -60,6 +60,7 @@ class Adc:
         "_acqps_min",
         "_adcint1",
         "_at_end",
+        "_at_pulse",
         "_awaited",
         "_begun",
         "_by_hardware",
@@ -79,7 +80,6 @@ class Adc:
         "_flag_at",
         "_flags_then",
         "_frozen_at",
-        "_frozen_step",
         "_full_scale",
         "_interrupts",
         "_intflg",
@@ -93,7 +93,6 @@ class Adc:
         "_latched",
         "_late",
         "_left_by",
-        "_mark_begun",
         "_noise",
         "_noise_lsb",
         "_notes_collisions",
@@ -103,6 +102,7 @@ class Adc:
         "_position",
         "_ppb",
         "_pulses",
+        "_reads",
         "_ready_at",
         "_regs",
         "_result_regs",
@@ -164,12 +164,13 @@ class Adc:
         self._intsel12, self._intsel34 = registers["ADCINTSEL1N2"], registers["ADCINTSEL3N4"]
         self._socsel1, self._socsel2 = registers["ADCINTSOCSEL1"], registers["ADCINTSOCSEL2"]
         self._results = tuple(results.registers[f"ADCRESULT{n}"] for n in range(16))
-        #: For each result, the function to tell that its SOC has begun a conversion.
-        self._mark_begun = tuple(map(self._bind_ADCRESULTx, range(16)))
+        self._reads = tuple(_AdcResult(self, clock, n, register) for n, register in enumerate(self._results))
+        for n, hook in enumerate(self._reads):
+            results.bind(f"ADCRESULT{n}", read=hook)
         self._ppb = PostProcessing(
             clock, cpu, regs, results, partial(self._pulse, 4), self._configure, self._result_of_soc0
         )  # fmt: skip
-        self._at_end: Callable[[], None] = self._end  # bound once
+        self._at_end, self._at_pulse = _AtEnd(self), ClockEvent(self._early)
         #: The statement that forced the conversions under way.
         self._cause: Cause | None = None
         self._converter = converter = Converter(regs.name, pins, vrefhi_v, vreflo_v, noise_lsb, random)
@@ -192,7 +193,7 @@ class Adc:
             ("ADCCTL2", None, self._write_ADCCTL2),
             ("ADCSOCPRICTL", self._read_ADCSOCPRICTL, self._write_ADCSOCPRICTL),
             ("ADCSOCFLG1", self._read_ADCSOCFLG1, None),
-            ("ADCSOCFRC1", None, self._write_ADCSOCFRC1),
+            ("ADCSOCFRC1", None, _Force(self)),
             ("ADCCOUNTER", self._read_ADCCOUNTER, None),
             ("ADCINTFLGCLR", None, self._write_ADCINTFLGCLR if self._notes_collisions else None),
             ("ADCINTOVFCLR", None, self._write_ADCINTOVFCLR),
@@ -203,7 +204,8 @@ class Adc:
         for n in range(16):
             regs.bind(f"ADCSOC{n}CTL", write=partial(self._write_ADCSOCxCTL, n))
         regs.bind("ADCREV", read=self._read_ADCREV)
-        self._event: Event | None = None
+        #: The step of the conversion under way that is next, `_at_pulse` or `_at_end`.
+        self._event: ClockEvent | None = None
         self.reset()
 
     def reset(self) -> None:
@@ -221,8 +223,8 @@ class Adc:
         self._latch_at = self._latched = self._unlatched = 0
         #: SOCs that hardware or another conversion triggered.
         self._by_hardware = 0
-        for mark_begun in self._mark_begun:
-            mark_begun(False)
+        for hook in self._reads:
+            hook.begun = False
         #: The cycle when a flag rose last, and the flags that this cycle has set.
         self._flag_at = self._flags_then = self._overflows_then = -1
         self._socs.reset()
@@ -236,7 +238,6 @@ class Adc:
         self._epoch = self._clock.now
         self._ready_at = NEVER
         self._frozen_at: int | None = None if self._regs.clocked else self._clock.now
-        self._frozen_step: Callable[[], None] | None = None
         self._configure()
 
     # --- for the world and tests ---------------------------------------------------------------------------------
@@ -316,7 +317,6 @@ class Adc:
         now = self._clock.now
         if not on and self._frozen_at is None:
             self._frozen_at = now
-            self._frozen_step = event_callback(self._event)
             self._clock.cancel(self._event)
         elif on and self._frozen_at is not None:
             gap = now - self._frozen_at
@@ -328,8 +328,8 @@ class Adc:
             if self._latch_at != NEVER:
                 self._latch_at += gap
             self._ppb.freeze(gap)
-            if self._event is not None and self._frozen_step is not None:
-                self._event = self._clock.schedule(event_time(self._event) + gap, self._frozen_step)
+            if self._event is not None:
+                self._clock.start(self._event, self._event.time + gap)
 
     def _request(self, socs: int) -> None:
         """Set pending flags and let the arbiter look."""
@@ -364,16 +364,18 @@ class Adc:
         self._start = start
         self._sample = sample = start + soc.window
         if self._late:
-            self._event = self._clock.schedule(start + soc.cycles, self._at_end)
+            self._event = self._at_end
+            self._clock.start(self._at_end, start + soc.cycles)
         else:
-            self._event = self._clock.schedule(sample + 1, self._early)
+            self._event = self._at_pulse
+            self._clock.start(self._at_pulse, sample + 1)
 
     def _extra_work(self, n: int, start: int) -> None:
         """Extra work when SOC `n` begins: its first conversion, or the delay stamp of its hardware trigger."""
         soc = 1 << n
         if not self._begun & soc:
             self._begun |= soc
-            self._mark_begun[n](True)
+            self._reads[n].begun = True
             self._configure()
         if soc & self._by_hardware & self._ppb.watched:
             self._ppb.begins(n, start - self._epoch & 0xFFF)
@@ -400,7 +402,8 @@ class Adc:
         soc = self._soc
         self._code = self._converter.code(soc.n, soc.channel, self._sample, self._start >= self._ready_at)
         # Do it before the flags, so that a SOC that they trigger finds the conversion under way.
-        self._event = self._clock.schedule(self._sample + self._t_eoc, self._at_end)
+        self._event = self._at_end
+        self._clock.start(self._at_end, self._sample + self._t_eoc)
         self._eoc(soc.n, self._sel_then)
 
     def _end(self) -> None:
@@ -418,10 +421,10 @@ class Adc:
                 self._code = None
             else:
                 if self._start >= self._plain_from:
-                    full_scale, volts = self._full_scale, soc.pin.source
-                    level = full_scale * (volts(self._sample) - self._vreflo_v) / self._span_v
+                    full_scale = self._full_scale
+                    level = full_scale * (soc.pin.source.volts(self._sample) - self._vreflo_v) / self._span_v
                     if self._noise_lsb:
-                        level += self._noise()
+                        level += self._noise.value()
                     result.value = int(level if level < full_scale else full_scale - 1.0) if level > 0.0 else 0
                 else:
                     powered = self._start >= self._ready_at
@@ -568,27 +571,6 @@ class Adc:
             self._latched = self._latch_at
             self._latch_at = NEVER
 
-    def _bind_ADCRESULTx(self, n: int) -> Callable[[bool], None]:
-        """Define what ADCRESULTn reads.  Returns a function to call when its SOC begins a conversion, and at a reset.
-
-        It is a closure for speed: the register is read after every conversion.
-        """
-        register = self._results[n]
-        clock = self._clock
-        ever = False
-
-        def read() -> int:
-            if clock.now < self._latch_at or not ever:
-                return self._read_early(n) if ever else self._read_never(n)
-            return register.value
-
-        def mark_begun(begun: bool) -> None:
-            nonlocal ever
-            ever = begun
-
-        self._result_regs.bind(register.name, read=read)
-        return mark_begun
-
     def _read_early(self, n: int) -> int:
         """A read while a conversion is under way or latches.  It is reported only if software forced the conversion."""
         register = self._results[n]
@@ -691,7 +673,7 @@ class Adc:
             return self._socs.pending | 1 << self._soc.n
         return self._socs.pending
 
-    def _write_ADCSOCFRC1(self, word: int, lanes: int = ALL) -> None:
+    def _write_ADCSOCFRC1(self, word: int) -> None:
         position = self._position
         self._cause = position.at, position.calls, position.who  # `Findings.mark` without its call: 0.7 % of a mission
         soc = self._single.get(word)
@@ -709,7 +691,8 @@ class Adc:
                 self._latch_at = NEVER
                 self._start = start
                 self._sample = start + soc.window
-                self._event = self._clock.schedule(start + soc.cycles, self._at_end)
+                self._event = self._at_end
+                self._clock.start(self._at_end, start + soc.cycles)
                 return
         if word:
             self._by_hardware &= ~word
@@ -739,3 +722,43 @@ class Adc:
         if self._clock.now == self._flag_at:  # TRM: hardware wins
             word &= ~self._overflows_then
         self._intovf.value &= ~word
+
+
+class _AtEnd(ClockEvent):
+    """The end of a conversion."""
+
+    __slots__ = ("_adc",)
+
+    def __init__(self, adc: Adc) -> None:
+        super().__init__(adc._end)
+        self._adc = adc
+
+    def run(self) -> None:
+        self._adc._end()
+
+
+class _Force(Hook):
+    """A write to ADCSOCFRC1."""
+
+    __slots__ = ("_adc",)
+
+    def __init__(self, adc: Adc) -> None:
+        self._adc = adc
+
+    def write(self, word: int, lanes: int = ALL) -> None:
+        self._adc._write_ADCSOCFRC1(word)
+
+
+class _AdcResult(Hook):
+    """A read of ADCRESULTn.  `begun`: its SOC has begun a conversion since the reset."""
+
+    __slots__ = ("_adc", "_clock", "_n", "_register", "begun")
+
+    def __init__(self, adc: Adc, clock: Clock, n: int, register: Cell) -> None:
+        self._adc, self._clock, self._n, self._register = adc, clock, n, register
+        self.begun = False
+
+    def read(self) -> int:
+        if self._clock.now < self._adc._latch_at or not self.begun:
+            return self._adc._read_early(self._n) if self.begun else self._adc._read_never(self._n)
+        return self._register.value

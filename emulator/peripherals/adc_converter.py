@@ -36,14 +36,28 @@ PRESCALE_MIN: Final = 6
 ALWAYS: Final = 512
 
 
-def gaussian(random: Random, sigma: float) -> Iterator[float]:
+class Gaussian:
     """Normal values of mean 0 and deviation `sigma`: those of `random.gauss`, drawn in half its time."""
-    uniform = random.random
-    while True:
-        turn = uniform() * tau
-        radius = sqrt(-2.0 * log(1.0 - uniform()))
-        yield cos(turn) * radius * sigma
-        yield sin(turn) * radius * sigma
+
+    __slots__ = ("_drawn", "_second", "_sigma", "_uniform")
+
+    def __init__(self, random: Random, sigma: float) -> None:
+        self._uniform = random.random
+        self._sigma = sigma
+        #: Values are drawn in pairs: the second one, and whether it is still to be used.
+        self._second = 0.0
+        self._drawn = False
+
+    def value(self) -> float:
+        """The next value."""
+        if self._drawn:
+            self._drawn = False
+            return self._second
+        turn = self._uniform() * tau
+        radius = sqrt(-2.0 * log(1.0 - self._uniform()))
+        self._second = sin(turn) * radius * self._sigma
+        self._drawn = True
+        return cos(turn) * radius * self._sigma
 
 
 class Converter:
@@ -67,7 +81,7 @@ class Converter:
         self._vrefhi_v, self.vreflo_v, self.span_v = vrefhi_v, vreflo_v, vrefhi_v - vreflo_v
         self.noise_lsb, self._random = noise_lsb, random or Random(0)
         #: The noise of the next code, in LSB.
-        self.noise: Callable[[], float] = gaussian(self._random, noise_lsb).__next__
+        self.noise = Gaussian(self._random, noise_lsb)
         self._forced: Callable[[int], int] | None = None
         #: Injected faults.  Each returns the new code for (soc, channel, code).
         self._faults: tuple[Callable[[int, int, int], int], ...] = ()
@@ -153,13 +167,13 @@ class Converter:
             return self._random.randrange(self.full_scale)
         if self.differential:
             # CHOICE: the formula of sister parts, unconfirmed here.
-            plus = self.pins[channel & 14].source(cycles)
-            minus = self.pins[channel | 1].source(cycles)
+            plus = self.pins[channel & 14].source.volts(cycles)
+            minus = self.pins[channel | 1].source.volts(cycles)
             level = self.full_scale * (plus - minus + self._vrefhi_v) / (2 * self._vrefhi_v)
         else:
-            level = self.full_scale * (self.pins[channel].source(cycles) - self.vreflo_v) / self.span_v
+            level = self.full_scale * (self.pins[channel].source.volts(cycles) - self.vreflo_v) / self.span_v
         if self.noise_lsb:
-            level += self.noise()
+            level += self.noise.value()
         if level <= 0.0:
             return 0
         code = int(level)

@@ -27,7 +27,7 @@ from typing import Final
 
 from emulator.c28x.findings import Cause
 from emulator.can_bus import IDLE_BITS, INTERMISSION_BITS, SUSPEND_BITS, CanBus, CanError, CanFrame, CanPort
-from emulator.clock import NEVER, Clock, Event
+from emulator.clock import NEVER, Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.peripherals.can_objects import (
     DIR,
@@ -163,17 +163,17 @@ class Can:
         #: The object whose update waits until interface 3 has been read.
         self._next_update = 0
         #: Transfers under way, by interface; other events that are under way.
-        self._transfers: dict[int, Event | None] = {1: None, 2: None}
+        self._transfers: dict[int, ClockEvent | None] = {1: None, 2: None}
         #: When each began, until the program has seen its end.
         self._commanded = {1: -NEVER, 2: -NEVER}
         #: The registers of each interface that the program has written since its last transfer.
         self._written: dict[int, set[str]] = {1: set(), 2: set()}
         #: The statement that has cleared Init: from there on the controller takes part in the traffic.
         self._started: Cause | None = None
-        self._recovery: Event | None = None
+        self._recovery: ClockEvent | None = None
         self._recovered = 0
-        self._bus_on_event: Event | None = None
-        self._ram_event: Event | None = None
+        self._bus_on_event: ClockEvent | None = None
+        self._ram_event: ClockEvent | None = None
         self._bind()
         port.changed.connect(self._settle)
 

@@ -25,7 +25,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Final
 
-from emulator.clock import NEVER, Clock, Event
+from emulator.clock import NEVER, Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.peripherals.cmpss_filter import DigitalFilter
 from emulator.peripherals.cmpss_ramp import Ramp
@@ -120,7 +120,7 @@ class Cmpss:
         self.high, self.low = ComparatorChannel(f"CMPSS{number}", "H"), ComparatorChannel(f"CMPSS{number}", "L")
         self._both = (self.high, self.low)
         self._ramp = Ramp()
-        self._event: Event | None = None
+        self._event: ClockEvent | None = None
         #: Whether only the positive input can change an output.
         self._quiet = False
         #: The ePWM whose EPWMSYNCPER the module needs; 0: none.

@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from emulator.clock import Clock, Event
+from emulator.clock import Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.registers.core import ALL, LOW
 from emulator.registers.cpu_timer import CpuTimerRegs
@@ -47,8 +47,8 @@ class CpuTimer:
         ):
             regs.bind(name, read=read, write=write, steady=name == "TCR")
         #: The event at `_next_underflow`: a poll of TCR goes on there.
-        self._next_check: Event | None = None
-        self._event: Event | None = None
+        self._next_check: ClockEvent | None = None
+        self._event: ClockEvent | None = None
         #: SYSCLK cycles of one period of the clock that is counted.
         self._tick = 1
         self.reset()
@@ -150,9 +150,9 @@ class CpuTimer:
         A trigger that starts a conversion ends the step: the clock is at its underflow, and its interrupt is pulsed.
         """
         clock, event = self._clock, self._event
-        if event is None or event[0] != clock.next or not self._tcr.value & TIE:
+        if event is None or event.time != clock.next or not self._tcr.value & TIE:
             return range(0)
-        first: int = event[0]
+        first = event.time
         period = (self._prd.value + 1) * (self._reload() + 1)
         if cycles >= period:
             return range(0)

@@ -26,7 +26,7 @@ from functools import partial
 from typing import Final
 
 from emulator.c28x.findings import Cause, Findings
-from emulator.clock import Clock, Event, event_callback, event_time
+from emulator.clock import Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.peripherals.dma_checks import CAUSES, Region, TransferChecks
 from emulator.registers.cell import Cell
@@ -171,8 +171,9 @@ class Dma:
                 regs.bind(f"{channel.name}.{name}", write=partial(channel.checks.write, name))
         for n in (1, 2):
             select.bind(f"DMACHSRCSEL{n}", write=partial(self._write_DMACHSRCSEL, n))
-        self._event: Event | None = None
-        self._frozen: tuple[int, Callable[[], None]] | None = None
+        self._event: ClockEvent | None = None
+        #: The cycles that were left of the event when the clock was switched off.
+        self._frozen: int | None = None
         self._clocked = regs.clocked
         self.reset()
 
@@ -197,14 +198,15 @@ class Dma:
         if on == self._clocked:
             return
         self._clocked = on
-        event, step = self._event, event_callback(self._event)
-        if not on and event is not None and step is not None:
-            self._frozen = event_time(event) - self._clock.now, step
+        event = self._event
+        if event is None:
+            return
+        if not on and event.waits:
+            self._frozen = event.time - self._clock.now
             self._clock.cancel(event)
         elif on and self._frozen is not None:
-            cycles, step = self._frozen
+            self._clock.start(event, self._clock.now + self._frozen)
             self._frozen = None
-            self._event = self._clock.after(cycles, step)
 
     @property
     def objects(self) -> dict[str, Cause | None]:

@@ -28,7 +28,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Final
 
-from emulator.clock import Clock, Event
+from emulator.clock import Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.peripherals.ecap_output import ApwmOutput
 from emulator.registers.core import ALL
@@ -99,8 +99,8 @@ class ECap:
         self._control1, self._control2 = registers["ECCTL1"], registers["ECCTL2"]
         self._enabled, self._flags = registers["ECEINT"], registers["ECFLG"]
         self._listening = False
-        self._event: Event | None = None
-        self._next_check: Event | None = None
+        self._event: ClockEvent | None = None
+        self._next_check: ClockEvent | None = None
         #: ECAPn.OUT
         self.output = ApwmOutput(self._output_level, self._plan)
         self.reset()

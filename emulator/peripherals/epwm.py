@@ -22,7 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from emulator.clock import Clock, Event, event_time
+from emulator.clock import Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.peripherals.epwm_action_qualifier import Phases, act, event_phases
 from emulator.peripherals.epwm_checks import CompareBeyondPeriod, EPwmChecks
@@ -76,8 +76,8 @@ class EPwm:
         self.number = number
         self._divider = epwmclk_divider
         self._tbclksync = False
-        self._load_event: Event | None = None
-        self._next_check: Event | None = None
+        self._load_event: ClockEvent | None = None
+        self._next_check: ClockEvent | None = None
         self._load_points = 0
         self._stopped_loads = stopped_loads
         self._time_base = TimeBase(clock)
@@ -222,7 +222,7 @@ class EPwm:
 
     def _update_outputs(self) -> None:
         """Bring the outputs up to now.  The result does not depend on the order of the events of this cycle."""
-        if self._load_event is not None and event_time(self._load_event) == self.clock.now:
+        if self._load_event is not None and self._load_event.time == self.clock.now:
             self.clock.cancel(self._load_event)
             self._load()
         self._settle()

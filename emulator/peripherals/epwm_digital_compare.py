@@ -23,7 +23,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Final
 
-from emulator.clock import Clock, Event
+from emulator.clock import Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.peripherals.epwm_shadow import AT_PERIOD, AT_ZERO
 from emulator.peripherals.epwm_time_base import TimeBase
@@ -95,9 +95,9 @@ class DigitalCompare:
         self._choosing = False
         #: Whether the blanking window is open.
         self._window = False
-        self._point_event: Event | None = None
-        self._offset_event: Event | None = None
-        self._close_event: Event | None = None
+        self._point_event: ClockEvent | None = None
+        self._offset_event: ClockEvent | None = None
+        self._close_event: ClockEvent | None = None
         self._offset_time = self._close_time = 0
         for name in ("DCTRIPSEL", "TZDCSEL", "DCACTL", "DCBCTL", "DCFCTL", *(f"{signal}TRIPSEL" for signal in SIGNALS)):
             regs.bind(name, write=partial(self._write, name))
@@ -234,7 +234,7 @@ class DigitalCompare:
         self._window = False
         self._evaluate()
 
-    def _left(self, event: Event | None, time: int) -> int:
+    def _left(self, event: ClockEvent | None, time: int) -> int:
         """The value of a counter that counts down to 0 at `time`, in TBCLK."""
         return -((self._clock.now - time) // self._time_base.tick) if event is not None else 0
 

@@ -18,7 +18,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Final
 
-from emulator.clock import Clock, Event
+from emulator.clock import Clock, ClockEvent
 from emulator.peripherals.epwm_action_qualifier import Phases
 from emulator.peripherals.epwm_time_base import TimeBase
 from emulator.registers.core import F
@@ -49,7 +49,7 @@ class _Trigger:
         self.select, self.enable, self.period, self.count = fields
         self.wide, self.wide_period, self.wide_count = wide
         self.pulse = pulse
-        self.event: Event | None = None
+        self.event: ClockEvent | None = None
 
 
 class EventTrigger:

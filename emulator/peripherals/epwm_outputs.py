@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Final
 
-from emulator.clock import NEVER, Clock, Event
+from emulator.clock import NEVER, Clock, ClockEvent
 from emulator.peripherals.epwm_action_qualifier import USES_COMPARE_A, USES_COMPARE_B, OutputWaveform, act, waveform
 from emulator.peripherals.epwm_dead_band import DeadBand, Edge
 from emulator.peripherals.epwm_shadow import Shadow
@@ -87,7 +87,7 @@ class EpwmOutputs:
         self._trip_zone = trip_zone
         self._settled = settled
         self._band = DeadBand()
-        self._edge_event: Event | None = None
+        self._edge_event: ClockEvent | None = None
         for output in self.both:
             output.wire.follow(_OnWire(self, output))
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from emulator.clock import Clock, Event
+from emulator.clock import Clock, ClockEvent
 from emulator.peripherals.epwm_shadow import AT_PERIOD, AT_ZERO
 from emulator.registers.epwm import EPwmRegs
 from emulator.registers.epwm_output import HRPCTL
@@ -36,7 +36,7 @@ class SyncPulse:
         self._used = False
         #: Every pulse.
         self.pulsed: Signal[[]] = Signal(self._wanted)
-        self._event: Event | None = None
+        self._event: ClockEvent | None = None
         regs.bind("HRPCTL", write=self._write_HRPCTL)
 
     def _wanted(self, wanted: bool) -> None:

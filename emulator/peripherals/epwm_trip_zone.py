@@ -21,7 +21,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from emulator.clock import Clock, Event, event_time
+from emulator.clock import Clock, ClockEvent
 from emulator.peripherals.epwm_shadow import LOAD_POINTS
 from emulator.registers.core import F
 from emulator.registers.epwm import EPwmRegs
@@ -97,7 +97,7 @@ class TripZone:
         self._again = 0
         #: The points of the counter at which a cycle-by-cycle trip ends.
         self._points = LOAD_POINTS[0]
-        self._event: Event | None = None
+        self._event: ClockEvent | None = None
         for name, write in (
             ("TZSEL", self._write_TZSEL), ("TZCTL", self._write_TZCTL), ("TZEINT", self._write_TZEINT),
             ("TZFRC", self._write_TZFRC), ("TZCLR", self._write_TZCLR), ("TZCBCCLR", self._write_TZCBCCLR),
@@ -148,7 +148,7 @@ class TripZone:
     def reschedule(self) -> None:
         """Schedule the end of a cycle-by-cycle trip anew: the counter's path or a cause has changed."""
         if self._event is not None:
-            if event_time(self._event) == self._clock.now:
+            if self._event.time == self._clock.now:
                 return  # the end that is due in this cycle: a shadow load only came first
             self._clock.cancel(self._event)
             self._event = None

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from emulator.clock import Clock, Event
+from emulator.clock import Clock, ClockEvent
 from emulator.registers.eqep import QCAPCTL, QEPSTS, EQepRegs
 
 #: SYSCLK cycles of a count of QWDTMR, as a shift (TRM: SYSCLK/64).
@@ -34,7 +34,7 @@ class UnitTimer:
         self._period = regs.registers["QUPRD"]
         self._timeout = timeout
         self._extra = extra
-        self._event: Event | None = None
+        self._event: ClockEvent | None = None
         self._running = False
         self._zero = 0
         regs.bind("QUTMR", read=self.read, write=self._write_QUTMR)
@@ -92,7 +92,7 @@ class EqepWatchdog:
         self._period = regs.registers["QWDPRD"]
         self._sync = sync
         self._timeout = timeout
-        self._event: Event | None = None
+        self._event: ClockEvent | None = None
         self._running = False
         #: Cycle at which the timer was 0: that of the last edge.
         self.zero = 0

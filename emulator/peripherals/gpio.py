@@ -19,7 +19,7 @@ from functools import partial
 from typing import Final
 
 from emulator.c28x.findings import Cause
-from emulator.clock import NEVER, Clock, Event, event_time
+from emulator.clock import NEVER, Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.peripherals.gpio_qualifier import InputQualifier
 from emulator.registers.cell import Cell
@@ -78,7 +78,7 @@ class GpioPort:
         self._followed = 0
         #: Pins with a computed level.  It is computed when DAT is read.
         self._computed = 0
-        self._next_check: Event | None = None
+        self._next_check: ClockEvent | None = None
         for i, wire in enumerate(wires):
             wire.noticed.connect(partial(self._wire_changed, i, 1 << i))
             wire.computed.connect(partial(self._wire_computed, 1 << i))
@@ -342,7 +342,7 @@ class GpioPort:
         for i in set_bits(self._computed):
             _ = self._wires[i].level
             until = min(until, self._wires[i].stays_until())
-        if until != NEVER and (self._next_check is None or event_time(self._next_check) > until):
+        if until != NEVER and (self._next_check is None or self._next_check.time > until):
             self._clock.cancel(self._next_check)
             self._next_check = self._clock.schedule(until, self._check_again)
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from emulator.clock import Clock, Event
+from emulator.clock import Clock, ClockEvent
 
 
 class InputQualifier:
@@ -36,7 +36,7 @@ class InputQualifier:
         self._clock = clock
         self._period_cycles = period_cycles
         self._accepted = accepted
-        self._event: Event | None = None
+        self._event: ClockEvent | None = None
         #: The first sample of a run of samples that differ from the output, and the first sample after the run ended.
         self._first_sample = self._left = -1
         self.level = level

@@ -27,7 +27,7 @@ from typing import Final, TypeVar
 
 from emulator.c28x.findings import Cause
 from emulator.c28x.sites import Place
-from emulator.clock import CYCLES_PER_MS, Clock, Event
+from emulator.clock import CYCLES_PER_MS, Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.peripherals.i2c_checks import I2cChecks
 from emulator.peripherals.i2c_data import I2cData
@@ -112,7 +112,7 @@ class I2c:
         self._vain = VainWaits(clock, cpu.findings, regs)
         #: The state on the bus, and the event at its end.  HELD has an event only when it is about to go on.
         self._state = IDLE
-        self._event: Event | None = None
+        self._event: ClockEvent | None = None
         #: Whether this controller has made a START and no STOP yet.
         self._owner = False
         #: Whether the message stays within the module.  CHOICE: DLB counts when its START is made, and until its STOP.
@@ -122,7 +122,7 @@ class I2c:
         self._left = 0
         #: Transmit shift register, and the byte on its way through the loopback.
         self._xsr = self._looped = 0
-        self._loop: Event | None = None
+        self._loop: ClockEvent | None = None
         #: The statement that wrote the command or the byte that is on the bus.
         self._cause: Cause | None = None
         #: Whether the address of the present message has no answer yet while NACK was still set at its START.

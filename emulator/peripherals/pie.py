@@ -32,6 +32,8 @@ LINES: Final = 16
 VECTOR_TABLE: Final = 0x0D00
 #: CPU interrupts 13 (CPU timer 1) and 14 (CPU timer 2) have these vector ids.
 DIRECT_VECTORS: Final = (13, 14)
+#: Vectors have the ids 0 to 0xDF.
+VECTORS: Final = 0x80 + 8 * GROUPS
 #: CHOICE: if an interrupt waits for its acknowledge for 100 ms, the program contains no such acknowledge.
 LONG_CYCLES: Final = 100 * CYCLES_PER_MS
 #: The entries of the vector table by id.
@@ -72,8 +74,8 @@ class Pie:
         self._forced = [0] * GROUPS
         #: Vector -> the statement that has enabled its line last.
         self._enabled_by: dict[int, Cause | None] = {}
-        #: Vector -> when its routine ended, if there has been no pulse since.
-        self._served: dict[int, int] = {}
+        #: For each vector, when its routine ended, if there has been no pulse since; else -1.
+        self._served = [-1] * VECTORS
         #: (group, number) -> the flag that has kept a further event back, and the routine that left the flag.
         self._blocked: dict[tuple[int, int], tuple[str, Place]] = {}
         regs.bind("PIECTRL", write=self._write_PIECTRL)
@@ -97,8 +99,8 @@ class Pie:
         ifr, ier, bit, x = self._ifr[group - 1], self._ier[group - 1], 1 << n - 1, group - 1
 
         def pulse() -> None:
-            if vector in served:
-                del served[vector]
+            if served[vector] >= 0:
+                served[vector] = -1
             if ier.value & bit:
                 if self._ack.value & 1 << x:
                     self._check_blocked(x, n, again=bool(ifr.value & bit))
@@ -116,9 +118,9 @@ class Pie:
         long (`at_once`: for any time).  Returns False if there is no such routine.
         """
         vector = vector_id(group, n)
-        since = self._served.get(vector)
+        since = self._served[vector]
         handler, begins = self._vectors.get(vector, (None, None))
-        if since is None or begins is None or handler is None:
+        if since < 0 or begins is None or handler is None:
             return False
         self._blocked[group, n] = flag, begins
         if at_once or self._clock.now >= since + LONG_CYCLES:
@@ -128,8 +130,8 @@ class Pie:
     def finish(self) -> None:
         """The run ends.  Report also flags that have kept an interrupt back for half of that time."""
         for (group, n), (flag, begins) in self._blocked.items():
-            since = self._served.get(vector_id(group, n))
-            if since is not None and self._clock.now >= since + LONG_CYCLES // 2:
+            since = self._served[vector_id(group, n)]
+            if since >= 0 and self._clock.now >= since + LONG_CYCLES // 2:
                 self._report_blocked(flag, begins, group, n)
 
     def _report_blocked(self, flag: str, begins: Place, group: int, n: int) -> None:
@@ -151,7 +153,7 @@ class Pie:
     def left_by(self, group: int, n: int) -> Place | None:
         """The place of the firmware's routine of interrupt `group`.`n`, if it has run since the last pulse."""
         vector = vector_id(group, n)
-        return self._vectors.get(vector, (None, None))[1] if vector in self._served else None
+        return self._vectors.get(vector, (None, None))[1] if self._served[vector] >= 0 else None
 
     def set_vector(self, vector_id: int, handler: Callable[[], None] | None, begins: Place | None = None) -> None:
         """Write a vector: `handler` runs when interrupt `vector_id` is taken (13..0xDF).  None: nothing runs.
@@ -159,7 +161,7 @@ class Pie:
         15 to 31 are the core's own (data log, RTOS, emulation, NMI, traps), which nothing here takes.
         `begins`: the place of the firmware's routine, where findings about it are reported.
         """
-        if not DIRECT_VECTORS[0] <= vector_id < 0x80 + 8 * GROUPS:
+        if not DIRECT_VECTORS[0] <= vector_id < VECTORS:
             raise ValueError(f"PIE vector {vector_id:#x}: expected 0xd..0xdf")
         if handler is None:
             self._vectors.pop(vector_id, None)

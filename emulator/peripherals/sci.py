@@ -19,7 +19,7 @@ from functools import partial
 from typing import Final
 
 from emulator.c28x.findings import Cause
-from emulator.clock import Clock, Event
+from emulator.clock import Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.peripherals.fifo import CHANNELS_RUN, DEPTH, ENHANCED, Fifo
 from emulator.peripherals.sci_receiver import SciReceiver
@@ -93,7 +93,7 @@ class Sci:
         self._cause: Cause | None = None
         self._waiting = False
         #: The event at the end of the frame that is being shifted, and this frame.
-        self._shift: Event | None = None
+        self._shift: ClockEvent | None = None
         self._data = 0
         self._start = 0
         self._sent_format = self.format()

@@ -10,7 +10,7 @@ from math import ceil
 from typing import Final
 
 from emulator.c28x.findings import Cause
-from emulator.clock import CYCLES_PER_MS, Clock, Event
+from emulator.clock import CYCLES_PER_MS, Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.peripherals.fifo import DEPTH, INT_ENABLE, LEVEL, OVERFLOW, RUN, SHORT, Fifo
 from emulator.peripherals.sci_sampling import Character, Format, frame_waveform, low_pulse, matches, sample
@@ -84,8 +84,8 @@ class SciReceiver:
         self._low_since = 0
         #: How long the line was low, once it has risen again.
         self._low_width: int | None = None
-        self._low_event: Event | None = None
-        self._break_event: Event | None = None
+        self._low_event: ClockEvent | None = None
+        self._break_event: ClockEvent | None = None
         #: Whether the program has emptied the FIFO while RXFFOVF was set by this overflow.
         self._overflow_answered = False
         #: Characters that came since RXFIFORESET was cleared (None: it is not, or never was set), and the statement

@@ -17,7 +17,7 @@ from collections.abc import Callable
 from typing import Final
 
 from emulator.c28x.findings import Cause
-from emulator.clock import CYCLES_PER_US, SYSCLK_HZ, Clock, Event, event_time
+from emulator.clock import CYCLES_PER_US, SYSCLK_HZ, Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.peripherals.fifo import CHANNELS_RUN, ENHANCED, SHORT, Fifo
 from emulator.registers.spi import SpiRegs
@@ -86,7 +86,7 @@ class Spi:
         self._tx_fifo = Fifo(self._fftx, tx_interrupt, receive=False)
         self._rx_fifo = Fifo(register["SPIFFRX"], rx_interrupt, receive=True, on_blocked=on_blocked)
         #: The event at the end of the word that is being shifted.
-        self._shift: Event | None = None
+        self._shift: ClockEvent | None = None
         self._length = 16
         #: Words completed since reset, and reads of SPIRXBUF before the first of them.
         self._received = self._premature = 0
@@ -284,7 +284,7 @@ class Spi:
                 return
         why = "no word was received since it was last read"
         if self._shift is not None:
-            why = f"the word under way ends in {(event_time(self._shift) - self._clock.now) / CYCLES_PER_US:.1f} us"
+            why = f"the word under way ends in {(self._shift.time - self._clock.now) / CYCLES_PER_US:.1f} us"
         path = self._rxbuf.path
         self._cpu.findings.report(
             "result-not-ready", f"{path} was read though {why}: it holds {self._rxbuf.value:#06x} from before",
@@ -377,7 +377,7 @@ class Spi:
         shift = self._shift
         if shift is not None and not self._cut:
             self._cut = True
-            left_us = (event_time(shift) - self._clock.now) / CYCLES_PER_US
+            left_us = (shift.time - self._clock.now) / CYCLES_PER_US
             self._cpu.findings.report(
                 "spi-transaction-cut",
                 f"chip select {chip_select.name} rose {left_us:.1f} us before the word on {self._bus.name} had ended",

@@ -21,7 +21,7 @@ from functools import partial
 from typing import Final
 
 from emulator.c28x.findings import Cause
-from emulator.clock import CYCLES_PER_US, SYSCLK_HZ, Event
+from emulator.clock import CYCLES_PER_US, SYSCLK_HZ, ClockEvent
 from emulator.cpu import Cpu
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL, Block
@@ -72,9 +72,9 @@ class SysCtrl:
         self.dividers_changed: Signal[[]] = Signal()
         #: (cycles): CPU timer 2 counts every so many SYSCLK cycles from now on.
         self.timer2_changed: Signal[int] = Signal()
-        self._locking: Event | None = None
+        self._locking: ClockEvent | None = None
         #: The event when PLL, divider and oscillator are checked for 200 MHz, and the statement that set them last.
-        self._settling: Event | None = None
+        self._settling: ClockEvent | None = None
         self._set_by: Cause | None = None
         for name in GATES:
             cpusys.bind(name, write=partial(self._write_PCLKCRx, name, CPUSYSLOCK1.fields[name].mask))

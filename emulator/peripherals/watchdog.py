@@ -14,7 +14,7 @@ from typing import Final
 
 from emulator.c28x.findings import Cause
 from emulator.c28x.sites import Place
-from emulator.clock import SYSCLK_HZ, Clock, Event, ms
+from emulator.clock import SYSCLK_HZ, Clock, ClockEvent, ms
 from emulator.cpu import Cpu
 from emulator.registers.core import ALL
 from emulator.registers.watchdog import WdRegs
@@ -43,7 +43,7 @@ class Watchdog:
         regs.bind("WDKEY", write=self._write_WDKEY)
         regs.bind("WDCR", write=self._write_WDCR)
         regs.bind("WDWCR", write=self._write_WDWCR)
-        self._event: Event | None = None
+        self._event: ClockEvent | None = None
         #: The statement that wrote the first key last.
         self._begun: Cause | None = None
         #: When it was serviced last.

@@ -35,6 +35,23 @@ OPEN: Final = Eallow(eallow=True)
 CLOSED: Final = Eallow(eallow=False)
 
 
+class Hook:
+    """What a peripheral does at an access of its register, as an object: compiled firmware calls its methods in C.
+
+    A function, which `Block.bind` takes as well, gets and gives objects there.
+    """
+
+    __slots__ = ()
+
+    def read(self) -> int:
+        """What the CPU reads."""
+        raise NotImplementedError
+
+    def write(self, word: int, lanes: int) -> None:
+        """What a write does, instead of the plain store."""
+        raise NotImplementedError
+
+
 @mypyc_attr(allow_interpreted_subclasses=True)
 class Cell:
     """The stored word of a register and its access.
@@ -62,7 +79,7 @@ class Cell:
 
     __slots__ = (
         "_chosen", "_followers", "_plain", "_taps", "address", "block", "gate", "modify", "name", "on_read",
-        "on_read_steady", "on_write", "read", "value", "write",
+        "on_read_steady", "on_write", "read", "read_hook", "reads", "value", "write", "write_hook", "writes",
     )  # fmt: skip
 
     def __init__(self, block: Owner, name: str, address: int) -> None:
@@ -74,6 +91,9 @@ class Cell:
         self.on_write: Callable[[int, int], None] | None = None
         #: Whether `on_read` gives the same again, and does nothing else, as long as no event comes.
         self.on_read_steady = False
+        #: The objects of which those are methods, if they are.
+        self.read_hook: Hook | None = None
+        self.write_hook: Hook | None = None
         self._followers: list[tuple[dict[str, Any], str, str]] = []
         self._taps: dict[Seen, bool] = {}
         #: Whether the access functions are those of the present state; else the first access chooses them.
@@ -84,6 +104,9 @@ class Cell:
         self.write: Callable[[int, int], None] = self._write_first
         #: `modify(keep, bits, lanes)`: the read-modify-write that a compiler makes of a field assignment.
         self.modify: Callable[[int, int, int], None] = self._modify_first
+        #: The hooks while `read` and `write` do nothing besides.
+        self.reads: Hook | None = None
+        self.writes: Hook | None = None
         #: While its `eallow` stands, `modify` does nothing but store the field in `value`; of a register that clears
         #: bits of another, `write` does nothing else.
         self.gate: Eallow = CLOSED
@@ -102,6 +125,7 @@ class Cell:
             self._choose()
         elif self._chosen:
             self._chosen = self._plain = False
+            self.reads = self.writes = None
             self.read, self.write, self.modify = self._read_first, self._write_first, self._modify_first
 
     def _read_first(self) -> int:
@@ -119,6 +143,7 @@ class Cell:
     def _choose(self) -> None:
         self._chosen = True
         self.gate = CLOSED
+        self.reads = self.writes = None
         if self.block.clocked:
             self._bind_clocked()
         else:
@@ -127,6 +152,7 @@ class Cell:
         if self._taps:
             lay(self, self._taps)
             self.gate = CLOSED
+            self.reads = self.writes = None
         self._plain = self.read == self._read_plain
         for namespace, name, access in self._followers:
             namespace[name] = getattr(self, access)
@@ -180,7 +206,7 @@ class Cell:
 
     def _bind_clocked(self) -> None:
         if self.on_read is not None:
-            self.read = self.on_read
+            self.read, self.reads = self.on_read, self.read_hook
         else:
             self.read = self._read_plain if self.looked_at else self._read_masked
         write = self._storing() if self.on_write is None else self.on_write
@@ -191,6 +217,8 @@ class Cell:
         self.modify = self._modifying()
         if self.reserved_mask:
             self.write = refusing_reserved(self, self.write)
+        if self.write == self.on_write:
+            self.writes = self.write_hook
 
     def _modify(self, keep: int, bits: int, lanes: int) -> None:
         self.write(self.read() & keep | bits, lanes)
@@ -302,7 +330,19 @@ def look(register: Cell) -> int:
 
     It is no method: compiled code calls those of `Cell` through Python, because registers are made at run time.
     """
-    return register.value if register._plain else register.read()
+    if register._plain:
+        return register.value
+    hook = register.reads
+    return register.read() if hook is None else hook.read()
+
+
+def put(register: Cell, word: int, lanes: int) -> None:
+    """Do what the CPU's write to `register` does now."""
+    hook = register.writes
+    if hook is None:
+        register.write(word, lanes)
+    else:
+        hook.write(word, lanes)
 
 
 class Source:

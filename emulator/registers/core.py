@@ -27,7 +27,7 @@ from copy import copy
 from typing import Any, ClassVar, Generic, Self, TypeVar, overload
 
 from emulator.cpu import Cpu
-from emulator.registers.cell import Cell, Source
+from emulator.registers.cell import Cell, Hook, Source
 from emulator.registers.fields import ALL, HIGH, LOW, R0W1, RSV, RW, W1C, W1S, Access, F, R, W
 
 __all__ = [
@@ -43,6 +43,7 @@ __all__ = [
     "At",
     "Block",
     "F",
+    "Hook",
     "R",
     "Register",
     "RegisterStruct",
@@ -276,15 +277,18 @@ class Block:
             for register in self:
                 register.bind()
 
-    def bind(self, name: str, *, read: Callable[[], int] | None = None,
-             write: Callable[[int, int], None] | None = None, steady: bool = False) -> None:  # fmt: skip
+    def bind(self, name: str, *, read: Callable[[], int] | Hook | None = None,
+             write: Callable[[int, int], None] | Hook | None = None, steady: bool = False) -> None:  # fmt: skip
         """Give register `name` behaviour.  `write(word, lanes)` replaces the plain store.
 
         `steady`: `read` gives the same again, and does nothing else, as long as no event comes.
         """
         register = self.registers[name]
-        register.on_read, register.on_read_steady = read, steady
-        register.on_write = write
+        register.read_hook = read if isinstance(read, Hook) else None
+        register.write_hook = write if isinstance(write, Hook) else None
+        register.on_read = read.read if isinstance(read, Hook) else read
+        register.on_read_steady = steady
+        register.on_write = write.write if isinstance(write, Hook) else write
         register.bind()
 
     def reset(self) -> None:

@@ -25,7 +25,7 @@ from greenlet import GreenletExit, getcurrent, greenlet
 
 from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Memory
-from emulator.clock import NEVER, SYSCLK_HZ, Clock, event_callback, no_attention, us
+from emulator.clock import NEVER, SYSCLK_HZ, Clock, no_attention, us
 from emulator.cpu import Cpu
 from emulator.signal import Signal
 from emulator.sysbios.clock import ClockObject
@@ -257,8 +257,7 @@ class Kernel:
                 self._deferred = False
                 clock.request_attention()
             self._enter(self._running)
-            if event_callback(event) is not None:
-                clock.cancel(event)
+            clock.cancel(event)
         if self.exit_status is not None:
             clock.advance_to(cycles)
 

@@ -15,7 +15,7 @@ from math import inf
 from random import Random
 from typing import TYPE_CHECKING, Any, Final, Protocol, cast
 
-from emulator.clock import SYSCLK_HZ, Clock, Event, seconds
+from emulator.clock import SYSCLK_HZ, Clock, ClockEvent, seconds
 from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.registers.cell import Cell
 from hil.faults.kinds import Fault
@@ -187,7 +187,7 @@ class RandomTimes:
 
     def __init__(self, effect: Effect, rate_hz: float, action: Callable[[], None]) -> None:
         self._effect, self._rate_hz, self._action = effect, rate_hz, action
-        self._event: Event | None = None
+        self._event: ClockEvent | None = None
         effect.on_end(self._stop)
 
     def plan(self) -> None:
@@ -220,7 +220,7 @@ class MountedFault:
         self._watching: Callable[[], None] | None = None
         self._effect: Effect = fault.kind.effect(self)
         at = self._start + round(float(fault.values["at"]) * SYSCLK_HZ)
-        self._event: Event | None = machine.clock.schedule(max(at, machine.clock.now), self._due)
+        self._event: ClockEvent | None = machine.clock.schedule(max(at, machine.clock.now), self._due)
 
     def report(self) -> FaultOutcome:
         """When it fired, how often, and its first access."""

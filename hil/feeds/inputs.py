@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from math import floor, inf, pi, radians
 from typing import Final
 
-from emulator.clock import CYCLES_PER_MS, NEVER, SYSCLK_HZ, Event
+from emulator.clock import CYCLES_PER_MS, NEVER, SYSCLK_HZ, ClockEvent
 from emulator.devices.l3g4200d import L3G4200D
 from emulator.devices.lv_maxsonar import LvMaxSonar
 from emulator.devices.lv_maxsonar_beam import INCH_M, Echo
@@ -199,7 +199,7 @@ class _FedShaft:
         # It begins where the encoder stands: only what it turns from there counts.
         self._shaft.angle_rad = self._angle_rad - self._edge * _EDGE_RAD
         self._stop_listening = self._pins.looked_at.connect(self._advance)
-        self._event: Event | None = self._clock.after(_SAMPLE_CYCLES, self._sample)
+        self._event: ClockEvent | None = self._clock.after(_SAMPLE_CYCLES, self._sample)
 
     def end(self) -> None:
         """Return to the motor's shaft, from the present count of the encoder."""
@@ -283,7 +283,7 @@ class _Player:
 
     def __init__(self, board: Board, course: Course, put: Callable[[float], None]) -> None:
         self._clock, self._course, self._put = board.clock, course, put
-        self._event: Event | None = None
+        self._event: ClockEvent | None = None
         self._play()
 
     def _play(self) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final, Protocol
 
 from emulator.c28x.findings import Finding
-from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Event
+from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, ClockEvent
 from emulator.peripherals.spi import CLKPOLARITY
 from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.registers.cell import Cell
@@ -191,7 +191,7 @@ class Recorder:
     def _regularly(self, cycles: int, channel: str, look: Callable[[], Iterable[tuple[str, Any]]]) -> None:
         """Record the values that `look` gives, each `cycles` cycles, if they have changed."""
         known: dict[str, Any] = {}
-        due: Event | None = None
+        due: ClockEvent | None = None
 
         def tell() -> None:
             nonlocal due

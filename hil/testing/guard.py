@@ -17,7 +17,7 @@ from emulator.c28x.link import Linked
 from emulator.c28x.position import Calls
 from emulator.c28x.runtime import EndlessPoll, Idling
 from emulator.c28x.sites import Place
-from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, Event, seconds
+from emulator.clock import CYCLES_PER_MS, SYSCLK_HZ, ClockEvent, seconds
 from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
 from hil.board import Board
 from hil.testing.waits import PollingLoop, PollingLoops
@@ -58,7 +58,7 @@ class _Call:
     halfway: list[Calls | None] = field(default_factory=list)
     #: When a loop was first found hopeless, and the cycles that were executed outside interrupt routines until then.
     hopeless: dict[Place, tuple[int, int]] = field(default_factory=dict)
-    events: tuple[Event, ...] = ()
+    events: tuple[ClockEvent, ...] = ()
 
 
 class _CallWatch:
@@ -77,7 +77,7 @@ class _CallWatch:
         self._served = 0
         #: The calls of the firmware that had not returned at the last check.
         self._before: list[Calls | None] = []
-        self._next: Event | None = None
+        self._next: ClockEvent | None = None
 
     def watched(self, path: str, function: Callable[..., Any]) -> Callable[..., Any]:
         """Wrap `function` so that it is ended if it does not return."""

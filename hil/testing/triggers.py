@@ -12,7 +12,7 @@ from fnmatch import fnmatchcase
 from typing import Any, Final
 
 from emulator.c28x.findings import Finding
-from emulator.clock import SYSCLK_HZ, Event, ms
+from emulator.clock import SYSCLK_HZ, ClockEvent, ms
 from emulator.registers.cell import Cell
 from hil.board import Board
 from hil.testing.case import ExpectedFinding
@@ -260,7 +260,7 @@ class Holds(Trigger):
 
     def arm(self, fire: Fire) -> Disarm:
         """Evaluate the condition now and regularly from now on."""
-        pending: Event | None = None
+        pending: ClockEvent | None = None
 
         def look() -> None:
             nonlocal pending

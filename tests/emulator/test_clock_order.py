@@ -7,7 +7,7 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from emulator.clock import NEVER, Clock, Event
+from emulator.clock import NEVER, Clock, ClockEvent
 
 #: (what to do, cycles, priority)
 STEPS = st.lists(
@@ -23,7 +23,7 @@ def test_events_run_in_order_at_their_times(steps: list[tuple[str, int, int]], e
     clock = Clock()
     ran: list[tuple[int, int, int]] = []
     due: dict[int, tuple[int, int, int]] = {}
-    events: list[tuple[int, Event]] = []
+    events: list[tuple[int, ClockEvent]] = []
 
     def schedule(cycles: int, priority: int, again: bool) -> None:
         number = len(events)

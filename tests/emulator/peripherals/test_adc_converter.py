@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from emulator.clock import CYCLES_PER_US
-from emulator.peripherals.adc_converter import gaussian
+from emulator.peripherals.adc_converter import Gaussian
 from tests.emulator.peripherals.adc_bench import LAT, SYNC, Bench
 
 
@@ -89,5 +89,5 @@ def test_limits_that_no_chip_reports_are_findings() -> None:
 
 @given(seed=st.integers(0, 2**32), sigma=st.floats(0.1, 20.0))
 def test_noise_is_what_python_draws(seed: int, sigma: float) -> None:
-    drawn, expected = gaussian(Random(seed), sigma), Random(seed)
-    assert [next(drawn) for _ in range(9)] == [expected.gauss(0.0, sigma) for _ in range(9)]
+    drawn, expected = Gaussian(Random(seed), sigma), Random(seed)
+    assert [drawn.value() for _ in range(9)] == [expected.gauss(0.0, sigma) for _ in range(9)]

@@ -39,13 +39,13 @@ def test_a_code_is_that_part_of_the_reference_on_its_pin_once_the_output_is_on(
     pin.follow("test", lambda _cycles: 0.125)
     write(chip, block, "DACCTL", 1)
     write(chip, block, "DACVALS", 2048)
-    assert pin.source(0) == 0.125
+    assert pin.source.volts(0) == 0.125
     write(chip, block, "DACOUTEN", 1)
     # 2048 of 4096 parts of 2.5 V.
-    assert pin.source(0) == 1.25
+    assert pin.source.volts(0) == 1.25
     assert chip.register(block, "DACVALA").read() == 2048
     write(chip, block, "DACOUTEN", 0)
-    assert pin.source(0) == 0.125
+    assert pin.source.volts(0) == 0.125
 
 
 @given(code=st.integers(0, 4095))
@@ -77,7 +77,7 @@ def test_a_software_reset_lets_the_pin_go(chip: Chip) -> None:
     for register, word in (("DACOUTEN", 1), ("DACVALS", 4095), ("DACLOCK", 0xA << 12 | 0b111)):
         write(chip, "DacbRegs", register, word)
     write(chip, "DevCfgRegs", "SOFTPRES16", 1 << 17)
-    assert chip.analog["A"][1].source(0) == 0.0
+    assert chip.analog["A"][1].source.volts(0) == 0.0
     write(chip, "DacbRegs", "DACVALS", 7)
     assert chip.register("DacbRegs", "DACVALA").read() == 7
     assert not list(chip.findings)
