@@ -21,6 +21,7 @@ Sources: TRM ePWM (type 4); HDR F2837xS_epwm.h.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Final
 
 from emulator.clock import Clock, ClockEvent
 from emulator.cpu import Cpu
@@ -40,6 +41,10 @@ from emulator.registers.epwm_output import DBCTL, DBCTL2
 from emulator.signal import Signal
 from emulator.signals import PwmWire
 
+# CMPCTL
+_CMPA_FULL: Final = CMPCTL.SHDWAFULL.mask
+_CMPB_FULL: Final = CMPCTL.SHDWBFULL.mask
+
 
 def _field(word: int, field: F) -> int:
     return (word & field.mask) >> field.lo
@@ -58,7 +63,7 @@ class EPwm:
     """
 
     __slots__ = (
-        "_checks", "_cmpa", "_cmpb", "_csfrc", "_dbctl", "_dbfed", "_dbred", "_digital_compare", "_divider",
+        "_checks", "_cmpa", "_cmpb", "_cmpctl", "_csfrc", "_dbctl", "_dbfed", "_dbred", "_digital_compare", "_divider",
         "_load_event", "_load_points", "_next_check", "_on_path", "_outputs", "_prd", "_shadows", "_stopped_loads",
         "_sync_pulse", "_tbclksync", "_time_base", "_triggers", "_trip_zone", "clock", "cpu", "number", "regs",
     )  # fmt: skip
@@ -86,6 +91,7 @@ class EPwm:
         self._prd = Shadow(registers["TBPRD"])
         self._cmpa = Shadow(registers["CMPA"], shift=16)
         self._cmpb = Shadow(registers["CMPB"], shift=16)
+        self._cmpctl = registers["CMPCTL"]
         self._csfrc = Shadow(registers["AQCSFRC"])
         control_a = Shadow(registers["AQCTLA"], immediate=True)
         control_b = Shadow(registers["AQCTLB"], immediate=True)
@@ -121,8 +127,8 @@ class EPwm:
         bind("TBSTS", read=self._read_TBSTS, write=self._write_TBSTS)
         bind("TBPRD", write=self._shadow_writer(self._prd))
         bind("CMPCTL", write=self._write_CMPCTL)
-        bind("CMPA", write=self._shadow_writer(self._cmpa, HIGH, CMPCTL.SHDWAFULL))
-        bind("CMPB", write=self._shadow_writer(self._cmpb, HIGH, CMPCTL.SHDWBFULL))
+        bind("CMPA", write=self._shadow_writer(self._cmpa, HIGH, _CMPA_FULL))
+        bind("CMPB", write=self._shadow_writer(self._cmpb, HIGH, _CMPB_FULL))
         bind("AQCTL", write=self._write_AQCTL)
         bind("AQCTLA", write=self._shadow_writer(control_a))
         bind("AQCTLB", write=self._shadow_writer(control_b))
@@ -246,19 +252,19 @@ class EPwm:
     # -- shadow registers ----------------------------------------------------------------------------------------
 
     def _shadow_writer(self, shadow: Shadow, lanes_used: int = 0xFFFF,
-                       full: F | None = None) -> Callable[[int, int], None]:  # fmt: skip
+                       full: int = 0) -> Callable[[int, int], None]:  # fmt: skip
         register = shadow.register
 
         def write(word: int, lanes: int) -> None:
             register.store(word, lanes)
             if not lanes & lanes_used:
                 return
-            if full is not None:
+            if full:
                 period = max(self._prd.register.value, self._prd.active)
                 self._checks.compared(register.name, register.value >> 16, period)
             elif shadow is self._prd:
                 self._checks.period_written()
-            if full is not None and (not self._time_base.running or not self._prd.register.value or self._unseen):
+            if full and (not self._time_base.running or not self._prd.register.value or self._unseen):
                 self._check_use(shadow)
             if shadow.immediate:
                 self._settle()
@@ -267,8 +273,7 @@ class EPwm:
                 self._rearrange()
             else:
                 shadow.pending = True
-                if full is not None:
-                    self.regs.CMPCTL.value |= full.mask
+                self._cmpctl.value |= full
                 # Several registers can wait for one load point.  Its event is scheduled already.
                 if self._load_event is None or shadow.points & ~self._load_points:
                     self._schedule_load()
@@ -349,9 +354,9 @@ class EPwm:
         for shadow in loading:
             shadow.load()
         if not self._cmpa.pending:
-            self.regs.CMPCTL.value &= ~CMPCTL.SHDWAFULL.mask
+            self._cmpctl.value &= ~_CMPA_FULL
         if not self._cmpb.pending:
-            self.regs.CMPCTL.value &= ~CMPCTL.SHDWBFULL.mask
+            self._cmpctl.value &= ~_CMPB_FULL
         if new:
             self._time_base.change(period=self._prd.active)
             self._rearrange(arrived=self._time_base.running)
@@ -417,14 +422,14 @@ class EPwm:
         self.regs.TBSTS.store(word)
 
     def _write_CMPCTL(self, word: int, lanes: int) -> None:
-        register = self.regs.CMPCTL
+        register = self._cmpctl
         register.store(word)
         self._configure(self._cmpa, bool(word & CMPCTL.SHDWAMODE.mask), LOAD_POINTS[_field(word, CMPCTL.LOADAMODE)])
         self._configure(self._cmpb, bool(word & CMPCTL.SHDWBMODE.mask), LOAD_POINTS[_field(word, CMPCTL.LOADBMODE)])
         if not self._cmpa.pending:
-            register.value &= ~CMPCTL.SHDWAFULL.mask
+            register.value &= ~_CMPA_FULL
         if not self._cmpb.pending:
-            register.value &= ~CMPCTL.SHDWBFULL.mask
+            register.value &= ~_CMPB_FULL
         self._schedule_load()
 
     def _write_AQCTL(self, word: int, lanes: int) -> None:

@@ -55,7 +55,9 @@ class _Trigger:
 class EventTrigger:
     """ETSEL, ETPS, ETFLG and their companions.  `phases()` gives the counter's events as they are now."""
 
-    __slots__ = ("_clock", "_flags", "_interrupt", "_on_blocked", "_phases", "_regs", "_time_base", "_triggers")
+    __slots__ = (
+        "_clock", "_flags", "_interrupt", "_on_blocked", "_phases", "_regs", "_select", "_time_base", "_triggers",
+    )  # fmt: skip
 
     def __init__(self, clock: Clock, regs: EPwmRegs, time_base: TimeBase,
                  phases: Callable[[], dict[str, Phases]], interrupt: Callable[[], None],
@@ -67,7 +69,7 @@ class EventTrigger:
         self._regs = regs
         self._time_base = time_base
         self._phases = phases
-        self._flags = regs.registers["ETFLG"]
+        self._flags, self._select = regs.registers["ETFLG"], regs.registers["ETSEL"]
         self._interrupt = _Trigger(
             "INT", ETFLG.INT, (ETSEL.INTSEL, ETSEL.INTEN, ETPS.INTPRD, ETPS.INTCNT),
             (ETPS.INTPSSEL, ETINTPS.INTPRD2, ETINTPS.INTCNT2), interrupt,
@@ -98,18 +100,18 @@ class EventTrigger:
     def reschedule(self) -> None:
         """Schedule the triggers anew: the counter's path, a compare value or a setting has changed."""
         phases: dict[str, Phases] | None = None
-        if not self._regs.ETSEL.value & _ENABLES and not any(trigger.event for trigger in self._triggers):
+        if not self._select.value & _ENABLES and not any(trigger.event for trigger in self._triggers):
             return
         for trigger in self._triggers:
             if trigger.event is not None:
                 self._clock.cancel(trigger.event)
                 trigger.event = None
-            if self._regs.ETSEL.value & trigger.enable.mask and self._time_base.counts and self._period(trigger):
+            if self._select.value & trigger.enable.mask and self._time_base.counts and self._period(trigger):
                 phases = phases or self._phases()
                 self._schedule(trigger, phases)
 
     def _schedule(self, trigger: _Trigger, phases: dict[str, Phases]) -> None:
-        names = _SELECT[_field(self._regs.ETSEL.value, trigger.select)]
+        names = _SELECT[_field(self._select.value, trigger.select)]
         times = [self._time_base.next_time(phase) for name in names for phase in phases[name]]
         if times:
             # Before a shadow load of the same cycle, which schedules anew from there on.
@@ -123,7 +125,7 @@ class EventTrigger:
     def digital_compare(self, output: int) -> None:
         """DCAEVT1.soc (0) or DCBEVT1.soc (1)."""
         trigger = self._triggers[1 + output]
-        select = self._regs.ETSEL.value
+        select = self._select.value
         if select & trigger.enable.mask and not _field(select, trigger.select) and self._period(trigger):
             self._count_event(trigger)
 
@@ -183,14 +185,14 @@ class EventTrigger:
         return write
 
     def _write_ETSEL(self, word: int, lanes: int) -> None:
-        self._regs.ETSEL.store(word)
+        self._select.store(word)
         self.reschedule()
 
     def _write_ETCLR(self, word: int, lanes: int) -> None:
         self._flags.value &= ~word
         interrupt = self._interrupt
         period = self._period(interrupt)
-        enabled = self._regs.ETSEL.value & interrupt.enable.mask
+        enabled = self._select.value & interrupt.enable.mask
         if word & interrupt.flag and enabled and period and self._count(interrupt) >= period:
             self._fire(interrupt)
 
@@ -200,5 +202,5 @@ class EventTrigger:
             if word & trigger.flag:
                 standing = trigger is self._interrupt and self._flags.value & trigger.flag
                 self._flags.value |= trigger.flag
-                if self._regs.ETSEL.value & trigger.enable.mask and not standing:
+                if self._select.value & trigger.enable.mask and not standing:
                     trigger.pulse()

@@ -41,6 +41,7 @@ _CAUSES: Final = 0xFF
 _EVENTS: Final = 0xF
 _EVENT_FLAG: Final = TZFLG.DCAEVT1.lo
 _ONE_SHOT: Final = 8
+_OST: Final = TZFLG.OST.mask
 #: Among the causes of a cycle-by-cycle trip: TZFRC.CBC.
 _SOFTWARE: Final = 1 << 15
 _SOURCES: Final = TZFLG.CBC.mask | TZFLG.OST.mask | _EVENTS << _EVENT_FLAG
@@ -137,7 +138,7 @@ class TripZone:
 
     def action(self, output: int) -> int:
         """The action on output 0 (A) or 1 (B): HIGH_IMPEDANCE, HIGH, low or UNTOUCHED."""
-        tripped = self._cycle or self._flags.value & TZFLG.OST.mask
+        tripped = self._cycle or self._flags.value & _OST
         if not tripped and not self._events:
             return UNTOUCHED
         fields = [_OUTPUTS[output]] if tripped else []

@@ -33,6 +33,7 @@ from emulator.signals import QuadratureWire
 
 _INT: Final = QFLG.INT.mask
 _QDF: Final = QEPSTS.QDF.mask
+_QCLM: Final = QEPCTL.QCLM.mask
 _SOURCES: Final = 0x0FFE
 _LATCHED: Final = ("QPOSILAT", "QPOSSLAT", "QPOSLAT", "QFLG", "QEPSTS", "QCTMRLAT", "QCPRDLAT")
 
@@ -351,7 +352,7 @@ class EQep:
         self.quadrature.sync()
         if not self._on or not self._maximum.value or self.quadrature.missing:
             self._checks.position_read()
-        if not self._control.value & QEPCTL.QCLM.mask:
+        if not self._control.value & _QCLM:
             self._capture.latch()
         return self._position.value
 

@@ -18,6 +18,8 @@ from emulator.registers.eqep import QCAPCTL, QEPSTS, EQepRegs
 _WATCHDOG_SHIFT: Final = 6
 _WATCHDOG_SPAN: Final = 1 << (16 + _WATCHDOG_SHIFT)
 _SPAN32: Final = 1 << 32
+_COEF: Final = QEPSTS.COEF.mask
+_CDEF: Final = QEPSTS.CDEF.mask
 
 
 class UnitTimer:
@@ -222,9 +224,9 @@ class Capture:
         """Copy QCTMR and QCPRD to their latches.  An invalid period is latched as 0xFFFF."""
         registers = self._regs.registers
         registers["QCTMRLAT"].value = self.count()
-        invalid = QEPSTS.COEF.mask
+        invalid = _COEF
         if self._sticky or self._turned or self._spoilt:
-            invalid |= QEPSTS.CDEF.mask
+            invalid |= _CDEF
         registers["QCPRDLAT"].value = 0xFFFF if self._status.value & invalid else registers["QCPRD"].value
 
     def _read_QCTMR(self) -> int:

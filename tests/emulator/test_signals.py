@@ -204,14 +204,14 @@ def test_two_sources_of_one_voltage_are_a_conflict_with_names() -> None:
     with pytest.raises(ValueError, match="ADCINB3 has two sources: infrared and sonar"):
         wire.follow("sonar", lambda _cycles: 2.0)
     wire.follow("infrared", lambda _cycles: 1.5)
-    assert wire.source(0) == 1.5
+    assert wire.source.volts(0) == 1.5
     wire.follow("infrared", None)
     wire.follow("sonar", lambda _cycles: 2.0)
-    assert wire.source(0) == 2.0
+    assert wire.source.volts(0) == 2.0
     wire.unplug()
-    assert (wire.source(0), wire.steady) == (0.0, True)
+    assert (wire.source.volts(0), wire.steady) == (0.0, True)
     wire.follow("infrared", lambda _cycles: 1.0)
-    assert wire.source(0) == 1.0
+    assert wire.source.volts(0) == 1.0
 
 
 def test_a_sampled_voltage_is_told_whatever_source_comes_later() -> None:
@@ -219,13 +219,13 @@ def test_a_sampled_voltage_is_told_whatever_source_comes_later() -> None:
     heard: list[tuple[int, float]] = []
     stop = wire.sampled.connect(lambda cycles, volts: heard.append((cycles, volts)))
     wire.follow("part", lambda cycles: cycles / 10)
-    wire.source(5)
+    wire.source.volts(5)
     wire.drive(lambda _cycles: 3.0)
-    wire.source(6)
+    wire.source.volts(6)
     stop()
-    wire.source(7)
+    wire.source.volts(7)
     wire.drive(None)
-    assert (wire.source(8), heard) == (0.8, [(5, 0.5), (6, 3.0)])
+    assert (wire.source.volts(8), heard) == (0.8, [(5, 0.5), (6, 3.0)])
 
 
 def test_an_output_has_one_source() -> None:

@@ -236,8 +236,8 @@ def test_a_part_is_found_by_name_and_by_kind_and_its_faces_are_set() -> None:
 
     board = Two()
     board.part("v1").put("level_v", 2.5)
-    assert board.analog["C"][1].source(0) == 2.5
-    assert board.analog["C"][0].source(0) == 1.0
+    assert board.analog["C"][1].source.volts(0) == 2.5
+    assert board.analog["C"][0].source.volts(0) == 1.0
     assert list(board.find(Volts)) == ["v0", "v1"]
     with pytest.raises(ValueError, match="one voltage for this, and has 2: v0, v1"):
         board.only(Volts, "voltage")
@@ -284,7 +284,7 @@ def test_two_parts_at_one_place_are_a_conflict_with_both_names() -> None:
     with pytest.raises(ValueError, match="ADCINB3 has two sources: infrared and light"):
         board.on_adc("light", Voltage(), adc="B", channel=3)
     Outside(board).adc_volts(3, 2.5, adc="B")
-    assert board.analog["B"][3].source(0) == 2.5, "a test unplugs the part"
+    assert board.analog["B"][3].source.volts(0) == 2.5, "a test unplugs the part"
     assert list(board.parts) == ["first", "elsewhere", "third", "infrared"]
 
 

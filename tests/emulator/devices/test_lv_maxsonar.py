@@ -124,7 +124,7 @@ def test_a_range_is_cut_to_whole_inches_from_6_to_254_or_255(inches: float) -> N
 def test_the_analog_value_is_vcc_over_512_an_inch(inches: float | None, vcc: float, volts: float) -> None:
     clock, analog, _ = free_running(Scene(inches), vcc_v=vcc)
     clock.advance_to(FIRST + 98 * MS)  # two equal readings
-    assert analog.source(clock.now) == pytest.approx(volts, abs=5e-5)
+    assert analog.source.volts(clock.now) == pytest.approx(volts, abs=5e-5)
 
 
 def test_the_analog_value_holds_until_the_echo_and_moves_until_44_3_ms() -> None:
@@ -135,10 +135,10 @@ def test_the_analog_value_holds_until_the_echo_and_moves_until_44_3_ms() -> None
     clock.advance_to(FIRST + 98 * MS)
     start = clock.now
     echo = start + 20 * 147 * US
-    assert analog.source(echo) == 100 * 3.3 / 512
+    assert analog.source.volts(echo) == 100 * 3.3 / 512
     end = start + 44_300 * US
-    assert analog.source(end) == 20 * 3.3 / 512
-    middle = analog.source((echo + end) // 2)  # downward in a straight line
+    assert analog.source.volts(end) == 20 * 3.3 / 512
+    middle = analog.source.volts((echo + end) // 2)  # downward in a straight line
     assert middle == pytest.approx(60 * 3.3 / 512, abs=1e-6)
     assert sonar.last_reading_in == 20
 
@@ -151,9 +151,9 @@ def test_a_long_range_after_a_short_one_needs_a_second_cycle() -> None:
     clock.advance_to(FIRST + 98 * MS + 48 * MS)
     low, high = 20 * 3.3 / 512, 255 * 3.3 / 512
     # 90 % of the step in the 6.8 ms between 37.5 and 44.3 ms.
-    assert analog.source(clock.now) == pytest.approx(low + 0.9 * (high - low), abs=1e-4)
+    assert analog.source.volts(clock.now) == pytest.approx(low + 0.9 * (high - low), abs=1e-4)
     clock.advance_to(clock.now + 49 * MS)
-    assert analog.source(clock.now) == high
+    assert analog.source.volts(clock.now) == high
 
 
 @given(st.lists(st.one_of(st.none(), st.floats(6, 254)), min_size=2, max_size=8), st.integers(0, 10**9))
@@ -168,9 +168,9 @@ def test_the_analog_value_is_continuous_and_between_its_readings(ranges: list[fl
         for _ in range(20):
             clock.advance_to(clock.now + rng.randint(1, 5 * MS))
             low, high = min(low, sonar.last_reading_in), max(high, sonar.last_reading_in)
-            volts = analog.source(clock.now)
+            volts = analog.source.volts(clock.now)
             assert low * 3.3 / 512 - 1e-9 <= volts <= high * 3.3 / 512 + 1e-9
-            assert abs(analog.source(clock.now + 1) - volts) < 1e-4
+            assert abs(analog.source.volts(clock.now + 1) - volts) < 1e-4
 
 
 def test_rx_low_stops_after_the_cycle_and_holds_the_value() -> None:
@@ -181,7 +181,7 @@ def test_rx_low_stops_after_the_cycle_and_holds_the_value() -> None:
     clock.advance_to(FIRST + 500 * MS)
     assert len(scene.pings) == 2
     assert not sonar.busy
-    assert analog.source(clock.now) == 50 * 3.3 / 512
+    assert analog.source.volts(clock.now) == 50 * 3.3 / 512
 
 
 @pytest.mark.parametrize(("pulse_us", "ranges"), [(19, 0), (21, 1), (20_000, 1), (150_000, 3)])
@@ -260,8 +260,8 @@ def test_the_ripple_depends_on_the_time_only() -> None:
     clock, analog, _ = free_running(scene, ideal=False)
     clock.advance_to(FIRST + 48 * MS)
     times = [clock.now + n * 50 * US for n in range(19)]
-    forward = [analog.source(t) for t in times]
-    assert [analog.source(t) for t in reversed(times)] == forward[::-1]
+    forward = [analog.source.volts(t) for t in times]
+    assert [analog.source.volts(t) for t in reversed(times)] == forward[::-1]
     # One LSB of ten bits either side, so two LSB apart at most; not all alike.
     assert 0.0 < max(forward) - min(forward) <= 2 * 3.3 / 1024
 

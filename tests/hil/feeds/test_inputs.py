@@ -68,7 +68,7 @@ def robot() -> Bench:
 
 
 def volts(on: BoardTarget, pin: int = 3) -> float:
-    return on.board.analog["B"][pin].source(on.clock.now)
+    return on.board.analog["B"][pin].source.volts(on.clock.now)
 
 
 def to(on: BoardTarget, time_s: float) -> None:
@@ -390,4 +390,4 @@ def test_the_fixture_takes_time_from_now(
     advance(0.5)
     feed("ADCINA3", ([0.0, 0.1], [1.0, 2.0]), how="linear")
     advance(0.05)
-    assert board.analog["A"][3].source(board.clock.now) == pytest.approx(1.5)
+    assert board.analog["A"][3].source.volts(board.clock.now) == pytest.approx(1.5)

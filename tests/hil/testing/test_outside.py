@@ -30,7 +30,7 @@ def axis(board: RobotBoard, low: int) -> int:
 def test_volts_may_follow_time(board: RobotBoard, outside: Outside, advance: Callable[[float], None]) -> None:
     outside.adc_volts(7, lambda time_s: 2.0 * time_s)
     advance(0.5)
-    assert board.analog["A"][7].source(board.clock.now) == pytest.approx(1.0)
+    assert board.analog["A"][7].source.volts(board.clock.now) == pytest.approx(1.0)
 
 
 def test_sonar_sees_what_is_set_and_the_others_nothing(board: RobotBoard, outside: Outside) -> None:
