@@ -24,9 +24,10 @@ from typing import Final
 SYSCLK_HZ: Final = 200_000_000
 CYCLES_PER_US: Final = SYSCLK_HZ // 1_000_000
 CYCLES_PER_MS: Final = SYSCLK_HZ // 1_000
-NEVER: Final = 1 << 62
+#: No time.  It is the highest power of two that compiled code keeps in a machine word.
+NEVER: Final = 1 << 61
 #: Cycles from any time that a board reaches to any time that is meant.
-FAR: Final = 1 << 61
+FAR: Final = 1 << 60
 
 
 class ClockEvent:

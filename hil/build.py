@@ -39,6 +39,8 @@ PATTERNS: Final = (
     "emulator/trace.py",
     "emulator/pin_mux.py",
     "emulator/registers/cell.py",
+    "emulator/registers/checks.py",
+    "emulator/registers/taps.py",
     "emulator/c28x/arithmetic.py",
     "emulator/c28x/findings.py",
     "emulator/c28x/heap_block.py",

@@ -103,6 +103,7 @@ class Adc:
         "_ppb",
         "_pulses",
         "_reads",
+        "_ready",
         "_ready_at",
         "_regs",
         "_result_regs",
@@ -110,7 +111,6 @@ class Adc:
         "_sample",
         "_sel_then",
         "_selected",
-        "_single",
         "_soc",
         "_socs",
         "_socsel1",
@@ -185,8 +185,8 @@ class Adc:
         #: Conversions ended since the object was made.
         self.conversions = 0
         self._socs = Socs(regs, cpu.findings, converter, self._results, any_write_resets_pointer)
-        #: Word of ADCSOCFRC1 -> the SOC that it forces, if this SOC begins at once when no conversion is under way.
-        self._single: dict[int, Soc] = {}
+        #: The SOCs that begin at once if they are forced while no conversion is under way.
+        self._ready: list[Soc] = []
         self._ctl1, self._ctl2 = registers["ADCCTL1"], registers["ADCCTL2"]
         for name, read, write in (
             ("ADCCTL1", self._read_ADCCTL1, self._write_ADCCTL1),
@@ -467,11 +467,11 @@ class Adc:
         before, self._obeyed = self._obeyed, self._socs.obeyed()
         for trigsel in sorted(before ^ self._obeyed):
             self._trigger_changed(trigsel, trigsel in self._obeyed)
-        self._single = {}
+        self._ready = []
         if self._late and not self._stopped_by_fault:
             for soc in self._socs.every[self._socs.high :]:
                 if soc.window > self._acqps_min and self._begun >> soc.n & 1:
-                    self._single[1 << soc.n] = soc
+                    self._ready.append(soc)
 
     # --- interrupts --------------------------------------------------------------------------------------------------
 
@@ -676,24 +676,24 @@ class Adc:
     def _write_ADCSOCFRC1(self, word: int) -> None:
         position = self._position
         self._cause = position.at, position.calls, position.who  # `Findings.mark` without its call: 0.7 % of a mission
-        soc = self._single.get(word)
-        if soc is not None and self._event is None:
-            start = self._clock.now + self._sync_cycles
-            if start >= self._ready_at:
-                # `_begin` for a round-robin SOC alone: there is nothing to arbitrate and nothing to report.
-                socs = self._socs
-                socs.before = socs.pointer
-                socs.pointer = soc.n
-                self._last_soc = self._soc
-                self._soc = soc
-                self._sel_then = self._intsel12.value
-                self._latched = self._latch_at
-                self._latch_at = NEVER
-                self._start = start
-                self._sample = start + soc.window
-                self._event = self._at_end
-                self._clock.start(self._at_end, start + soc.cycles)
-                return
+        start = self._clock.now + self._sync_cycles
+        if self._event is None and start >= self._ready_at:
+            for soc in self._ready:
+                if soc.bit == word:
+                    # `_begin` for a round-robin SOC alone: there is nothing to arbitrate and nothing to report.
+                    socs = self._socs
+                    socs.before = socs.pointer
+                    socs.pointer = soc.n
+                    self._last_soc = self._soc
+                    self._soc = soc
+                    self._sel_then = self._intsel12.value
+                    self._latched = self._latch_at
+                    self._latch_at = NEVER
+                    self._start = start
+                    self._sample = start + soc.window
+                    self._event = self._at_end
+                    self._clock.start(self._at_end, start + soc.cycles)
+                    return
         if word:
             self._by_hardware &= ~word
             self._request(word)

@@ -24,10 +24,11 @@ ADCEXTSOC: Final = 4
 class Soc:
     """The decoded settings of one SOC.  They are updated at every write, so that a conversion decodes nothing."""
 
-    __slots__ = ("adcint1", "channel", "cycles", "n", "pin", "result", "window")
+    __slots__ = ("adcint1", "bit", "channel", "cycles", "n", "pin", "result", "window")
 
     def __init__(self, n: int, pin: AnalogWire, result: Cell) -> None:
         self.n, self.pin, self.result = n, pin, result
+        self.bit = 1 << n
         self.channel = 0
         #: Cycles of the window, and cycles from its opening to the end of the conversion.
         self.window = self.cycles = 1

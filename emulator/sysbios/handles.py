@@ -105,7 +105,7 @@ class Handles:
 
                 @wraps(function)
                 def call_with_handle(handle: Any) -> Any:
-                    if handle.__class__ is wanted and not handle.deleted:
+                    if isinstance(handle, KernelObject) and type(handle) is wanted and not handle.deleted:
                         return function(handle)
                     return function(*self.checked(name, (handle,)))
 
@@ -114,7 +114,7 @@ class Handles:
 
                 @wraps(function)
                 def call_with_handle_and_argument(handle: Any, argument: Any) -> Any:
-                    if handle.__class__ is wanted and not handle.deleted:
+                    if isinstance(handle, KernelObject) and type(handle) is wanted and not handle.deleted:
                         return function(handle, argument)
                     return function(*self.checked(name, (handle, argument)))
 
