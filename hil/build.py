@@ -34,6 +34,7 @@ from hil.robot.board import RobotBoard
 PATTERNS: Final = (
     "emulator/clock.py",
     "emulator/cpu.py",
+    "emulator/noise.py",
     "emulator/signal.py",
     "emulator/signals.py",
     "emulator/trace.py",

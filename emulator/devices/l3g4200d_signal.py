@@ -30,6 +30,7 @@ from emulator.devices.l3g4200d_registers import (
     ZERO_RATE_DPS_PER_C,
     HighPassMode,
 )
+from emulator.noise import Gaussian
 
 Vector = tuple[float, float, float]
 Digits = tuple[int, int, int]
@@ -144,6 +145,7 @@ class SignalPath:
         "_element",
         "_fs",
         "_full_scale_dps",
+        "_gauss",
         "_hp",
         "_hpm",
         "_key",
@@ -153,7 +155,6 @@ class SignalPath:
         "_paths",
         "_perfect",
         "_reference_dps",
-        "_rng",
         "_self_test_dps",
         "_sensitivity_dps",
         "_temperature_c",
@@ -164,7 +165,7 @@ class SignalPath:
     def __init__(self, unit: GyroUnit, rng: random.Random, temperature_c: float) -> None:
         self._unit = unit
         self._perfect = unit == GyroUnit()
-        self._rng = rng
+        self._gauss = Gaussian(rng)
         self._temperature_c = temperature_c
         self._key: tuple[int, ...] = ()
         self._lp1: list[_LowPass1] = []
@@ -325,7 +326,7 @@ class SignalPath:
         elif x < -1.0:
             x = -1.0
         bent = bend_dps * (4.0 * x * x - 3.0) * x
-        return dps * gain + bent + zero_dps + (self._rng.gauss(0.0, self._noise) if self._noise else 0.0)
+        return dps * gain + bent + zero_dps + (self._gauss.value(self._noise) if self._noise else 0.0)
 
     def _digits(self, dps: Sequence[float]) -> Digits:
         """The three axes in digits of the present range."""

@@ -424,7 +424,7 @@ class Adc:
                     full_scale = self._full_scale
                     level = full_scale * (soc.pin.source.volts(self._sample) - self._vreflo_v) / self._span_v
                     if self._noise_lsb:
-                        level += self._noise.value()
+                        level += self._noise.value(self._noise_lsb)
                     result.value = int(level if level < full_scale else full_scale - 1.0) if level > 0.0 else 0
                 else:
                     powered = self._start >= self._ready_at

@@ -11,11 +11,11 @@ Sources: DS ADC timing tables and electrical characteristics; TRM ADC.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from math import cos, log, sin, sqrt, tau
 from random import Random
 from typing import Final
 
 from emulator.c28x.findings import Findings
+from emulator.noise import Gaussian
 from emulator.signals import AnalogWire
 
 #: DS ADC timing: tEOC, tLAT in SYSCLK after the window, by PRESCALE.  1 is an invalid divider (CHOICE: as 0).
@@ -34,30 +34,6 @@ ACQPS_MIN_16_BIT: Final = 63
 PRESCALE_MIN: Final = 6
 #: An `acqps_min` that no window reaches, so that every conversion is checked.
 ALWAYS: Final = 512
-
-
-class Gaussian:
-    """Normal values of mean 0 and deviation `sigma`: those of `random.gauss`, drawn in half its time."""
-
-    __slots__ = ("_drawn", "_second", "_sigma", "_uniform")
-
-    def __init__(self, random: Random, sigma: float) -> None:
-        self._uniform = random.random
-        self._sigma = sigma
-        #: Values are drawn in pairs: the second one, and whether it is still to be used.
-        self._second = 0.0
-        self._drawn = False
-
-    def value(self) -> float:
-        """The next value."""
-        if self._drawn:
-            self._drawn = False
-            return self._second
-        turn = self._uniform() * tau
-        radius = sqrt(-2.0 * log(1.0 - self._uniform()))
-        self._second = sin(turn) * radius * self._sigma
-        self._drawn = True
-        return cos(turn) * radius * self._sigma
 
 
 class Converter:
@@ -80,8 +56,8 @@ class Converter:
         self.pins = tuple(pins)
         self._vrefhi_v, self.vreflo_v, self.span_v = vrefhi_v, vreflo_v, vrefhi_v - vreflo_v
         self.noise_lsb, self._random = noise_lsb, random or Random(0)
-        #: The noise of the next code, in LSB.
-        self.noise = Gaussian(self._random, noise_lsb)
+        #: The noise of each code.
+        self.noise = Gaussian(self._random)
         self._forced: Callable[[int], int] | None = None
         #: Injected faults.  Each returns the new code for (soc, channel, code).
         self._faults: tuple[Callable[[int, int, int], int], ...] = ()
@@ -173,7 +149,7 @@ class Converter:
         else:
             level = self.full_scale * (self.pins[channel].source.volts(cycles) - self.vreflo_v) / self.span_v
         if self.noise_lsb:
-            level += self.noise.value()
+            level += self.noise.value(self.noise_lsb)
         if level <= 0.0:
             return 0
         code = int(level)

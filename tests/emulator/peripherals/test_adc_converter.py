@@ -5,11 +5,8 @@ from __future__ import annotations
 from random import Random
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from emulator.clock import CYCLES_PER_US
-from emulator.peripherals.adc_converter import Gaussian
 from tests.emulator.peripherals.adc_bench import LAT, SYNC, Bench
 
 
@@ -85,9 +82,3 @@ def test_limits_that_no_chip_reports_are_findings() -> None:
     bench.regs.ADCCTL2.all = 0x0085
     bench.regs.ADCSOCFRC1.all = 1
     assert [f.rule for f in bench.findings] == ["adc-window", "adc-clock", "adc-mode"]
-
-
-@given(seed=st.integers(0, 2**32), sigma=st.floats(0.1, 20.0))
-def test_noise_is_what_python_draws(seed: int, sigma: float) -> None:
-    drawn, expected = Gaussian(Random(seed), sigma), Random(seed)
-    assert [drawn.value() for _ in range(9)] == [expected.gauss(0.0, sigma) for _ in range(9)]
