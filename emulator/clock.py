@@ -175,8 +175,8 @@ class Clock:
 
     def charge(self, cycles: int) -> None:
         """The CPU executes for `cycles`."""
-        self.now += cycles
-        if self.now >= self.next:
+        self.now = now = self.now + cycles
+        if now >= self.next:
             self.run_due()
 
     def run_due(self) -> None:

@@ -40,7 +40,7 @@ CODE_ADDRESS_HIGH: Final = 0x0008
 class Stack:
     """The stack of a task: its first word, its size, and the stack pointer while the task does not run."""
 
-    __slots__ = ("base", "limit", "overrun_sp", "own", "sp", "usable", "words")
+    __slots__ = ("base", "limit", "overrun_sp", "own", "plain_top", "sp", "usable", "words")
 
     def __init__(self, base: int, words: int, *, own: bool = True) -> None:
         self.base = base
@@ -51,6 +51,8 @@ class Stack:
         #: The highest address that the task's functions may use, so that an interrupt finds room.
         self.usable = self.limit - INTERRUPT_ROOM
         self.sp = base + FIRST_FRAME
+        #: No object of the linker covers its top word.  Known once the first task runs; then objects do not move.
+        self.plain_top = False
         #: Highest stack pointer seen above the end, 0 for none.
         self.overrun_sp = 0
 
@@ -64,8 +66,6 @@ class StackSpace:
         self._next = base
         #: First words and sizes of the free stacks of deleted tasks.
         self._freed: list[tuple[int, int]] = []
-        #: Top words of stacks that no object of the linker covers.  They do not move once tasks run.
-        self._plain: set[int] = set()
         self.checked = check
 
     def allocate(self, words: int, at: int, error_block: Any, arguments: tuple[int, int] = (0, 0)) -> Stack | None:
@@ -124,10 +124,10 @@ class StackSpace:
         if memory is None:
             return True
         top = stack.limit - 1
-        if top not in self._plain:
+        if not stack.plain_top:
             if memory.find(top) is not None:
                 return memory.read_word(top) == STACK_INIT
-            self._plain.add(top)
+            stack.plain_top = True
         for local in memory.live_locals:
             if local.base <= top < local.base + local.words:
                 return memory.read_word(top) == STACK_INIT
