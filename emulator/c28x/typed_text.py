@@ -242,6 +242,15 @@ class _Method(ast.NodeTransformer):
             function = self.visit(node.func)
         return ast.Call(function, [self.visit(argument) for argument in node.args], [])
 
+    def visit_Expr(self, node: ast.Expr) -> ast.stmt | list[ast.stmt]:
+        """A charge is done in place: it is most of what firmware calls."""
+        match node.value:
+            case ast.Call(func=ast.Attribute(value=ast.Name(id="_k"), attr="charge"), args=[cycles]):
+                cycles = self.visit(cycles)
+                return ast.parse(f"_k.now += {ast.unparse(cycles)}\nif _k.now >= _k.next:\n    _k.run_due()").body
+        self.generic_visit(node)
+        return node
+
     def visit_Assign(self, node: ast.Assign) -> ast.Assign:
         """A store in a register in place: its word is that of the register itself."""
         (target, *_) = node.targets
