@@ -106,12 +106,14 @@ class Clock:
         return self.schedule(self.now + cycles, callback, priority)
 
     def start(self, event: ClockEvent, time: int) -> None:
-        """Run an event, which must not wait yet, at `time` (absolute cycles).
+        """Run an event at `time` (absolute cycles), and not when it was to run before, if it waits already.
 
         Raises ValueError for a time that has passed.
         """
         if time < self.now:
             raise ValueError(f"event at cycle {time} lies before now ({self.now})")
+        if event.number:
+            self.cancel(event)
         self._sequence = number = self._sequence + 1
         event.time = time
         event.number = number

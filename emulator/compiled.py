@@ -1,7 +1,7 @@
 """Uses the compiled build of these sources, if there is one that belongs to them.
 
 `hil build` compiles the modules that take most of the time into extension modules, and with them the robot's firmware
-(`program`).  Names and results are the same, at about four times the speed.  They lie in a folder of their own.  A
+(`program`).  Names and results are the same, at about five times the speed.  They lie in a folder of their own.  A
 manifest there names every source that they may depend on, with its SHA-256.  If one source differs, the whole build is
 ignored: so the program always runs the sources as they are.  Programs of firmware have a folder each, in one that is
 named after those sources: a program that was compiled with others is never found.  `HIL_PURE=1` ignores the build too.

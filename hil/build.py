@@ -88,7 +88,7 @@ FIRMWARE_STAYS: Final = (
     "on any other board"
 )
 #: What every error of a build ends with.
-STILL: Final = "without a compiled build everything runs in plain Python, at about a quarter of the pace"
+STILL: Final = "without a compiled build everything runs in plain Python, at about a fifth of the pace"
 #: Whatever a compiled module may have taken a constant or a type from.
 SOURCES: Final = ("emulator/**/*.py", "hil/world/*.py")
 #: The library in which the modules of the emulator really are.  Each program of firmware has one of its own.

@@ -85,6 +85,7 @@ class Spi:
         self._ffct = register["SPIFFCT"]
         self._tx_fifo = Fifo(self._fftx, tx_interrupt, receive=False)
         self._rx_fifo = Fifo(register["SPIFFRX"], rx_interrupt, receive=True, on_blocked=on_blocked)
+        self._at_end = ClockEvent(self._complete)
         #: The event at the end of the word that is being shifted.
         self._shift: ClockEvent | None = None
         self._length = 16
@@ -225,11 +226,11 @@ class Spi:
         """
         before, kept = self._txbuf.value, self._char_bits
         unsent = (1 << 16 - kept) - 1
-        lost = before & unsent, word & unsent
-        if all(lost) and lost[0] != lost[1] and word != before << kept & 0xFFFF:
+        lost, lost_before = word & unsent, before & unsent
+        if lost and lost_before and lost != lost_before and word != before << kept & 0xFFFF:
             self._report_width(word, self._causes[-1])
         self._sent |= word & ~unsent
-        if lost[1] and not self._sent and self._unsent is None:
+        if lost and not self._sent and self._unsent is None:
             self._unsent = word, self._causes[-1]
         if self._first < 0:
             self._first = word
@@ -351,7 +352,8 @@ class Spi:
         if self._ready or self._may_start():
             self._length = self._char_bits
             clock = self._clock
-            self._shift = clock.schedule(clock.now + delay_cycles + self._word_cycles, self._complete)
+            self._shift = self._at_end
+            clock.start(self._at_end, clock.now + delay_cycles + self._word_cycles)
             if not self._ccr.value & SPILBK:
                 self._select(0)
             if not self._ctl.value & TALK:

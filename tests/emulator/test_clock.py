@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from emulator.clock import NEVER, Clock
+from emulator.clock import NEVER, Clock, ClockEvent
 
 
 @given(st.lists(st.tuples(st.integers(0, 50), st.integers(0, 3)), max_size=30))
@@ -125,3 +125,25 @@ def test_what_waits_is_known_by_its_callbacks() -> None:
     clock.cancel(later)
     clock.advance_to(6)
     assert clock.waiting() == [third]
+
+
+@given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 20)), min_size=1, max_size=20))
+def test_an_event_that_is_started_again_runs_once_and_at_its_last_time(steps: list[tuple[int, int]]) -> None:
+    clock = Clock()
+    ran: list[int] = []
+    event = ClockEvent(lambda: ran.append(clock.now))
+    for n in range(5):
+        clock.schedule(7 * n, lambda: None)
+    expected: list[int] = []
+    due: int | None = None
+    for cycles, ahead in steps:
+        clock.advance_to(clock.now + cycles)
+        if due is not None and due <= clock.now:
+            expected.append(due)
+        due = clock.now + ahead
+        clock.start(event, due)
+        assert event.waits
+        assert (event.time, clock.waiting().count(event.callback)) == (due, 1)
+    clock.advance_to(1000)
+    assert ran == [*expected, due]
+    assert not event.waits
