@@ -459,6 +459,8 @@ class Connections:
         waiting = cpu.ifr & cpu.ier
         if not self.started_up or not cpu.intm or not waiting or self._calls(*LET_THROUGH):
             return
+        if ("CPU", "IFR") in self._source.reads:
+            return  # it asks for them itself
         routines = [vectors.cpu_routine(line) for line in (13, 14) if waiting & 1 << line - 1]
         for group in (group for group in range(1, 13) if waiting & 1 << group - 1):
             routines += [vectors.routine(group, n) for n in range(1, 17) if self._chip.pie.enabled(group, n)]

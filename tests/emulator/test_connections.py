@@ -148,6 +148,7 @@ def test_a_link_that_is_missing_is_named_where_its_register_is_set_or_the_event_
 @pytest.mark.parametrize("now", [
     "    if (Count == 9) EINT;\n",  # on an order that did not come
     "    __enable_interrupts();\n",
+    "    while ((IFR & M_INT1) == 0) ;\n",  # it polls
     "    while (Order != 9) asm(\" IDLE\");\n",  # an interrupt that IER lets through ends IDLE, whatever INTM is
 ])  # fmt: skip
 def test_interrupts_that_some_statement_lets_through_are_not_told(tmp_path: Path, now: str) -> None:
