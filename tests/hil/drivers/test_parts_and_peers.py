@@ -209,20 +209,21 @@ CONVERTS = HEAD + """void main(void)
 """
 
 
-@pytest.mark.parametrize("named", [True, False])
-@pytest.mark.parametrize(("was", "now", "at"), [
-    ("", "", ""),
-    ("CHSEL = 3;", "CHSEL = 4;", "CHSEL = 4;"),
+@pytest.mark.parametrize(("was", "now", "at", "named"), [
+    ("", "", "", True),
+    ("CHSEL = 3;", "CHSEL = 4;", "CHSEL = 4;", True),
+    # Without a board of its own the program may be meant for another one.
+    ("CHSEL = 3;", "CHSEL = 4;", "CHSEL = 4;", False),
     # It keeps its reset value, 0.
-    ("    AdcbRegs.ADCSOC1CTL.bit.CHSEL = 3;\n", "", "ADCSOC1CTL.bit.ACQPS"),
+    ("    AdcbRegs.ADCSOC1CTL.bit.CHSEL = 3;\n", "", "ADCSOC1CTL.bit.ACQPS", True),
     # Both parts are converted, and another input, too.
-    ("CHSEL = 3;", "CHSEL = 3; AdcbRegs.ADCSOC2CTL.bit.CHSEL = 5; Seen = AdcbResultRegs.ADCRESULT2;", ""),
+    ("CHSEL = 3;", "CHSEL = 3; AdcbRegs.ADCSOC2CTL.bit.CHSEL = 5; Seen = AdcbResultRegs.ADCRESULT2;", "", True),
     # Another statement chooses the part.
     ("        DELAY_US(100);", "        DELAY_US(100);\n        if (Seen == 7) AdcbRegs.ADCSOC1CTL.bit.CHSEL = 3;\n"
-     "        else AdcbRegs.ADCSOC1CTL.bit.CHSEL = 4;", ""),
+     "        else AdcbRegs.ADCSOC1CTL.bit.CHSEL = 4;", "", True),
     # Channels inside of the chip are no inputs; nobody reads this result.
-    ("CHSEL = 3;", "CHSEL = 12;", ""),
-    ("CHSEL = 3;", "CHSEL = 4;\n#define ADCRESULT1 ADCRESULT0", ""),
+    ("CHSEL = 3;", "CHSEL = 12;", "", True),
+    ("CHSEL = 3;", "CHSEL = 4;\n#define ADCRESULT1 ADCRESULT0", "", True),
 ])  # fmt: skip
 def test_an_input_that_nothing_drives(tmp_path: Path, was: str, now: str, at: str, named: bool) -> None:
     assert not was or CONVERTS.count(was) == 1

@@ -305,6 +305,10 @@ def silent(tmp_path: Path, text: str, *, silence: bool = True) -> list[tuple[str
 def test_a_wait_for_a_frame_that_nobody_acknowledges_any_more(tmp_path: Path, sent: str, hangs: bool) -> None:
     text = SENDER.replace("SENT", sent).replace("AGED", AGED)
     assert silent(tmp_path, text) == [("endless-poll", sent)] * hangs
+
+
+def test_a_wait_for_an_acknowledge_that_comes_is_right(tmp_path: Path) -> None:
+    text = SENDER.replace("SENT", "while (CanaRegs.CAN_TXRQ_21 & 4uL) ;").replace("AGED", AGED)
     assert not silent(tmp_path, text, silence=False)
 
 
