@@ -16,6 +16,8 @@ from typing import Any
 
 import pytest
 
+from tests.hil.waiting import TIMEOUT_S, eventually
+
 CHROMIUM = os.environ.get("HIL_CHROMIUM", "/usr/bin/chromium")
 Shot = Callable[[Any, str], None]
 
@@ -37,7 +39,7 @@ class View:
     def end(self) -> tuple[int, str, str]:
         """Ctrl-C; the exit status, what it came to, and what was said on stderr."""
         self.process.send_signal(signal.SIGINT)
-        summary, errors = self.process.communicate(timeout=30)
+        summary, errors = self.process.communicate(timeout=TIMEOUT_S)
         return self.process.returncode, summary, errors
 
 
@@ -99,6 +101,11 @@ def _running(request: pytest.FixtureRequest) -> None:
         if run.count():
             run.click()
         page.wait_for_timeout(200)
+
+
+def sees(page: Any, condition: Callable[[], bool], what: str) -> None:
+    """Wait until a page shows something, and let the page work meanwhile."""
+    eventually(condition, lambda: page.wait_for_timeout(100), what=what)
 
 
 def add_signal(page: Any, label: str, name: str | None = None, words: str = "") -> None:

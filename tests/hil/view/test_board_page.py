@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from tests.hil.own_board import project
-from tests.hil.view.conftest import View, add_signal, needs_view
+from tests.hil.view.conftest import View, add_signal, needs_view, sees
 
 pytest.importorskip("pycparser")
 
@@ -51,14 +51,6 @@ def page(browser: Any, view: View) -> Iterator[Any]:
 
 def log(page: Any) -> str:
     return str(page.locator(".nicegui-log").inner_text())
-
-
-def sees(page: Any, condition: Callable[[], bool], what: str) -> None:
-    for _ in range(300):
-        if condition():
-            return
-        page.wait_for_timeout(100)
-    raise AssertionError(what)
 
 
 def field(page: Any) -> Any:

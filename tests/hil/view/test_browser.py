@@ -10,7 +10,7 @@ from typing import Any
 
 from hil.recording.trajectory import parse_trajectory
 from hil.view.lanes import LEFT
-from tests.hil.view.conftest import View, add_signal
+from tests.hil.view.conftest import View, add_signal, sees
 
 Shot = Callable[[Any, str], None]
 TIME = r"time: ([\d.]+) s"
@@ -41,14 +41,6 @@ def number_in(page: Any, pattern: str) -> float:
     found = re.search(pattern, status(page))
     assert found is not None, status(page)
     return float(found[1])
-
-
-def sees(page: Any, condition: Callable[[], bool], what: str) -> None:
-    for _ in range(300):
-        if condition():
-            return
-        page.wait_for_timeout(100)
-    raise AssertionError(what)
 
 
 def log(page: Any) -> str:

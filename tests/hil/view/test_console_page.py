@@ -6,6 +6,7 @@ import os
 import re
 import select
 import signal
+import struct
 import subprocess
 import sys
 import threading
@@ -16,6 +17,7 @@ import pytest
 
 from hil.client.decode import OdometryFrame
 from tests.hil.view.conftest import needs_view
+from tests.hil.waiting import TIMEOUT_S, eventually
 
 Shot = Callable[[Any, str], None]
 
@@ -31,17 +33,26 @@ class SerialRobot:
         self.port = os.ttyname(slave)
         self._slave = slave
         self.heard = b""
+        #: The frames so far.
+        self.sent = 0
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run)
         self._thread.start()
 
     def _run(self) -> None:
-        number = 0
         while not self._stop.wait(0.1):
-            number += 1
-            os.write(self.master, OdometryFrame(10 * number, 0, 0, 1000, 500, 500).encode())
+            os.write(self.master, OdometryFrame(10 * (self.sent + 1), 0, 0, 1000, 500, 500).encode())
+            self.sent += 1
             if select.select([self.master], [], [], 0)[0]:
                 self.heard += os.read(self.master, 4096)
+
+    @property
+    def waiting(self) -> int:
+        """How many bytes of its frames nobody has read."""
+        import fcntl  # not on Windows
+        import termios
+
+        return int(struct.unpack("i", fcntl.ioctl(self._slave, termios.FIONREAD, bytes(4)))[0])
 
     def end(self) -> None:
         self._stop.set()
@@ -71,7 +82,7 @@ class ConsoleView:
     def end(self) -> str:
         """Ctrl-C; the summary."""
         self.process.send_signal(signal.SIGINT)
-        summary, _ = self.process.communicate(timeout=30)
+        summary, _ = self.process.communicate(timeout=TIMEOUT_S)
         assert self.process.returncode == 0
         return summary
 
@@ -86,12 +97,8 @@ def served(robot: SerialRobot) -> Iterator[ConsoleView]:
 
 
 def hears(robot: SerialRobot, end: bytes) -> None:
-    """Wait until the last thing that the robot was told is `end`; the limit is for a hang only."""
-    for _ in range(100):
-        if robot.heard.endswith(end):
-            return
-        threading.Event().wait(0.1)
-    raise AssertionError(robot.heard)
+    """Wait until the last thing that the robot was told is `end`."""
+    eventually(lambda: robot.heard.endswith(end), what=f"{end!r} after {robot.heard!r}")
 
 
 def test_a_robot_on_a_port_is_driven_from_the_page(
@@ -116,10 +123,11 @@ def test_a_robot_on_a_port_is_driven_from_the_page(
 def test_without_a_page_frames_are_taken_in_and_the_end_stops_the_robot(
     robot: SerialRobot, served: ConsoleView
 ) -> None:
-    threading.Event().wait(3.0)  # the robot sends some thirty frames, and nobody opens the page
+    before = robot.sent
+    eventually(lambda: robot.sent >= before + 20 and not robot.waiting, what="its frames are not taken in")
     found = re.fullmatch(r"(\d+) frames, \d+ bytes from the robot, 6 bytes to it\n", served.end())
     assert found is not None
-    assert int(found[1]) > 10
+    assert int(found[1]) >= 19  # it may have opened the port within a frame
     hears(robot, b"#STOP\r")
 
 

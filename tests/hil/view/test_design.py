@@ -13,8 +13,8 @@ from typing import Any, Final
 
 import pytest
 
-from tests.hil.view.conftest import Shot, View
-from tests.hil.view.test_browser import button, centre, contrast, log, sees, status, tab, wait
+from tests.hil.view.conftest import Shot, View, sees
+from tests.hil.view.test_browser import button, centre, contrast, log, status, tab, wait
 
 PANELS: Final = ("Console", "Time", "Findings", "Registers", "Scope", "Faults", "Board")
 SIZES: Final = ((1440, 900), (1024, 768), (390, 844), (844, 390), (1920, 1080))

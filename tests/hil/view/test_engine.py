@@ -236,7 +236,7 @@ def test_a_task_switch_and_a_frame_leave_the_robot_at_rest(engine: Engine) -> No
     engine.step(Step.FRAME).result()
     eventually(lambda: engine.line.log.frame_count == sent + 1, what="no frame")
     eventually(lambda: engine.snapshot.mode is Mode.PAUSED, what="it does not stop")
-    engine.act("order", order("stop")).result(timeout=5)
+    engine.act("order", order("stop")).result(timeout=30)
     assert engine.line.log.frame_count == sent + 1
 
 
