@@ -67,6 +67,9 @@ LET_THROUGH: Final = (
     "EINT", "__enable_interrupts", "__restore_interrupts", "EnableInterrupts", "Hwi_enable", "Hwi_restore",
     "BIOS_start", "IDLE", "STANDBY", "HALT", "HIB",
 )  # fmt: skip
+#: Fields of AQCTLA and AQCTLB, and those of their values that do not toggle.
+AQ_EVENTS: Final = ("ZRO", "PRD", "CAU", "CAD", "CBU", "CBD")
+AQ_LEVELS: Final = {1: "clears", 2: "sets"}
 #: Channels of an ADC that are pins (DS, analog subsystem); the others are inside of the chip.
 ADC_PINS: Final = (*range(6), 14, 15)
 #: Words of a FIFO of the SCI.
@@ -1203,7 +1206,10 @@ class Connections:
                 self._check_beyond_period(f"{name}.{compare}", compare, beyond)
 
     def _compares_for_nobody(self) -> None:
-        """Computed values of a compare that switches nothing, where the other compare switches the output."""
+        """Computed values of a compare that switches nothing.
+
+        The other compare switches the output instead, or its actions only set it, or only clear it.
+        """
         if any(self._writes(f"EPwm{n}Regs.EPWMXLINK") for n in range(1, EPWM_COUNT + 1)):
             return  # a value written to one ePWM also goes to another
         for _, name, compare, _ in self._epwms():
@@ -1212,7 +1218,8 @@ class Connections:
             computed = any(write.values is None for write in self._source.writes[name, compare])
             crossed = any(self._value(action, f"C{other}{way}") for way in "UD")
             paired = self._value(f"{name}.DBCTL", "OUT_MODE")
-            if not computed or not crossed or paired or (name, compare) in self._source.reads:
+            constant = self._constant_output(name, x)
+            if not computed or not (crossed or constant) or paired or (name, compare) in self._source.reads:
                 continue
             choices = {choice for choice, (of, _) in COMPARES.items() if of == compare}
             switches = (
@@ -1222,10 +1229,23 @@ class Connections:
                 self._could(f"{name}.ETSEL", choices.__contains__, f"{event}SEL") for event in ("INT", "SOCA", "SOCB")
             )
             if not any(switches) and not any(triggers):
-                missing = MissingLink(f"{action} switches output {x} at CMP{other}", action)
+                why = constant or f"{action} switches output {x} at CMP{other}"
+                missing = MissingLink(why, action)
                 self._report(
                     self._source.last(name, compare), f"the values of {name}.{compare} change nothing", missing, action
                 )  # fmt: skip
+
+    def _constant_output(self, name: str, x: str) -> str:
+        """Why an output with actions never changes: they only set it, or only clear it.  Empty: it can change."""
+        action = f"{name}.AQCTL{x}"
+        forced = ("AQSFRC", "AQCSFRC", f"AQCTL{x}2")
+        kinds = {self._value(action, event) for event in AQ_EVENTS} - {0}
+        if len(kinds) != 1 or not kinds & AQ_LEVELS.keys() or any(self._writes(f"{name}.{other}") for other in forced):
+            return ""
+        (kind,) = kinds
+        if any(self._could(action, lambda other: other not in (0, kind), event) for event in AQ_EVENTS):
+            return ""
+        return f"{action} only {AQ_LEVELS[kind]} output {x}"
 
     def _check_beyond_period(self, register: str, compare: str, beyond: CompareBeyondPeriod) -> None:
         """Report a compare value above the period if it was computed.  A constant is taken to be meant."""

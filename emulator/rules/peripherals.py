@@ -210,10 +210,11 @@ connections are checked:
 * eQEP: the program reads `QPOSLAT`, which the unit timer never loads (`QCLM`), or the unit timer has no period.
 * ePWM digital compare: it uses a TRIP input of the X-BAR that has no enabled mux, or a comparator that is off.
 * ePWM outputs: an output with actions and a pin has a counter that does not count. The dead band makes a pair of
-  outputs, and one of them has no pin. Its delays are set, and it is bypassed (`OUT_MODE = 0`). A compare value is
-  above the period, so the output never changes there (one above the period means 100 % and is right). A compare
-  register is never loaded from its shadow (`LOADAMODE = 3`), or its values change nothing, because its output
-  switches at the other compare. A trip that the program forces changes no output (`TZA = 3`).
+  outputs, and one of them has no pin. Its delays are set, and it is bypassed (`OUT_MODE = 0`). A compare value is above
+  the period, so the output never changes there (one above the period means 100 % and is right). A compare register is
+  never loaded from its shadow (`LOADAMODE = 3`), or its values change nothing, because its output switches at the other
+  compare, or its actions only set the output or only clear it. A trip that the program forces changes no output
+  (`TZA = 3`).
 * DAC: it gets codes and drives no pin.
 * I2C and SCI: the module stays in reset, no interrupt of a direction is enabled, or one needs more characters than the
   FIFO holds.

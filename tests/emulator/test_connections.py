@@ -756,6 +756,9 @@ void main(void)
 
 @pytest.mark.parametrize(("was", "now", "rule", "at", "why"), [
     ("CBU = AQ_CLEAR", "CAU = AQ_CLEAR", "not-connected", "AQCTLB.bit.CAU", "AQCTLB switches output B at CMPA"),
+    ("    EPwm2Regs.AQCTLB.bit.CBU = AQ_CLEAR;\n", "", "not-connected", "AQCTLB.bit.ZRO = AQ_SET", "AQCTLB only sets"),
+    ("    EPwm2Regs.AQCTLB.bit.CBU = AQ_CLEAR;\n", "    EPwm2Regs.AQCTLB.bit.PRD = AQ_SET;\n", "not-connected",
+     "AQCTLB.bit.PRD = AQ_SET", "AQCTLB only sets output B"),
     ("INPUT7SELECT", "INPUT8SELECT", "not-connected", "INPUT8SELECT", "nothing uses that input"),
     ("TZA = TZ_FORCE_LO;\n    EPwm2Regs.TZCTL.bit.TZB = TZ_FORCE_LO", "TZA = TZ_NO_CHANGE;\n    "
      "EPwm2Regs.TZCTL.bit.TZB = TZ_NO_CHANGE", "not-connected", "TZA = TZ_NO_CHANGE", "go on switching"),
@@ -775,6 +778,11 @@ def test_a_part_that_is_set_up_for_nobody(tmp_path: Path, was: str, now: str, ru
     ("", ""),
     # The same value for both outputs, of which one has the other's complement.
     ("CBU = AQ_CLEAR", "CAU = AQ_CLEAR; EPwm2Regs.DBCTL.bit.OUT_MODE = DB_FULL_ENABLE"),
+    # It toggles; the program clears the output itself, or on order.
+    ("EPwm2Regs.AQCTLB.bit.ZRO = AQ_SET;\n    EPwm2Regs.AQCTLB.bit.CBU = AQ_CLEAR",
+     "EPwm2Regs.AQCTLB.bit.ZRO = AQ_TOGGLE"),
+    ("CBU = AQ_CLEAR", "ZRO = AQ_SET; EPwm2Regs.AQSFRC.bit.OTSFB = 1"),
+    ("EPwm2Regs.AQCTLB.bit.CBU = AQ_CLEAR", "if (Order) EPwm2Regs.AQCTLB.bit.CBU = AQ_CLEAR"),
     # Compare B triggers the conversion.
     ("CBU = AQ_CLEAR", "CAU = AQ_CLEAR; EPwm2Regs.ETSEL.bit.SOCASEL = 6"),
     ("INPUT7SELECT", "INPUT8SELECT = 25; ECap2Regs.ECCTL1.bit.CAPLDEN = 1; InputXbarRegs.INPUT7SELECT"),
