@@ -41,6 +41,7 @@ PATTERNS: Final = (
     "emulator/pin_mux.py",
     "emulator/registers/cell.py",
     "emulator/registers/checks.py",
+    "emulator/registers/hook.py",
     "emulator/registers/taps.py",
     "emulator/c28x/arithmetic.py",
     "emulator/c28x/findings.py",

@@ -33,8 +33,9 @@ from emulator.peripherals.adc_converter import Converter
 from emulator.peripherals.adc_ppb import PostProcessing
 from emulator.peripherals.adc_socs import TRIGSELS, Soc, Socs
 from emulator.registers.adc import AdcRegs, AdcResultRegs
-from emulator.registers.cell import Cell, Hook
+from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
+from emulator.registers.hook import Hook
 from emulator.signal import Signal
 from emulator.signals import AnalogWire
 

@@ -14,6 +14,7 @@ from mypy_extensions import mypyc_attr
 from emulator.cpu import Cpu, Eallow
 from emulator.registers.checks import gated_read, gated_write, protecting, refusing_reserved, watching
 from emulator.registers.fields import ALL
+from emulator.registers.hook import Hook
 from emulator.registers.taps import lay
 
 if TYPE_CHECKING:
@@ -33,23 +34,6 @@ class Owner(Protocol):
 #: They stand for the CPU where EALLOW does not decide.
 OPEN: Final = Eallow(eallow=True)
 CLOSED: Final = Eallow(eallow=False)
-
-
-class Hook:
-    """What a peripheral does at an access of its register, as an object: compiled firmware calls its methods in C.
-
-    A function, which `Block.bind` takes as well, gets and gives objects there.
-    """
-
-    __slots__ = ()
-
-    def read(self) -> int:
-        """What the CPU reads."""
-        raise NotImplementedError
-
-    def write(self, word: int, lanes: int) -> None:
-        """What a write does, instead of the plain store."""
-        raise NotImplementedError
 
 
 @mypyc_attr(allow_interpreted_subclasses=True)
@@ -104,7 +88,7 @@ class Cell:
         self.write: Callable[[int, int], None] = self._write_first
         #: `modify(keep, bits, lanes)`: the read-modify-write that a compiler makes of a field assignment.
         self.modify: Callable[[int, int, int], None] = self._modify_first
-        #: The hooks while `read` and `write` do nothing besides.
+        #: The objects of which `read` and `write` are the methods, while they are.
         self.reads: Hook | None = None
         self.writes: Hook | None = None
         #: While its `eallow` stands, `modify` does nothing but store the field in `value`; of a register that clears
@@ -152,7 +136,6 @@ class Cell:
         if self._taps:
             lay(self, self._taps)
             self.gate = CLOSED
-            self.reads = self.writes = None
         self._plain = self.read == self._read_plain
         for namespace, name, access in self._followers:
             namespace[name] = getattr(self, access)

@@ -27,8 +27,9 @@ from copy import copy
 from typing import Any, ClassVar, Generic, Self, TypeVar, overload
 
 from emulator.cpu import Cpu
-from emulator.registers.cell import Cell, Hook, Source
+from emulator.registers.cell import Cell, Source
 from emulator.registers.fields import ALL, HIGH, LOW, R0W1, RSV, RW, W1C, W1S, Access, F, R, W
+from emulator.registers.hook import Hook
 
 __all__ = [
     "ALL",

@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from emulator.registers.fields import ALL
+from emulator.registers.hook import Hook
 
 if TYPE_CHECKING:
     from emulator.registers.cell import Cell
@@ -22,40 +23,50 @@ Seen = Callable[["Cell", str, int, int], None]
 
 def lay(register: Cell, taps: Mapping[Seen, bool]) -> None:
     """Lay `taps` (each with whether it wants reads too) over the ways of access that `Cell.bind` has chosen."""
-    read, write, modify = register.read, register.write, register.modify
-    told = tuple(taps)
-    told_reads = tuple(seen for seen, reads in taps.items() if reads)
+    tapped = Tapped(register, taps)
+    if any(taps.values()):
+        register.read, register.reads = tapped.read, tapped
+    register.modify = tapped.modify_in_two_steps if register.modify == register._modify else tapped.modify
+    register.write, register.writes = tapped.write, tapped
 
-    def read_seen() -> int:
-        for seen in told_reads:
-            seen(register, "read", 0, 0)
-        return read()
 
-    def write_seen(word: int, lanes: int = ALL) -> None:
-        for seen in told:
-            seen(register, "write", word, lanes)
-        write(word, lanes)
+class Tapped(Hook):
+    """The ways to a register: each tells its taps, and then does what it did without them."""
 
-    def modify_seen(keep: int, bits: int, lanes: int) -> None:
-        word = read() & keep | bits  # no effect, or `modify` would be in two steps
-        for seen in told:
-            seen(register, "write", word, lanes & ~keep)
-        modify(keep, bits, lanes)
+    __slots__ = ("_modify", "_read", "_reads", "_register", "_told", "_told_reads", "_write", "_writes")
 
-    def modify_in_two_steps(keep: int, bits: int, lanes: int) -> None:
-        word = register.read() & keep | bits
-        for seen in told:
-            seen(register, "write", word, lanes & ~keep)
-        write(word, lanes)
+    def __init__(self, register: Cell, taps: Mapping[Seen, bool]) -> None:
+        self._register = register
+        self._read, self._write, self._modify = register.read, register.write, register.modify
+        self._reads, self._writes = register.reads, register.writes
+        self._told = list(taps)
+        self._told_reads = [seen for seen, reads in taps.items() if reads]
 
-    if len(told) == 1:
-        (only,) = told
+    def read(self) -> int:
+        """The CPU's read."""
+        for seen in self._told_reads:
+            seen(self._register, "read", 0, 0)
+        return self._read() if self._reads is None else self._reads.read()
 
-        def write_seen(word: int, lanes: int = ALL) -> None:
-            only(register, "write", word, lanes)
-            write(word, lanes)
+    def write(self, word: int, lanes: int = ALL) -> None:
+        """The CPU's write."""
+        for seen in self._told:
+            seen(self._register, "write", word, lanes)
+        if self._writes is None:
+            self._write(word, lanes)
+        else:
+            self._writes.write(word, lanes)
 
-    if told_reads:
-        register.read = read_seen
-    register.write = write_seen
-    register.modify = modify_in_two_steps if modify == register._modify else modify_seen
+    def modify(self, keep: int, bits: int, lanes: int) -> None:
+        """A read-modify-write in one step."""
+        word = self._read() & keep | bits  # no effect, or `modify` would be in two steps
+        for seen in self._told:
+            seen(self._register, "write", word, lanes & ~keep)
+        self._modify(keep, bits, lanes)
+
+    def modify_in_two_steps(self, keep: int, bits: int, lanes: int) -> None:
+        """A read-modify-write whose read is a read of the CPU."""
+        word = self._register.read() & keep | bits
+        for seen in self._told:
+            seen(self._register, "write", word, lanes & ~keep)
+        self._write(word, lanes)
