@@ -61,7 +61,7 @@ _METHODS: Final = {f"_c_{name}": name for name, value in vars(Runtime).items() i
 _WATCHED: Final = ("_c_load", "_c_store", "_c_touch")
 _ACCESSES: Final = {
     "cleared": "Cell", "read": "Callable[[], int]", "write": "Callable[[int, int], None]",
-    "modify": "Callable[[int, int, int], None]",
+    "modify": "Callable[[int, int, int], None]", "steady": "bool",
 }  # fmt: skip
 #: The types of the names that the writer makes up within a function; those of objects of the emulator are inferred.
 _WITHIN: Final = dict.fromkeys(("_e", "_fp", "_i", "_n", "_q", "_since", "_t", "_w"), "int")
