@@ -275,7 +275,7 @@ def wheel(target: Path, *, root: Path = ROOT, store: Path = STORE) -> Path:
     if not (root / "pyproject.toml").exists():
         raise BuildError(f"a wheel is made of a checkout, and {root} is none: it has no pyproject.toml")
     if find_build(store, root)[0] != "fresh":
-        raise BuildError("there is no build of these sources")
+        raise BuildError("a wheel takes the compiled build, and there is none of these sources: run hil build first")
     if not has("wheel"):
         raise BuildError(hint("wheel"))
     target.mkdir(parents=True, exist_ok=True)

@@ -7,7 +7,7 @@ access with nothing to check costs nothing.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from emulator.registers.fields import ALL
 
@@ -39,7 +39,7 @@ def protecting(register: Cell, write: Write) -> Write:
     """Drop the write, and report it, while EALLOW is off."""
     cpu = register.block.cpu
 
-    def write_protected(word: int, lanes: int = ALL) -> None:
+    def write_protected(word: Any, lanes: int = ALL) -> None:  # a vector holds a function
         if cpu.eallow:
             write(word, lanes)
         else:
@@ -90,7 +90,7 @@ def gated_read(register: Cell) -> Callable[[], int]:
 def gated_write(register: Cell) -> Write:
     """The write to a module whose clock is off."""
 
-    def write_gated(word: int, lanes: int = ALL) -> None:
+    def write_gated(word: Any, lanes: int = ALL) -> None:  # see write_protected
         register.block.cpu.findings.report(
             "clock-gated", f"{register.path} was written while its module's clock is off: nothing is stored",
             object=register.path, value=word,

@@ -7,7 +7,7 @@ results) is no access of the CPU.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from emulator.registers.fields import ALL
 from emulator.registers.hook import Hook
@@ -48,8 +48,8 @@ class Tapped(Hook):
             seen(self._register, "read", 0, 0)
         return self._read() if self._reads is None else self._reads.read()
 
-    def write(self, word: int, lanes: int = ALL) -> None:
-        """The CPU's write."""
+    def write(self, word: Any, lanes: int = ALL) -> None:
+        """The CPU's write: of a word, or of the function that a vector holds."""
         for seen in self._told:
             seen(self._register, "write", word, lanes)
         if self._writes is None:

@@ -30,7 +30,8 @@ def build(
             "--wheel",
             metavar="FOLDER",
             show_default=False,
-            help="Put a wheel with the compiled build into this folder, for computers without a C compiler.",
+            file_okay=False,
+            help="Build nothing: put a wheel with the build into this folder, for computers without a C compiler.",
         ),
     ] = None,
     json_output: Annotated[bool, typer.Option("--json", help="With --why: print one JSON object on stdout.")] = False,
@@ -43,19 +44,23 @@ def build(
     [bold]Examples[/bold]
       hil build
       hil build --firmware my_robot
-      hil build --wheel dist
+      hil build && hil build --wheel dist
       hil build --clean
       hil build --why | grep Read_Distance
     """
     if clean and why:
         raise UserError("--clean removes a build, --why builds none: give one of them")
-    if (firmware or wheel) and (clean or why):
-        raise UserError(f"--{'firmware' if firmware else 'wheel'} compiles; --clean and --why do not: give one of them")
+    if firmware and (clean or why):
+        raise UserError("--firmware compiles; --clean and --why do not: give one of them")
+    if wheel is not None and (firmware or clean or why):
+        raise UserError("--wheel takes the build that is there: give it alone")
     if json_output and not why:
         raise UserError("--json needs --why")
     with user_errors():
         if why:
             _why(json_output=json_output)
+        elif wheel is not None:
+            print(builder.wheel(wheel))
         elif clean:
             print("removed" if builder.clean() else "there was no compiled build")
         else:
@@ -64,8 +69,6 @@ def build(
                 print(f"{modules} modules compiled into {STORE}" if modules > 1 else f"1 module compiled into {STORE}")
             else:
                 print(f"nothing to compile: {STORE} has it all")
-            if wheel is not None:
-                print(builder.wheel(wheel))
 
 
 def _why(*, json_output: bool) -> None:

@@ -26,6 +26,7 @@ READ: Final = frozenset({"app", "file", "files", "first", "firmware", "include",
                          "sheet", "trace argument"})  # fmt: skip
 #: What is not tried here, and why.
 LEFT_OUT: Final = MappingProxyType({
+    ("build", "--wheel"): "takes a compiled build; a file that is moved into its place when it is whole",
     ("console", "--wire"): "takes a console program; the log is that of `hil run --wire`",
     ("console", "--folder"): "takes a console program, whose files they are",
     ("docs", "--site"): "takes minutes; a folder that is moved into its place when it is whole",

@@ -253,7 +253,7 @@ def test_a_wheel_is_made_of_a_checkout_with_its_build(tree: Path, tmp_path_facto
         build.wheel(target, root=tree, store=store_of(tree))
     (tree / "pyproject.toml").touch()
     build.clean(store_of(tree))
-    with pytest.raises(build.BuildError, match="no build of these sources"):
+    with pytest.raises(build.BuildError, match="run hil build first"):
         build.wheel(target, root=tree, store=store_of(tree))
     assert not [*target.iterdir()]
 
