@@ -282,11 +282,12 @@ def test_findings_are_filtered_by_severity_and_searched(page: Any) -> None:
 
 def test_the_scrub_bar_goes_back_and_to_the_findings(page: Any, shot: Shot) -> None:
     sees(page, lambda: page.locator(".scrub rect.finding").count() >= 5, "no findings in the scrub bar")
+    after = page.get_by_role("button", name="finding after this time")
+    # An earlier test may have gone back: the run knows findings that lie ahead, and comes to them.
+    sees(page, after.is_disabled, "there is a finding after all of them")
     button(page, "Pause").click()
     wait(page, "paused")
     late = number_in(page, TIME)
-    after = page.get_by_role("button", name="finding after this time")
-    sees(page, after.is_disabled, "there is a finding after all of them")
     bar = page.locator(".scrub .q-slider").bounding_box()
     page.mouse.move(bar["x"] + bar["width"] * 0.9, bar["y"] + bar["height"] / 2)
     page.mouse.down()
