@@ -36,10 +36,10 @@ def build(
     ] = None,
     json_output: Annotated[bool, typer.Option("--json", help="With --why: print one JSON object on stdout.")] = False,
 ) -> None:
-    """Compile the emulator: the same results, about five times as fast.  It needs a C compiler and two minutes.
+    """Compile the emulator: the same results, about five times as fast.  It needs a C compiler and some minutes.
 
     A build belongs to the sources that it was made from.  When one of them changes, plain Python runs until the next
-    [bold]hil build[/bold].  Firmware that has changed is compiled alone, in seconds.
+    [bold]hil build[/bold].  Firmware that has changed is compiled alone, in a minute.
 
     [bold]Examples[/bold]
       hil build
