@@ -80,8 +80,8 @@ class RadioChannel:
         self.packets = 0
         self.lost = 0
         self.retries = 0
-        #: A fault that acts on packets: returns `(lost, delay_cycles)` for one; None: no fault.
-        self.interference: Callable[[], tuple[bool, int]] | None = None
+        #: The faults that act on packets now: each returns `(lost, delay_cycles)` for one.
+        self.interferences: list[Callable[[], tuple[bool, int]]] = []
         self._rng = rng
         self._loss = (packet_loss, burst_loss)
         self._burst_begin = burst_begin
@@ -119,7 +119,10 @@ class RadioChannel:
         acknowledged = not broadcast and own["MM"] != 1
         most = MAC_TRIES * (1 + own["RR"]) if acknowledged else 1
         tries = self._tries(most) if receivers else 0
-        lost, delay = (False, 0) if self.interference is None else self.interference()
+        lost, delay = False, 0
+        for interference in self.interferences:
+            own_lost, own_delay = interference()
+            lost, delay = lost or own_lost, delay + own_delay
         if lost:
             tries = 0
         used = tries or most

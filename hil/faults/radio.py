@@ -28,15 +28,9 @@ class _OfRadio(Effect):
 
     def begin(self) -> None:
         """Begin the fault."""
-        before = self.air.interference
-
-        def both() -> tuple[bool, int]:
-            lost, delay = (False, 0) if before is None else before()
-            own_lost, own_delay = self.packet()
-            return lost or own_lost, delay + own_delay
-
-        self.air.interference = both
-        self.on_end(lambda: setattr(self.air, "interference", before))
+        packet = self.packet
+        self.air.interferences.append(packet)
+        self.on_end(lambda: self.air.interferences.remove(packet))
 
     @abstractmethod
     def packet(self) -> tuple[bool, int]:

@@ -214,3 +214,15 @@ def test_same_seed_same_bytes() -> None:
 def test_chance_of_a_fault_is_its_own() -> None:
     """A fault that draws but is not there yet changes nothing."""
     assert drive("sonar-cross-talk:at=3.999").uart_sha256 == drive().uart_sha256
+
+
+def test_a_fault_of_the_radio_outlasts_one_that_began_before_it() -> None:
+    faults = ("radio-loss:at=0.1,for=0.5", "radio-loss:at=0.3,for=1.5")
+    bench = Bench("box", realistic=False, xbee=True, faults=faults)
+    bench.boot()
+    for seconds, state in ((0.7, "STOP"), (1.5, "MISSION")):
+        bench.run_for(seconds)
+        bench.feed("#MISN\r")
+        bench.run_for(0.5)
+        assert bench.status().state == state
+    bench.close()
