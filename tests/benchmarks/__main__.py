@@ -60,6 +60,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=5, help="stretches, the best counts (default 5)")
     parser.add_argument("--orders", type=int, default=100, help="orders whose latency is measured (default 100)")
     parser.add_argument("--rows", action="store_true", help="only the rows of ratios")
+    parser.add_argument("--no-rows", action="store_true", help="all but the rows of ratios")
     parser.add_argument("--before", type=Path, metavar="DIR", help="rows: another checkout, in the same rounds")
     parser.add_argument("--firmware", type=Path, metavar="DIR", help="rows: the robot's C files")
     parser.add_argument("--whole-audit", action="store_true", help="rows: every entry of the audit, not a sample")
@@ -83,7 +84,7 @@ def main() -> None:
     latency = order_latency.measure(options.orders)
     if options.json:
         whole = {"mode": compiled.MODE, **results, "drivers": alone, "copies": copies, "order latency": latency}
-        print(json.dumps({**whole, "rows": rows.measured(options)}, indent=2))
+        print(json.dumps(whole if options.no_rows else {**whole, "rows": rows.measured(options)}, indent=2))
         return
     print(f"{'whole robot, ' + compiled.MODE:30} {'x real time':>12} {'x CPU time':>12} {'loops / simulated s':>21}")
     for name, result in results.items():
@@ -93,7 +94,8 @@ def main() -> None:
     drivers.show(alone)
     forks.show(copies)
     order_latency.show(latency)
-    rows.run(options)
+    if not options.no_rows:
+        rows.run(options)
 
 
 if __name__ == "__main__":
