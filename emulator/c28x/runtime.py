@@ -226,7 +226,8 @@ class Runtime:
         self.caseless: dict[Where, int] = {}
         #: Whether time skips the turns of a loop that change nothing.
         self.skips_turns = False
-        #: After the last such turn: the time, the time of the next event, and the occurrences of findings.
+        #: After the last such turn: the time, the time of the next event, how many events were ever scheduled,
+        #: and the occurrences of findings.
         self._idle_turn = (-1, -1, -1, -1)
         memory.take_policy_from(self)
 

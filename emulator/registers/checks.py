@@ -90,7 +90,7 @@ def gated_read(register: Cell) -> Callable[[], int]:
 def gated_write(register: Cell) -> Write:
     """The write to a module whose clock is off."""
 
-    def write_gated(word: Any, lanes: int = ALL) -> None:  # see write_protected
+    def write_gated(word: int, lanes: int = ALL) -> None:
         register.block.cpu.findings.report(
             "clock-gated", f"{register.path} was written while its module's clock is off: nothing is stored",
             object=register.path, value=word,

@@ -44,7 +44,6 @@ __all__ = [
     "At",
     "Block",
     "F",
-    "Hook",
     "R",
     "Register",
     "RegisterStruct",

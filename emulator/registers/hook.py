@@ -6,7 +6,8 @@ from __future__ import annotations
 class Hook:
     """What an access of the CPU to a register does, as an object: compiled firmware calls its methods in C.
 
-    A function, which `Block.bind` takes as well, gets and gives objects there.
+    A function, which `Block.bind` takes as well, gets and gives objects there.  A subclass has the methods that it is
+    bound for; the others are never called.
     """
 
     __slots__ = ()
