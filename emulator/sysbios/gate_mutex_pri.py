@@ -70,8 +70,11 @@ class GateMutexPriModule:
         pointer.load().deleted = True
         pointer.store(NULL)
 
-    def GateMutexPri_enter(self, gate: GateMutexPri) -> int:
-        """Take the gate; returns the key for `leave`: 0 if this call took it, 1 if the caller has it already."""
+    def GateMutexPri_enter(self, handle: Any) -> int:
+        """Take the gate; returns the key for `leave`: 0 if this call took it, 1 if the caller has it already.
+
+        Before tasks run the handle is not looked at.
+        """
         core = self.core
         clock = core.clock
         clock.now += self._cost_enter
@@ -83,6 +86,7 @@ class GateMutexPriModule:
         task = tasks.current
         if task is None:
             return NESTED_ENTER
+        gate: GateMutexPri = handle
         if gate.free:
             gate.free = False
             gate.owner = task
@@ -125,8 +129,11 @@ class GateMutexPriModule:
                 return
         gate.waiters.append(waiter)
 
-    def GateMutexPri_leave(self, gate: GateMutexPri, key: int) -> None:
-        """Release the gate if `key` is 0.  The caller need not be the owner.  The first waiter owns it from now on."""
+    def GateMutexPri_leave(self, handle: Any, key: int) -> None:
+        """Release the gate if `key` is 0.  The caller need not be the owner.  The first waiter owns it from now on.
+
+        Before tasks run the handle is not looked at.
+        """
         core = self.core
         clock = core.clock
         clock.now += self._cost_leave
@@ -136,6 +143,7 @@ class GateMutexPriModule:
         task = tasks.current
         if task is None or key != FIRST_ENTER:
             return
+        gate: GateMutexPri = handle
         if gate.free or gate.owner is not task:
             owner = "nobody" if gate.free or gate.owner is None else gate.owner.name
             message = f"{gate.name} was left by {task.name}, but belongs to {owner}"

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from emulator.c28x.memory import NULL
 from emulator.sysbios.core import KernelError
 from tests.emulator.sysbios.bench import Bench
 
@@ -68,6 +69,15 @@ def test_keys_are_0_first_1_nested_and_1_before_tasks_run() -> None:
     k.GateMutexPri_leave(gate, 1)
     s.task("a", 1, 0, lambda: s.b.note([k.GateMutexPri_enter(gate) for _ in range(3)]))
     assert s.run(1) == [[0, 1, 1]]
+
+
+@pytest.mark.parametrize("handle", [None, NULL, 7])
+def test_before_tasks_run_a_gate_that_nobody_has_created_is_not_looked_at(handle: Any) -> None:
+    kernel = Bench().kernel
+    key = kernel.GateMutexPri_enter(handle)
+    assert key == 1
+    kernel.GateMutexPri_leave(handle, key)
+    kernel.GateMutexPri_leave(handle, 0)
 
 
 def test_leave_with_a_nested_key_does_nothing() -> None:
