@@ -15,6 +15,7 @@ from statistics import median
 from time import process_time
 from typing import Final
 
+from emulator import compiled
 from emulator.clock import CYCLES_PER_US
 from firmware_model.image import link
 from hil.robot.board import RobotBoard
@@ -32,7 +33,7 @@ SOURCE: Final = Path(__file__).with_name("drivers_avr.c")
 def emulated(seconds: int) -> float:
     """CPU seconds of this process for a virtual second of the drivers, with every check."""
     board = RobotBoard()
-    firmware = link(board)
+    firmware = link(board, built=compiled.program)
     firmware.spi.Init_SPIA()
     firmware.us.Init_US()
     firmware.gyro.Init_GYRO()
