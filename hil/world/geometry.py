@@ -44,6 +44,10 @@ class Segment:
     def __repr__(self) -> str:
         return f"Segment({self.ax}, {self.ay}, {self.bx}, {self.by}, {self.material!r})"
 
+    def __reduce__(self) -> tuple[type[Segment], tuple[float, float, float, float, str]]:
+        """How to copy it to another process.  Compiled, an object is made by its constructor only."""
+        return Segment, (self.ax, self.ay, self.bx, self.by, self.material)
+
     def side(self, x: float, y: float) -> float:
         """Signed distance from the wall's line, positive on its left."""
         return self.nx * x + self.ny * y - self.offset_m
@@ -108,6 +112,10 @@ class Post:
         if not (radius_m > 0.0 and abs(x_m) < inf and abs(y_m) < inf and radius_m < inf):
             raise ValueError(f"post {name!r} at ({x_m}, {y_m}), radius {radius_m} m: must be finite, radius above 0")
         self.x_m, self.y_m, self.radius_m, self.name = x_m, y_m, radius_m, name
+
+    def __reduce__(self) -> tuple[type[Post], tuple[float, float, float, str]]:
+        """As that of `Segment`."""
+        return Post, (self.x_m, self.y_m, self.radius_m, self.name)
 
     def distance(self, x: float, y: float) -> float:
         """Distance from (x, y) to the surface, negative inside."""

@@ -29,6 +29,10 @@ class Mover:
     #: Whether it goes back and forth for ever; otherwise it stays at the end.
     and_back: bool = False
 
+    def __reduce__(self) -> tuple[type[Mover], tuple[int, tuple[tuple[float, float], ...], float, float, bool]]:
+        """As that of `Segment`."""
+        return Mover, (self.post, self.points, self.speed_m_s, self.from_s, self.and_back)
+
     def at(self, time_s: float) -> tuple[float, float]:
         """Its position at a time."""
         length = sum(hypot(bx - ax, by - ay) for (ax, ay), (bx, by) in pairwise(self.points))

@@ -14,8 +14,7 @@ needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="no os.fork here
 
 #: Rigs with and without replaced functions, kept locals and fills; robots; figures of the text.
 NAMES = (
-    "US-accumulator", "US-window-far-only", "US-samples-12", "ODO-half-step", "MAIN-tele-twice", "MAIN-bump-holds",
-    "MAIN-us-first-read", "MAIN-clock-before-task", "FIG-periodic-tasks", "US-average-empty", "MAIN-comp-span",
+    "US-accumulator", "US-samples-12", "ODO-half-step", "MAIN-tele-twice", "MAIN-us-first-read", "FIG-periodic-tasks",
 )  # fmt: skip
 
 

@@ -68,7 +68,7 @@ def test_the_same_runs_by_one_process_and_by_two() -> None:
 
 @pytest.mark.slow
 def test_the_corrected_robot_holds_and_the_one_as_in_the_c_does_not() -> None:
-    runs = int(os.environ.get("HIL_CAMPAIGN_RUNS", "16"))
+    runs = int(os.environ.get("HIL_CAMPAIGN_RUNS", "6"))
     assert not campaign(runs, seed=1).failed
     assert campaign(4, seed=1, faithful=True).failed
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from math import pi
 from pathlib import Path
 
@@ -45,6 +46,21 @@ def test_the_built_in_maps_all_load() -> None:
     for name in builtin_maps():
         assert load_map(name).name == name
         assert load_map(name).description
+
+
+MOVED = 'path_m = [[2.0, 0.8], [2.0, 1.2]]\nspeed_m_s = 0.2\nfrom_s = 1.5\nand_back = true\n'
+
+
+def test_a_copy_for_another_process_is_the_same_map() -> None:
+    lab = parse_map(GOOD + MOVED)
+    copy = pickle.loads(pickle.dumps(lab))
+    assert repr(copy.walls) == repr(lab.walls)
+    assert len(lab.movers) == 1
+    assert copy.movers == lab.movers
+    assert copy.bounds() == lab.bounds()
+    x_m, y_m = 1.0, 0.5
+    assert copy.room(x_m, y_m) == lab.room(x_m, y_m)
+    assert [post.name for post in copy.posts] == [post.name for post in lab.posts]
 
 
 def test_a_fence_has_a_post_at_each_corner_and_the_same_step_on_all_of_a_side() -> None:
