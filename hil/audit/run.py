@@ -13,8 +13,8 @@ entries also needed, linked and booted (`templates`).  Elsewhere each entry link
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Generator, Sequence
+from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
 from dataclasses import dataclass
@@ -124,7 +124,10 @@ def demonstrate(
 def audit(
     names: Sequence[str], *, processes: int = 1, own: Variant = Variant(), but_one: bool = False,  # noqa: B008 - frozen
 ) -> Generator[DemonstrationOutcome, None, None]:
-    """The outcomes of `names`, in their order.  `processes` above 1 runs that many; the rest as in `demonstrate`."""
+    """The outcomes of `names`, each as soon as it is there.
+
+    `processes` above 1 runs that many; the rest as in `demonstrate`.
+    """
     show = partial(demonstrate, own=own, but_one=but_one)
     if forked.possible():
         yield from _audit_forked(names, processes, show)
@@ -144,17 +147,14 @@ def _audit_forked(
         with uncollected():
             Rig(resolve([next(name for name, entry in CATALOGUE.items() if entry.kind is not DefectKind.FIGURE)]))
     calls = ((name, partial(templates.using, partial(show, name))) for name in names)
-    outcomes: dict[str, DemonstrationOutcome] = {}
-    waiting = deque(names)
     with closing(forked.in_children(calls, at_once=max(1, processes))) as running:
         for done, answer in running:
             if isinstance(answer, forked.ChildDied):
-                outcomes[done] = _died(done, answer)
+                yield _died(done, answer)
             else:
-                outcomes[done], missed = answer
+                outcome, missed = answer
+                yield outcome
                 templates.make_ready(missed)
-            while waiting and waiting[0] in outcomes:
-                yield outcomes.pop(waiting.popleft())
 
 
 def _audit_spawned(
@@ -162,12 +162,12 @@ def _audit_spawned(
 ) -> Generator[DemonstrationOutcome, None, None]:
     """Run each entry in a pool of processes in which nothing is prepared."""
     with workers(processes) as pool:
-        futures = {name: pool.submit(show, name) for name in names}
-        for name, future in futures.items():
+        futures = {pool.submit(show, name): name for name in names}
+        for future in as_completed(futures):
             try:
                 outcome = future.result()
             except BrokenProcessPool as died:
-                outcome = _died(name, died)
+                outcome = _died(futures[future], died)
             yield outcome
 
 

@@ -1,4 +1,4 @@
-"""The audit in copies of a process, and without: the same outcomes, in the order asked for; a death is one line."""
+"""The audit in copies of a process, and without: the same outcomes, each as it comes; a death is one line."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def process(code: str, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def outcomes(prepare: str) -> list[Any]:
-    """What the audit of NAMES gives after `prepare`, in order."""
+    """What the audit of NAMES gives after `prepare`, in the order of NAMES."""
     done = process(
         "import json, sys\n"
         "from hil.audit import forked, run\n"
@@ -36,7 +36,7 @@ def outcomes(prepare: str) -> list[Any]:
     )
     assert (done.returncode, done.stderr) == (0, "")
     found: list[Any] = json.loads(done.stdout)
-    return found
+    return sorted(found, key=lambda outcome: NAMES.index(outcome["id"]))
 
 
 @needs_fork
@@ -64,3 +64,20 @@ def test_an_entry_whose_process_is_killed_is_one_line_and_a_failure() -> None:
     assert done.returncode == 1
     assert done.stderr == "ODO-half-step: its process was killed by SIGKILL\n"
     assert "4 of 5 proven" in done.stdout
+
+
+@needs_fork
+def test_what_is_finished_is_told_though_the_first_entry_is_not() -> None:
+    """The first entry waits until the second one has been told."""
+    done = process(
+        "import os\n"
+        "from hil.audit import run\n"
+        "first, second = os.pipe()\n"
+        "run.demonstrate = lambda name, **_: (\n"
+        "    name == 'US-accumulator' and os.read(first, 1), run.DemonstrationOutcome(name, None, None, None)\n"
+        ")[1]\n"
+        "for outcome in run.audit(['US-accumulator', 'US-samples-12'], processes=2):\n"
+        "    print(outcome.id)\n"
+        "    os.write(second, b'x')"
+    )
+    assert (done.stdout.split(), done.stderr) == (["US-samples-12", "US-accumulator"], "")
