@@ -1,4 +1,4 @@
-"""A picture of the tutorial: ``python -m tests.hil.docs.picture tutorial-red.png`` (or ``-new``, ``-board``)."""
+"""A picture of the tutorial: ``python -m tests.hil.docs.picture tutorial-red.png`` (``-new``, ``-mended``, ``-board``)."""
 
 from __future__ import annotations
 
@@ -60,6 +60,17 @@ def red_test(page: Any) -> None:
     show_terminal(page, "pytest -k 0.5", printed("pytest", "-q", "--color=yes", "-k", "0.5"))
 
 
+def mended(page: Any) -> None:
+    """The function without that line, and what pytest prints then."""
+    driver = Path("ranger.c")
+    text = re.sub(rf"\n[^\n]*{WRONG.pattern}[^\n]*", "", driver.read_text(encoding="utf-8"))
+    driver.write_text(text, encoding="utf-8")
+    (function,) = re.findall(r"^Uint16 Ranger_Mean.*?^}", text, re.DOTALL | re.MULTILINE)
+    passed = printed("pytest", "-q", "-rp", "--color=yes")
+    asked = "$ sed -n '/^Uint16 Ranger_Mean/,/^}/p' ranger.c"
+    show_terminal(page, "pytest -rp", f"{asked}\n{function}\n\n$ pytest -q -rp\n{passed}")
+
+
 def board(page: Any) -> subprocess.Popen[str]:
     """The page of the program on its board: a register with its fields, and who wrote it.  Returns its process."""
     (main,) = re.findall(r"```c\n(/\* main\.c \*/.*?)```", TUTORIAL.read_text(encoding="utf-8"), re.DOTALL)
@@ -86,7 +97,8 @@ def main() -> None:
         browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
         page = browser.new_page(viewport=SIZE)
         with chdir("ranger"):
-            running = {"tutorial-new": new, "tutorial-red": red_test, "tutorial-board": board}[made.stem](page)
+            drawn = {"tutorial-new": new, "tutorial-red": red_test, "tutorial-mended": mended, "tutorial-board": board}
+            running = drawn[made.stem](page)
             shown = page if running else page.locator("svg").first
             shown.screenshot(path=made, animations="disabled")
             if running is not None:
