@@ -76,13 +76,14 @@ def seconds(page: Any) -> float:
     return float(page.locator("#clock").inner_text().removesuffix(" s"))
 
 
-def sees(page: Any, condition: Callable[[], bool], what: str) -> None:
-    """The page evaluates no text of anybody, so nothing can wait within it."""
-    for _ in range(300):
-        if condition():
-            return
-        page.wait_for_timeout(100)
-    raise AssertionError(what)
+def clock(page: Any, times: str) -> None:
+    """Wait until the clock shows one of these times, a regular expression for how they begin."""
+    page.locator("#clock", has_text=re.compile(rf"^\s*({times})")).wait_for()
+
+
+def painted(page: Any) -> None:
+    """Wait until what was asked for is on the screen: the page draws once a frame."""
+    page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
 def tile(page: Any, title: str) -> str:
@@ -94,18 +95,18 @@ def test_it_plays_and_pauses(open_page: Open, file: Path) -> None:
     assert seconds(page) == 2.5
     x = float(tile(page, "x, y").split()[0])
     page.get_by_role("button", name="play").click()
-    sees(page, lambda: seconds(page) > 3.2, "it does not play")
+    clock(page, r"3\.[3-9]|4")
     page.get_by_role("button", name="pause").click()
     stopped = seconds(page)
     assert float(tile(page, "x, y").split()[0]) > x + 0.05
     assert tile(page, "robot") == "MISSION"
     page.get_by_label("speed").select_option("10")
     page.locator("body").press(" ")
-    sees(page, lambda: page.locator("#play").get_attribute("aria-label") == "play", "it does not end")
+    page.locator("#play[aria-label=play]").wait_for()
     assert seconds(page) == pytest.approx(float(page.locator("#scrub").get_attribute("max")), abs=0.001)
     assert seconds(page) > stopped
     page.locator("body").press(" ")
-    sees(page, lambda: 0 < seconds(page) < stopped, "it does not begin anew")
+    clock(page, r"0\.\d*[1-9]|[12]\.")
 
 
 def test_keys_and_bar_go_to_any_time(open_page: Open, file: Path) -> None:
@@ -264,7 +265,7 @@ def test_lanes_tell_the_true_load_at_any_zoom(open_page: Open, file: Path, trace
     for zoomed in range(4):
         if zoomed:
             page.keyboard.press("+")
-            page.wait_for_timeout(300)
+            painted(page)
         begin, end = (float(each) * 200e6 for each in re.findall(r"([\d.]+) s", page.locator("#span").inner_text()))
         told = loads(page)
         for lane in ("TaskUS", "TaskGYRO", "Idle", "Swi Clock"):
@@ -305,7 +306,7 @@ def test_it_fits_any_screen_and_axe_has_nothing_to_say(open_page: Open, file: Pa
     page = open_page(file, size, scheme, "#t=3.5")
     page.locator(".finding").nth(1).get_by_role("button").click()
     page.get_by_role("button", name="follow").click()
-    page.wait_for_timeout(300)
+    painted(page)
     keep(page, f"{size}-{scheme}")
     width, _ = SIZES[size]
     assert page.evaluate("document.documentElement.scrollWidth") <= width
