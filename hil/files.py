@@ -9,7 +9,7 @@ import re
 import shutil
 import stat
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, BinaryIO, Final, TextIO
@@ -19,6 +19,10 @@ MAX_BYTES: Final = 64 << 20
 _AT_LINE: Final = re.compile(r" \(at line (\d+), column \d+\)")
 # A FIFO that nobody writes to would keep a plain open waiting.
 _FLAGS: Final = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+
+
+class NotWritten(OSError):
+    """A file that could not be written; it names the file."""
 
 
 def opened(path: str | Path) -> BinaryIO:
@@ -81,7 +85,7 @@ def parse_json(content: str, file: str) -> Any:
 def replacing(path: str | Path) -> Iterator[Path]:
     """A path to write to.  What was written replaces `path` when the block ends, and leaves no trace if it fails.
 
-    A device, a pipe that somebody reads, is written to directly.  Raises OSError, which names `path`.
+    A device, a pipe that somebody reads, is written to directly.  Raises NotWritten.
     """
     target = _target(path)
     plain = target.is_file() or not target.exists()
@@ -97,12 +101,21 @@ def replacing(path: str | Path) -> Iterator[Path]:
     except OSError as error:
         if error.filename not in (None, str(new)):
             raise  # of another file
-        raise OSError(error.errno, error.strerror or str(error), str(path)) from error
+        raise NotWritten(error.errno, error.strerror or str(error), str(path)) from error
     finally:
         if plain:
             new.unlink(missing_ok=True)
         if pipe is not None:
             os.close(pipe)
+
+
+def write_each(writes: Sequence[Callable[[], None]]) -> None:
+    """Call each, whatever becomes of the others.  Raises the last NotWritten; those before are its context."""
+    if writes:
+        try:
+            writes[0]()
+        finally:
+            write_each(writes[1:])
 
 
 class GrowingFile:
@@ -112,7 +125,7 @@ class GrowingFile:
         """`path` is how errors name it."""
         self._path = path
         self._file = file
-        self._failed: OSError | None = None
+        self._failed: NotWritten | None = None
 
     def write(self, text: str) -> None:
         """More text, as long as the file takes it."""
@@ -122,7 +135,7 @@ class GrowingFile:
         """Hand over to the system what was written."""
         self._try(self._file.flush)
 
-    def failure(self) -> OSError | None:
+    def failure(self) -> NotWritten | None:
         """Why the file is not whole; it names the file."""
         self.flush()
         return self._failed
@@ -132,14 +145,15 @@ class GrowingFile:
             try:
                 act()
             except OSError as error:
-                self._failed = OSError(error.errno, error.strerror or str(error), str(self._path))
+                self._failed = NotWritten(error.errno, error.strerror or str(error), str(self._path))
 
 
 @contextmanager
 def growing(path: str | Path, encoding: str) -> Iterator[GrowingFile]:
     """A text file that grows while something runs, empty at first.
 
-    Raises OSError if it cannot be opened, for a pipe that nobody reads, and at the end if it did not take everything.
+    Raises OSError if it cannot be opened, for a pipe that nobody reads; NotWritten at the end if it did not take
+    everything.
     """
     pipe = _reached(path) if Path(path).is_fifo() else None
     failed = None

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final, TypeAlias
 
 import typer
 from rich.progress import BarColumn, Progress, TextColumn
 
+from emulator.seed import MAX_SEED
 from hil.cli import own_c, show
 from hil.cli.board import Option
 from hil.cli.faults import Fault, checked_faults
 from hil.cli.feeds import Feed
 from hil.extras import require
-from hil.files import check_target
+from hil.files import check_target, write_each
 
 if TYPE_CHECKING:
     from emulator.c28x.coverage import Coverage
@@ -24,6 +26,9 @@ if TYPE_CHECKING:
     from hil.reports.model import Report
     from hil.reports.policy import Policy
     from hil.scenarios.scenario import Scenario
+
+#: What writes a file each.
+Writes: TypeAlias = list[Callable[[], None]]
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
@@ -74,7 +79,7 @@ def check(
     world: Annotated[
         str | None, typer.Option(help="The robot's environment: corridor, room, box, paddock, or a TOML map.")
     ] = None,
-    seed: Annotated[int | None, typer.Option(min=0, help="The seed of all random numbers.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, max=MAX_SEED, help="The seed of all random numbers.")] = None,
     fill: Annotated[
         str | None, typer.Option(help="The content of uninitialised memory: zero, ones, nan, random:SEED, stack, trap.")
     ] = None,
@@ -184,6 +189,8 @@ def check(
         if html is not None:
             require("matplotlib")
         coverage = None if lcov is None else Coverage()
+        writes: Writes = []
+        update = writes if update_baseline else None
         if drivers:
             wanted = _drivers(drivers, *own_c.read_as(drivers, project, include, define), abi, board)
             wanted = replace(
@@ -191,15 +198,18 @@ def check(
                 seconds=wanted.seconds if for_s is None else scenario.seconds, coverage=coverage,
                 float_division=scenario.setup.float_division, faults=checked_faults(fault), silence=bool(silence),
             )  # fmt: skip
-            report = _report_of_drivers(wanted, policy, quiet=json_output, update=update_baseline)
+            report = _report_of_drivers(wanted, policy, quiet=json_output, update=update)
         else:
             proven = (replace(scenario, seconds=min(proof_for_s, scenario.seconds)), against) if proof else None
-            report = _report(scenario, policy, proven, coverage, quiet=json_output, update=update_baseline)
-        # First: a disk that is full takes no file, but what was found is told.
-        _print(report, details=details, as_lines=lines, json_output=json_output)
-        _write(report, sarif=sarif, html=html, junit=junit)
+            report = _report(scenario, policy, proven, coverage, quiet=json_output, update=update)
+        writes += _writes(report, sarif=sarif, html=html, junit=junit)
         if lcov is not None and coverage is not None:
-            write_lcov(lcov, coverage)
+            writes.append(partial(write_lcov, lcov, coverage))
+        try:
+            # First: a disk that is full takes no file, but what was found is told.
+            _print(report, details=details, as_lines=lines, json_output=json_output)
+        finally:
+            write_each(writes)
     if report.failed:
         raise typer.Exit(show.EXIT_FAILED)
 
@@ -226,21 +236,22 @@ def _drivers(
     return DriverFiles(files, include, define, abi or "", board=load(board or "robot"), board_named=board is not None)
 
 
-def _report_of_drivers(wanted: DriverFiles, policy: Policy, *, quiet: bool, update: bool) -> Report:
+def _report_of_drivers(wanted: DriverFiles, policy: Policy, *, quiet: bool, update: Writes | None) -> Report:
+    """The report; `update` gets what writes a new baseline."""
     from emulator.c28x.passes.costs import UNCALIBRATED_FACTOR
     from hil.drivers.check import check_files
     from hil.reports.accepted import acceptance
     from hil.reports.baseline import Baseline, known
     from hil.reports.model import Report, Run
 
-    known_before = Baseline.read(policy.baseline) if policy.baseline and not update else None
+    known_before = Baseline.read(policy.baseline) if policy.baseline and update is None else None
     with _bar(quiet=quiet) as bar:
         task = bar.add_task("translate", total=1.0)
         checked = check_files(wanted, lambda what, part: bar.update(task, description=what, completed=part))
-    if update and policy.baseline:
+    if update is not None and policy.baseline:
         rated = (f for f in checked.findings if policy.severity_of(f) is not None and not acceptance(f))
         known_before = Baseline(tuple(known(rated)))
-        known_before.write(policy.baseline)
+        update.append(partial(known_before.write, policy.baseline))
     run = Run(
         ", ".join(file.name for file in wanted.files), virtual_s=checked.ran.virtual_s if checked.ran else 0.0,
         stopped=checked.ran.stopped if checked.ran else "", functions=tuple(checked.functions),
@@ -263,15 +274,16 @@ def _bar(*, quiet: bool) -> Progress:
 
 def _report(
     scenario: Scenario, policy: Policy, proven: tuple[Scenario, str] | None, coverage: Coverage | None, *, quiet: bool,
-    update: bool,
+    update: Writes | None,
 ) -> Report:  # fmt: skip
+    """The report; `update` gets what writes a new baseline."""
     from hil.reports.accepted import acceptance
     from hil.reports.baseline import Baseline, known
     from hil.reports.model import Report
     from hil.reports.run import drive_of, run_of
     from hil.reports.two_fill import prove
 
-    known_before = Baseline.read(policy.baseline) if policy.baseline and not update else None
+    known_before = Baseline.read(policy.baseline) if policy.baseline and update is None else None
     with _bar(quiet=quiet) as bar, ExitStack() as stack:
         task = bar.add_task("run", total=1.0)
         bench = scenario.bench(coverage)
@@ -285,28 +297,30 @@ def _report(
             proof = prove(
                 proven[0], findings, against=proven[1], progress=lambda fraction: bar.update(task, completed=fraction)
             )
-        if update and policy.baseline:
+        if update is not None and policy.baseline:
             known_before = Baseline(tuple(known(f for f in findings if not acceptance(f))))
-            known_before.write(policy.baseline)
+            update.append(partial(known_before.write, policy.baseline))
         return Report.of(
             bench.findings, run=run_of(scenario, bench, stopped), policy=policy, baseline=known_before, proof=proof,
             drive=drive_of(bench),
         )  # fmt: skip
 
 
-def _write(report: Report, *, sarif: Path | None, html: Path | None, junit: Path | None) -> None:
+def _writes(report: Report, *, sarif: Path | None, html: Path | None, junit: Path | None) -> Writes:
+    writes: Writes = []
     if sarif is not None:
         from hil.reports.sarif import write_sarif
 
-        write_sarif(sarif, report)
+        writes.append(partial(write_sarif, sarif, report))
     if html is not None:
         from hil.reports.html import write_html
 
-        write_html(html, report)
+        writes.append(partial(write_html, html, report))
     if junit is not None:
         from hil.reports.junit import write_junit
 
-        write_junit(junit, report)
+        writes.append(partial(write_junit, junit, report))
+    return writes
 
 
 def _print(report: Report, *, details: bool, as_lines: bool, json_output: bool) -> None:

@@ -18,9 +18,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 import typer
 from rich.console import Console
 
+from emulator.seed import MAX_SEED
 from hil.client.orders import KEYWORDS
 from hil.ending import REPEAT_S, ending_signals
 from hil.extras import hint
+from hil.files import NotWritten
 
 if TYPE_CHECKING:
     from emulator.c28x.coverage import Coverage
@@ -40,7 +42,7 @@ _PACKAGES: Final = ("hil", "emulator", "firmware_model")
 _ENDLESS: Final = re.compile(r"\S{400,}")
 #: Options of commands that run the robot.
 World = Annotated[str, typer.Option(help="The robot's environment: corridor, room, box, paddock, or a TOML map.")]
-Seed = Annotated[int, typer.Option(min=0, help="The seed of all random numbers.")]
+Seed = Annotated[int, typer.Option(min=0, max=MAX_SEED, help="The seed of all random numbers.")]
 _ORDERS: Final = (
     f"Send an order, TIME s after start-up: {', '.join(KEYWORDS)}, 'set V W' (m/s, rad/s), their four letters, or "
     "#RAW; repeatable"
@@ -93,11 +95,21 @@ def user_errors() -> Iterator[None]:
         if os.environ.get("HIL_TRACEBACK"):  # for those who look for a defect of ours behind it
             raise
         reason = str(error) or type(error).__name__
-        if isinstance(error, OSError) and error.strerror and error.filename:
+        if isinstance(error, NotWritten):
+            reason = "; ".join(reversed([*_not_written(error)]))
+        elif isinstance(error, OSError) and error.strerror and error.filename:
             reason = f"{error.filename}: {error.strerror}"
         elif isinstance(error, OSError) and of_standard_output(error):
             reason = f"standard output: {error.strerror}"
         raise UserError(" ".join(reason.split())) from error
+
+
+def _not_written(error: BaseException | None) -> Iterator[str]:
+    """Each file that could not be written, the last one first: an error is the context of the next one."""
+    while error is not None:
+        if isinstance(error, NotWritten):
+            yield f"{error.filename}: {error.strerror}"
+        error = error.__context__
 
 
 def of_standard_output(error: OSError) -> bool:

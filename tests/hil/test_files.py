@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from hil.files import check_target, growing, parse_json, parse_toml, read_bytes, read_text, replacing
+from hil.files import NotWritten, check_target, growing, parse_json, parse_toml, read_bytes, read_text, replacing
 
 
 def test_what_is_no_plain_file_is_refused_at_once(tmp_path: Path) -> None:
@@ -95,7 +95,7 @@ def test_what_fails_leaves_the_old_file_and_nothing_else(tmp_path: Path) -> None
 
 def test_an_error_names_the_file_that_was_given(tmp_path: Path) -> None:
     file = tmp_path / "none" / "file.txt"
-    with pytest.raises(FileNotFoundError) as caught, replacing(file) as new:
+    with pytest.raises(NotWritten) as caught, replacing(file) as new:
         new.write_text("x")
     assert caught.value.filename == str(file)
 

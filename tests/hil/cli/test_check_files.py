@@ -692,3 +692,25 @@ def test_a_main_that_turns_for_ever_on_the_flag_of_a_routine_is_right(
     (folder / "turns.c").write_text(TURNS.format(loop=loop))
     status, out = report(capsys, "turns.c", "--for", "0.5")
     assert (status, out["findings"], out["run"]["stopped"]) == (0, [], None)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a file that is always full (/dev/full of Linux)")
+def test_a_full_disk_takes_no_file_and_each_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("f.c").write_text("int f(int a) { int unset; return a + unset; }\n")
+    wanted = {"--baseline": "e.json", "--sarif": "a.sarif", "--html": "b.html", "--junit": "c.xml", "--lcov": "d.info"}
+    for name in wanted.values():
+        os.symlink("/dev/full", name)
+    named = [part for pair in wanted.items() for part in pair]
+    assert invoke(["check", "f.c", *named, "--update-baseline", "--json"]) == 2
+    out, err = capsys.readouterr()
+    assert json.loads(out)["findings"], "the report is told all the same"
+    said = "; ".join(f"{name}: No space left on device" for name in wanted.values())
+    assert err == f"hil: error: {said}\n"
+    # The files after one that cannot be written are written.
+    os.unlink("b.html")
+    assert invoke(["check", "f.c", *named, "--update-baseline", "--json"]) == 2
+    assert "b.html" not in capsys.readouterr().err
+    assert Path("b.html").read_text().rstrip().endswith("</html>")
