@@ -18,6 +18,7 @@ from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
 from emulator.registers.cpu_timer import TCR
 from emulator.registers.i2c import I2CMDR
+from emulator.seed import check_seed
 from emulator.sysbios.heap_mem import HEAP_WORDS
 from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.watch import KernelWatch
@@ -40,6 +41,7 @@ class System(Chip):
         i2c_pins: Mapping[str, tuple[int, int]] | None = None, kernel_cost_scale: float = KERNEL_COST_SCALE,
         heap_words: int = HEAP_WORDS,
     ) -> None:  # fmt: skip
+        check_seed(seed)
         super().__init__(
             rng=Random(f"{seed}:board"), ideal=ideal, vrefhi_v=vrefhi_v, board_pulls=board_pulls, spi_pins=spi_pins,
             i2c_pins=i2c_pins,

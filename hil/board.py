@@ -138,7 +138,8 @@ class Part:
         """Raises ValueError for a face that there is not, that is only seen, and for a value that it cannot have."""
         face = self.face(name)
         if not face.low <= value <= face.high:
-            raise ValueError(f"{self.name}.{name} = {value:g}: must be {face.range or 'a number of'} {face.unit}")
+            unit = f"({face.unit})" if "=" in face.unit else face.unit  # what its numbers stand for
+            raise ValueError(f"{self.name}.{name} = {value:g}: must be {face.range or 'a number of'} {unit}")
         if not self.is_set(name):
             raise ValueError(f"{self.name}.{name} can only be read: the part computes it")
 

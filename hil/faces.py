@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from hil.board import Board
+from hil.longest import LONGEST_S
 
 FORM: Final = "expected [TIME:]PART.FACE=VALUE"
 _TIMED: Final = re.compile(r"(\d+(?:\.\d*)?|\.\d+):(.*)", re.DOTALL)
@@ -38,6 +39,8 @@ def parse(text: str, board: Board) -> FaceSetting:
     """
     timed = _TIMED.fullmatch(text)
     time_s, rest = (float(timed[1]), timed[2]) if timed else (None, text)
+    if time_s is not None and time_s > LONGEST_S:
+        raise ValueError(f"{text!r}: its time must be at most {LONGEST_S:.0f} s")
     left, equals, number = rest.partition("=")
     name, dot, face_name = left.strip().rpartition(".")
     if not (equals and dot):

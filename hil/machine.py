@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
+from emulator.seed import check_seed
 
 if TYPE_CHECKING:
     from emulator.c28x.findings import Findings
@@ -101,7 +102,8 @@ class Setup:
     def of(cls, setup: Setup | str | None = None, **settings: Any) -> Setup:
         """A setup, or a world by its name, with some of its fields said anew.  A text stands for a tuple of it alone.
 
-        Raises TypeError for a field that there is not, or a value of another type, and ValueError for a negative seed.
+        Raises TypeError for a field that there is not, or a value of another type, and ValueError for a seed outside
+        of its range.
         """
         if isinstance(setup, str):
             settings = {"world": setup, **settings}
@@ -121,8 +123,7 @@ class Setup:
                 settings[name] = tuple(value)
             elif not isinstance(value, wanted) or (wanted is int and isinstance(value, bool)):
                 raise TypeError(f"{name}={value!r}: expected {_EXPECTED[wanted]}")
-        if settings.get("seed", 0) < 0:
-            raise ValueError(f"seed={settings['seed']}: expected 0 or more")
+        check_seed(settings.get("seed", 0))
         return replace(setup or cls(), **settings)
 
     def as_dict(self) -> dict[str, Any]:

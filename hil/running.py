@@ -15,7 +15,6 @@ from contextlib import contextmanager
 from functools import partial
 from html import escape
 from importlib import import_module
-from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -31,6 +30,7 @@ from emulator.sysbios.statistics import TaskStatistics
 from hil.board import Board, load, made, optional, source_of
 from hil.collector import uncollected
 from hil.faces import FaceSetting, parse_all
+from hil.longest import LONGEST_S
 from hil.machine import CpuUse, FirmwareStopped, Setup, TaskTimes, internal_error
 
 if TYPE_CHECKING:
@@ -156,11 +156,11 @@ class RunningBoard:
         Raises TypeError for what is no number, ValueError for no stretch, and before it was powered up.
         """
         try:
-            possible = 0.0 <= duration_s < inf
+            possible = 0.0 <= duration_s <= LONGEST_S
         except TypeError:
             raise TypeError(f"run_for({duration_s!r}): expected seconds, as in run_for(10.0)") from None
         if not possible:
-            raise ValueError(f"run_for({duration_s!r}): expected seconds, 0 or more")
+            raise ValueError(f"run_for({duration_s!r}): expected seconds, 0 to {LONGEST_S:.0f}")
         if not self._booted:
             raise ValueError("the board is not powered up: call boot() first")
         self.run_until(self.clock.now + round(duration_s * SYSCLK_HZ))

@@ -41,6 +41,7 @@ from emulator.c28x.sites import Site
 from emulator.c28x.tree import NOWHERE, Declaration, Where
 from emulator.c28x.varargs import ArgumentBlock
 from emulator.clock import CYCLES_PER_US, Clock
+from emulator.seed import parse_seed
 
 #: The time limit of a loop that only computes.  Such a loop takes milliseconds; the limit catches those that never end.
 LOOP_LIMIT_S: Final = 0.2
@@ -133,10 +134,10 @@ class StackPointer(Protocol):
 
 
 def parse_fill(fill: str) -> tuple[str, int]:
-    """A fill policy as (name, seed).  Raises ValueError for an unknown policy."""
+    """A fill policy as (name, seed).  Raises ValueError for an unknown policy or a wrong seed."""
     name, colon, seed = fill.partition(":")
-    if name == "random" and (not colon or seed.lstrip("-").isdecimal()):
-        return name, int(seed or 0)
+    if name == "random":
+        return name, parse_seed(seed, "fill random:SEED") if colon else 0
     if name in ("zero", "ones", "nan", "stack", "trap") and not seed:
         return name, 0
     raise ValueError(f"unknown fill policy {fill!r}: one of {', '.join(FILLS)}")

@@ -10,6 +10,7 @@ from rich.markup import escape
 from rich.progress import Progress
 from rich.table import Table as Shown
 
+from emulator.seed import MAX_SEED
 from hil.cli import show
 from hil.files import check_target, replacing
 
@@ -35,7 +36,7 @@ def calibrate(
     emulate: Annotated[
         bool, typer.Option("--emulate", help="Measure with the emulated robot in front of a wall.")
     ] = False,
-    seed: Annotated[int, typer.Option(min=0, help="The seed of the emulated sonars.")] = 1,
+    seed: Annotated[int, typer.Option(min=0, max=MAX_SEED, help="The seed of the emulated sonars.")] = 1,
     ideal: Annotated[bool, typer.Option("--ideal", help="Emulate sonars without noise.")] = False,
     fix: Annotated[
         list[str] | None,

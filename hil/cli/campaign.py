@@ -32,7 +32,7 @@ EXAMPLES: Final = """
 
 def campaign(
     runs: Annotated[int, typer.Option(min=1, max=1_000_000, help="Number of runs.")] = 1000,
-    seed: Annotated[int, typer.Option(min=0, help="The seed of all random numbers.")] = 1,
+    seed: show.Seed = 1,
     jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, max=64, help="Run this many in parallel.")] = 2,
     faithful: Annotated[bool, typer.Option("--faithful", help="Run the original firmware, without corrections.")]
     = False,

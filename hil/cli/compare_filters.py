@@ -9,11 +9,12 @@ import typer
 from rich.progress import Progress
 from rich.table import Table
 
+from emulator.seed import MAX_SEED
 from hil.cli import show
 
 
 def compare_filters(
-    seed: Annotated[int, typer.Option(min=0, help="The seed of the emulated robot.")] = 1,
+    seed: Annotated[int, typer.Option(min=0, max=MAX_SEED, help="The seed of the emulated robot.")] = 1,
     readings: Annotated[int, typer.Option(min=1, max=10_000, help="The number of readings at each distance.")] = 30,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the errors (PNG, SVG).")] = None,
     json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,

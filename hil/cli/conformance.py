@@ -19,7 +19,9 @@ FIRST_DIFFERENCES: Final = 10
 
 def conformance(
     files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Golden-vector files (JSON).")],
-    differences: Annotated[int, typer.Option(min=0, help="Show this many differences.")] = FIRST_DIFFERENCES,
+    differences: Annotated[
+        int, typer.Option(min=0, max=1_000_000, help="Show this many differences.")
+    ] = FIRST_DIFFERENCES,
     firmware: own_c.Firmware = None,
     project: own_c.Project = None,
     include: own_c.Include = None,

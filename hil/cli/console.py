@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
+from emulator.seed import MAX_SEED
 from hil.cli import show
 from hil.extras import require
 from hil.machine import FirmwareStopped, Setup
@@ -49,7 +50,7 @@ def console(
     world: Annotated[
         str, typer.Option(help="The environment of an emulated robot: corridor, room, box, paddock, or a TOML map.")
     ] = "corridor",
-    seed: Annotated[int, typer.Option(min=0, help="The seed of an emulated robot.")] = 1,
+    seed: Annotated[int, typer.Option(min=0, max=MAX_SEED, help="The seed of an emulated robot.")] = 1,
     view: Annotated[
         bool, typer.Option("--view", help="Show the console in the browser, for the robot at --port (extra view).")
     ] = False,

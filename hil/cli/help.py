@@ -1,16 +1,17 @@
 """How the help of a command reads: options in groups, examples and other lists one below the other.  And what none of
-its options takes: a number that is not finite.
+its options takes: infinities, NaN and numbers that nobody means.
 """
 
 from __future__ import annotations
 
 import re
 from copy import copy
-from math import isfinite
 from typing import Any, Final
 
 from typer.core import TyperArgument, TyperCommand, TyperOption
 
+#: No number of an option lies further out.
+FURTHEST: Final = 1e9
 #: A command with more options than this has them in groups.
 MAX_UNGROUPED: Final = 8
 #: Two spaces, behind an empty tag: where all lines below the heading are indented alike, typer takes spaces away.
@@ -51,7 +52,7 @@ class Command(TyperCommand):
             self.params.sort(key=lambda each: _ORDER.index(getattr(each, "rich_help_panel", None) or ""))
         for parameter in self.params:
             if parameter.type.name.startswith("float"):
-                parameter.type = finite(parameter.type)
+                parameter.type = within_reach(parameter.type)
         self._grouped = len(options) > MAX_UNGROUPED
         self.help = with_lists(self.help or "")
 
@@ -73,14 +74,14 @@ class Command(TyperCommand):
         return option
 
 
-def finite(numbers: Any) -> Any:
-    """The same type of an option, without the infinities and NaN, which `float` reads too."""
+def within_reach(numbers: Any) -> Any:
+    """The same type of an option, without NaN and what nobody means, infinity first: `float` reads them too."""
     kind = copy(numbers)
 
     def convert(value: Any, param: Any, context: Any) -> Any:
         number = numbers.convert(value, param, context)
-        if not isfinite(number):
-            kind.fail(f"{value} is not a finite number.", param, context)
+        if not abs(number) <= FURTHEST:
+            kind.fail(f"{value} is not a number from -{FURTHEST:g} to {FURTHEST:g}.", param, context)
         return number
 
     kind.convert = convert

@@ -11,6 +11,7 @@ import typer
 from rich.table import Table
 
 from emulator.c28x.findings import Finding
+from emulator.seed import MAX_SEED
 from hil.cli import show
 from hil.client.plot import check_plot_file
 from hil.machine import Setup
@@ -116,7 +117,9 @@ def replay(
     ] = None,
     seed: Annotated[
         int | None,
-        typer.Option(min=0, help="The seed of the emulated robot (default: that of the log).", show_default=False),
+        typer.Option(
+            min=0, max=MAX_SEED, help="The seed of the emulated robot (default: that of the log).", show_default=False
+        ),
     ] = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="LOG", help="Write a log of the replay, for hil compare.")

@@ -34,7 +34,7 @@ def soak(
     for_s: Annotated[
         float, typer.Option("--for", metavar="SECONDS", min=1, max=1e6, help="Run this much virtual time.")
     ] = 600,
-    seed: Annotated[int, typer.Option(min=0, help="The seed of all random numbers.")] = 1,
+    seed: show.Seed = 1,
     world: Annotated[
         str, typer.Option(help="The robot's environment: corridor, room, box, paddock, or a TOML map.")
     ] = "paddock",

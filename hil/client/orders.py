@@ -12,6 +12,8 @@ from functools import reduce
 from operator import xor
 from typing import Final
 
+from hil.longest import LONGEST_S
+
 #: Words of the command line -> the four letters of the order.
 KEYWORDS: Final = {
     "stop": "STOP",
@@ -87,7 +89,10 @@ def parse_timed_order(text: str) -> TimedOrder:
     timed = _TIMED.fullmatch(text.strip())
     if timed is None:
         return TimedOrder(0.0, parse_order(text))
-    return TimedOrder(number(timed["time"], "the time of an order"), parse_order(timed["order"]))
+    time_s = number(timed["time"], "the time of an order")
+    if time_s > LONGEST_S:
+        raise ValueError(f"{text!r}: the time of an order must be at most {LONGEST_S:.0f} s")
+    return TimedOrder(time_s, parse_order(timed["order"]))
 
 
 def parse_words(words: list[str]) -> list[bytes]:

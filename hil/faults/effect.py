@@ -11,7 +11,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from math import inf
 from random import Random
 from typing import TYPE_CHECKING, Any, Final, Protocol, cast
 
@@ -20,6 +19,7 @@ from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.registers.cell import Cell
 from hil.faults.kinds import Fault
 from hil.faults.when import wait_for
+from hil.longest import LONGEST_S
 from hil.machine import Machine
 from hil.reports.excerpt import relative_path
 
@@ -248,7 +248,7 @@ class MountedFault:
 
     def _begin(self) -> None:
         self.phase = Phase.AT_WORK
-        if self.fault.lasts_s != inf:
+        if self.fault.lasts_s <= LONGEST_S:
             self._event = self.machine.clock.after(round(self.fault.lasts_s * SYSCLK_HZ), self._end)
         self._effect.begin()
 

@@ -8,6 +8,9 @@ from math import inf
 from random import Random
 from typing import TYPE_CHECKING, Any, Final
 
+from emulator.seed import MAX_SEED
+from hil.longest import LONGEST_S
+
 if TYPE_CHECKING:
     from hil.faults.effect import Effect
 
@@ -37,7 +40,7 @@ class FaultParameter:
             return "a text"
         if self.low == -inf and self.high == inf:
             return "any number"
-        return f"at least {self.low:g}" if self.high == inf else f"{self.low:g} to {self.high:g}"
+        return f"at least {self.low:g}" if self.high == inf else f"{self.low:.15g} to {self.high:.15g}"
 
     def read(self, value: Any) -> Value:
         """Convert a value of a text or a table.  Raises ValueError."""
@@ -60,7 +63,7 @@ class FaultParameter:
                     raise ValueError
             else:
                 number = float(value)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             kind = "a whole number" if self.type is int else "a number"
             raise ValueError(f"{self.name}: {value!r} must be {kind}") from None
         if not self.low <= number <= self.high:
@@ -93,13 +96,14 @@ class FaultParameter:
 
 #: The parameters that every fault has.
 AT: Final = FaultParameter(
-    "at", "s", "when it begins, after start-up; before 0: during start-up, if it is mounted by then", 0.0, -10.0
-)
+    "at", "s", "when it begins, after start-up; before 0: during start-up, if it is mounted by then", 0.0,
+    -10.0, LONGEST_S,
+)  # fmt: skip
 WHEN: Final = FaultParameter(
     "when", "", "what it waits for from `at` on: frame N, order NAME, finding RULE, pose x>MM", "", type=str
 )
 FOR: Final = FaultParameter("for", "s", "how long it lasts; inf: to the end", inf, 0.0)
-SEED: Final = FaultParameter("seed", "", "decides what is left to chance in it", 1, 0, type=int)
+SEED: Final = FaultParameter("seed", "", "decides what is left to chance in it", 1, 0, MAX_SEED, type=int)
 COMMON: Final = (AT, WHEN, FOR, SEED)
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from hil.faults.effect import FaultTarget
 
 SAMPLE_CYCLES: Final = 10 * CYCLES_PER_MS
-_POSE: Final = re.compile(r"(x|y|heading)\s*([<>])\s*(-?\d+(?:\.\d+)?)")
+_POSE: Final = re.compile(r"(x|y|heading)\s*([<>])\s*(-?\d{1,9}(?:\.\d+)?)")
 _WORDS: Final = "frame N, order NAME, finding RULE, pose x>MM (x, y in mm, heading in degrees; > or <)"
 _CARRIAGE_RETURN: Final = 0x0D
 
@@ -30,8 +30,8 @@ def check(text: str) -> None:
     what, _, rest = text.strip().partition(" ")
     rest = rest.strip()
     good = {
-        "": not rest, "frame": rest.isdecimal() and int(rest) > 0, "order": bool(re.fullmatch(r"[A-Za-z]{4}", rest)),
-        "finding": bool(rest), "pose": bool(_POSE.fullmatch(rest)),
+        "": not rest, "frame": bool(re.fullmatch(r"0*[1-9]\d{0,8}", rest)),
+        "order": bool(re.fullmatch(r"[A-Za-z]{4}", rest)), "finding": bool(rest), "pose": bool(_POSE.fullmatch(rest)),
     }  # fmt: skip
     if not good.get(what):
         raise ValueError(f"when: {text!r} is not one of {_WORDS}")

@@ -12,10 +12,10 @@ from bisect import bisect_right
 from collections import deque
 from collections.abc import Callable, Iterator
 from itertools import islice
-from math import isfinite
 from typing import Final
 
 from emulator.clock import CYCLES_PER_MS, NEVER, SYSCLK_HZ
+from hil.longest import LONGEST_S
 
 HOW: Final = ("hold", "linear")
 #: What cannot be asked when it likes, such as a switch, is moved along a curve in steps of this.
@@ -159,6 +159,6 @@ class GeneratedCourse(Course):
 
 def cycles_of(time_s: float) -> int:
     """Convert a time to cycles.  Raises ValueError for a text that is no time, or one beyond a year."""
-    if not (isfinite(time_s) and abs(time_s) < 3.2e7):
-        raise ValueError(f"time {time_s:g} s: must be a number of seconds, less than a year")
+    if not abs(time_s) <= LONGEST_S:
+        raise ValueError(f"time {time_s:g} s: must be a number of seconds, at most a year")
     return round(time_s * SYSCLK_HZ)

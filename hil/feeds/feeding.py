@@ -190,5 +190,5 @@ def _arrays(name: str, text: str) -> tuple[list[float], list[float]]:
     try:
         pairs = json.loads(text)
         return [float(time_s) for time_s, _ in pairs], [float(value) for _, value in pairs]
-    except (ValueError, TypeError, RecursionError):
+    except (ValueError, TypeError, OverflowError, RecursionError):
         raise ValueError(f"feed of {name}: expected [[SECONDS,VALUE],...], such as [[0,1.2],[1,2.4]]") from None

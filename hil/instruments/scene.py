@@ -15,16 +15,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import isfinite
 from typing import Any, Final
 
 
 def _numbers(value: Any, count: int) -> bool:
-    return isinstance(value, list) and len(value) == count and all(map(_number, value))
+    return isinstance(value, list) and len(value) == count and all(map(is_number, value))
 
 
-def _number(value: Any) -> bool:
-    return isinstance(value, int | float) and isfinite(value)
+def is_number(value: Any) -> bool:
+    """Whether it is a number that a length or an angle can have: none has 20 digits, or is infinite."""
+    return isinstance(value, int | float) and abs(value) < 2.0**64
 
 
 def _pose(value: Any) -> bool:
@@ -43,7 +43,7 @@ def _posts(value: Any) -> bool:
 
 
 def _ranges(value: Any) -> bool:
-    return isinstance(value, list) and len(value) == 3 and all(each is None or _number(each) for each in value)
+    return isinstance(value, list) and len(value) == 3 and all(each is None or is_number(each) for each in value)
 
 
 def _text(value: Any) -> bool:

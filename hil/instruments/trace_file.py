@@ -141,8 +141,9 @@ def _parsed(line: bytes, where: str) -> Any:
 
 def _event(found: Any, where: str) -> Event:
     match found:
-        case [int() as cycles, str() as channel, str() as name, value] if cycles >= 0 and _fits(channel, name, value):
-            return cycles, channel, name, value
+        case [int() as cycles, str() as channel, str() as name, value] if 0 <= cycles < 2**63:
+            if _fits(channel, name, value):
+                return cycles, channel, name, value
     raise ValueError(f"{where}: expected [cycle, channel, name, value] as in the reference of the trace file")
 
 
@@ -153,7 +154,7 @@ def _fits(channel: str, name: str, value: Any) -> bool:
         case "pins" | "serial" | "registers":
             return isinstance(value, int) and 0 <= value < 2**32
         case "adc" | "sensors" | "variables" | "faces":
-            return isinstance(value, int | float)
+            return isinstance(value, float) or scene.is_number(value)
         case "scene":
             return scene.fits(name, value)
         case "spi":
@@ -166,4 +167,4 @@ def _fits(channel: str, name: str, value: Any) -> bool:
 
 
 def _numbers(value: Any, count: int) -> bool:
-    return isinstance(value, list) and len(value) == count and all(isinstance(item, int | float) for item in value)
+    return isinstance(value, list) and len(value) == count and all(map(scene.is_number, value))

@@ -31,7 +31,7 @@ def setup_of(recording: Recording) -> Setup | None:
         return None
     try:
         data = json.loads(text)
-    except (json.JSONDecodeError, RecursionError):
+    except (ValueError, RecursionError):
         raise ValueError(f"{recording.name}: its setup is damaged") from None
     if not isinstance(data, dict):
         raise ValueError(f"{recording.name}: its setup is damaged")
@@ -44,7 +44,10 @@ def setup_of(recording: Recording) -> Setup | None:
         if type(plain) is not type(defaults[name]):
             raise ValueError(f"{recording.name}: in its setup, {name} is {json.dumps(value)}")
         values[name] = plain
-    return Setup(**values)
+    try:
+        return Setup.of(**values)
+    except ValueError as error:
+        raise ValueError(f"{recording.name}: in its setup, {error}") from None
 
 
 def orders_of(recording: Recording) -> list[TimedOrder]:

@@ -9,11 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import isfinite
 from typing import Any, Final
 
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.rules import RULES
+from emulator.seed import DIGITS, MAX_SEED
 from hil.client.orders import KEYWORDS
 from hil.faults import FAULTS
 
@@ -37,7 +37,7 @@ _END: Final = r"(?![\s\S])"
 #: An order: a word, four letters, a pair of speeds, or raw bytes.
 ORDER: Final = f"({_WORDS}|{_SETR}|#[ -~]{{0,78}})"
 TIMED_ORDER: Final = rf"^ *(([0-9]+(\.[0-9]*)?|\.[0-9]+):)? *{ORDER} *{_END}"
-FILL: Final = rf"^(zero|ones|nan|stack|trap|random:[0-9]+){_END}"
+FILL: Final = rf"^(zero|ones|nan|stack|trap|random:[0-9]{{1,{DIGITS}}}){_END}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +113,7 @@ KEYS: Final[tuple[Key, ...]] = (
               Key("slip_right", "number", "the same for the right wheel", "0", low=-0.5, high=0.9)),
     ),
     Key("realistic", "flag", "devices and wheels with noise, bounce, slip, loss", "true"),
-    Key("seed", "whole", "the seed of all random numbers", "1", low=0, high=2**31),
+    Key("seed", "whole", "the seed of all random numbers", "1", low=0, high=MAX_SEED),
     Key("fill", "text", "the content of uninitialised memory: zero, ones, nan, stack, trap, random:SEED", "zero",
         pattern=FILL, means="zero, ones, nan, stack, trap or random:SEED"),
     Key("divide", "text", "the result of a float division", "ieee", choices=("ieee", "nr")),
@@ -179,7 +179,7 @@ def _fault_keys() -> dict[str, tuple[Key, ...]]:
         kind.name: (
             Key("kind", "text", kind.sentence, choices=(kind.name,)),
             *(Key("for_s" if each.name == "for" else each.name, kinds[each.type], each.what, choices=each.choices,
-                  low=max(each.low, -LIMIT), high=min(each.high, 2**31 if each.type is int else LIMIT))
+                  low=max(each.low, -LIMIT), high=each.high if each.type is int else min(each.high, LIMIT))
               for each in kind.parameters),
         )
         for kind in FAULTS.values()
@@ -283,8 +283,8 @@ def _value(key: Key, value: Any, path: Path) -> None:
         if kind == "numbers" and len(numbers) != 2:
             raise wrong
         for number in numbers:
-            if not (isfinite(number) and key.low <= number <= key.high):
-                raise Problem(path, f"{number!r} must be from {key.low:g} to {key.high:g}")
+            if not key.low <= number <= key.high:
+                raise Problem(path, f"{number!r} must be from {key.low:.15g} to {key.high:.15g}")
 
 
 def _fault(table: Mapping[str, Any], path: Path) -> None:

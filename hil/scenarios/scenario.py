@@ -193,7 +193,9 @@ def _from_table(table: Mapping[str, Any], path: Path) -> Scenario:
             setup[key] = tuple(value)
         elif key in ("firmware", "include"):
             setup[key] = tuple(str(path.parent / text) for text in value)
-        elif key in ("orders", "defects", "faithful_fails"):
+        elif key == "orders":
+            scenario[key] = _orders(value)
+        elif key in ("defects", "faithful_fails"):
             scenario[key] = tuple(value)
         elif key == "faults":
             setup[key] = _faults(value)
@@ -229,6 +231,15 @@ def _from_table(table: Mapping[str, Any], path: Path) -> Scenario:
     made = Scenario(setup=Setup(**setup), expectations=tuple(expectations), **scenario)
     _check_setup(made)
     return made
+
+
+def _orders(value: list[str]) -> tuple[str, ...]:
+    for index, text in enumerate(value):
+        try:
+            parse_timed_order(text)
+        except ValueError as error:
+            raise Problem(("orders", index), str(error)) from None
+    return tuple(value)
 
 
 def _faults(value: list[Any]) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from typing import Any, Final, Literal
 
 import pytest
 
+from emulator.seed import check_seed, parse_seed
 from hil.testing.stash import TAKEN_MARKERS
 
 #: The functions of a user's modules that tests may call: all but those whose names begin with an underscore.  Those
@@ -95,11 +96,11 @@ def fills(item: pytest.Item) -> list[str]:
 def seed(item: pytest.Item) -> int:
     """The seed of a test.  Raises ValueError."""
     args = marked(item, "seed")
-    text = args[0] if args else item.config.getoption("hil_seed") or item.config.getini("hil_seed") or SEED
-    try:
-        return int(text)
-    except ValueError:
-        raise ValueError(f"seed {text!r}: must be a whole number") from None
+    given = args[0] if args else item.config.getoption("hil_seed") or item.config.getini("hil_seed") or SEED
+    if not isinstance(given, int):
+        return parse_seed(str(given))
+    check_seed(given)
+    return given
 
 
 def float_division(item: pytest.Item) -> str:

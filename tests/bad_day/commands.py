@@ -29,10 +29,11 @@ FILES = (
     "folder", "loop", "fifo", "huge", "empty", "binary", "nested.toml", "nested.json", "nested.c", "nested.py",
     "missing/deep", "/dev/zero", "/dev/full", "zero.toml", "zero.c", "/proc/self/mem", "nested.scenario.toml",
 )  # fmt: skip
-FLOATS = ("inf", "nan", "-inf", "-1", "1e400", "9" * 400, "x", "", "0x10")
+FLOATS = ("inf", "nan", "-inf", "-1", "1e303", "1e400", "9" * 400, "x", "", "0x10")
 INTS = ("9" * 400, "-1", "1.5", "x", "", "nan")
-TEXTS = ("[" * 5000, "9" * 400 + ":mission", "\x01", "=", "..", "huge", "/dev/zero", "zero.toml", "loop", "fifo",
-         "folder")  # fmt: skip
+TEXTS = ("[" * 5000, "9" * 400 + ":mission", "9" * 301 + ":bumper.pressed=1", "random:" + "9" * 400,
+         "adc-bit-stuck:input=A5,at=1e303", "adc-bit-stuck:input=A5,for=1e303", "\x01", "=", "..", "huge",
+         "/dev/zero", "zero.toml", "loop", "fifo", "folder")  # fmt: skip
 
 #: What keeps a value that can be meant from running for long, and what must be given besides.
 SHORT = {
@@ -59,6 +60,8 @@ class Case(NamedTuple):
     command: str
     base: tuple[str, ...]
     given: tuple[str, ...]
+    #: Whether one of them is nothing that any option of its kind takes.
+    refused: bool = False
 
     @property
     def arguments(self) -> tuple[str, ...]:
@@ -93,7 +96,7 @@ def _cases() -> Iterator[Case]:
         for value in values[kind]:
             # An argument stands in the place of those that must be given.
             kept = base if option else tuple(each for each in base if command not in ("new", "conformance", "diff"))
-            yield Case(command, kept, (option, value) if option else (value,))
+            yield Case(command, kept, (option, value) if option else (value,), kind is int)
 
 
 CASES = tuple(_cases())
@@ -124,7 +127,7 @@ def chosen(seed: int) -> Case:
     rng = random.Random(f"two {seed}")
     first = rng.choice(CASES)
     second = rng.choice([case for case in CASES if case.command == first.command])
-    return first._replace(given=(*first.given, *second.given))
+    return first._replace(given=(*first.given, *second.given), refused=first.refused or second.refused)
 
 
 def case(seed: int) -> str:
@@ -133,15 +136,17 @@ def case(seed: int) -> str:
     given = chosen(seed)
     long = given.command in LONG or "--scenario" in given.given
     outcome = forked(lambda: invoke(list(given.arguments)), LONG_S if long else TIMEOUT_S)
-    found = wrong(outcome, long=long)
+    found = wrong(outcome, long=long, refused=given.refused)
     return f"{short(given.arguments)}: {', '.join(found)}: {outcome.error[-300:]}" if found else ""
 
 
-def wrong(outcome: Outcome, *, long: bool = False) -> list[str]:
+def wrong(outcome: Outcome, *, long: bool = False, refused: bool = False) -> list[str]:
     """What of it no user should see."""
     lines = outcome.error.splitlines()
     found = [f"ended by signal {-outcome.status}"] if outcome.status < 0 else []
-    if long and outcome.status == -signal.SIGALRM:
+    if refused and outcome.status != 2:
+        found.append("taken")
+    elif long and outcome.status == -signal.SIGALRM:
         found = []  # the value was taken, and what it does takes long
     elif outcome.status not in (0, 1, 2):
         found.append(f"status {outcome.status}")

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import time
 from collections.abc import Callable, Iterator
@@ -54,6 +55,14 @@ def test_the_walk_meets_all_that_the_commands_take() -> None:
     assert named <= walked
     assert len({case.command for case in commands.CASES}) >= 25
     assert {commands.chosen(seed) for seed in range(len(commands.CASES))} == set(commands.CASES)
+
+
+def test_no_option_takes_a_whole_number_of_hundreds_of_digits(capsys: pytest.CaptureFixture[str]) -> None:
+    numbers = [(command, option) for command, _, kind, option in commands.parameters() if kind is int]
+    assert ("run", "--seed") in numbers
+    for command, option in numbers:
+        assert hil.cli.invoke([command, option, "9" * 400]) == 2
+        assert re.search(rf"'{option}': 99\S+ is not in the range \d+<=x<=\d+", capsys.readouterr().err), option
 
 
 def test_each_option_that_writes_is_tried_on_a_bad_disk() -> None:

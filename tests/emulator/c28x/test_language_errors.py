@@ -137,10 +137,16 @@ def test_an_extern_that_nothing_implements_is_named() -> None:
         Workshop("@extern\ndef missing(a: int16) -> int16: ...\ndef f() -> int16:\n    return missing(1)\n")
 
 
-@pytest.mark.parametrize("fill", ["zeros", "random:x", "stack:1", ""])
+@pytest.mark.parametrize("fill", ["zeros", "stack:1", ""])
 def test_an_unknown_fill_is_refused(fill: str) -> None:
     with pytest.raises(ValueError, match="unknown fill policy"):
         Workshop("", fill=fill)
+
+
+@pytest.mark.parametrize("seed", ["x", "", "-1", "1.5", "9" * 400])
+def test_a_fill_has_a_seed_like_any_other(seed: str) -> None:
+    with pytest.raises(ValueError, match="fill random:SEED: expected a whole number from 0 to 999999999999999"):
+        Workshop("", fill=f"random:{seed}")
 
 
 def test_a_traceback_shows_the_firmware_line() -> None:

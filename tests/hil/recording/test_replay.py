@@ -111,6 +111,8 @@ def test_orders_keep_their_cycle(cycles: list[int]) -> None:
         ("[1]", "damaged"),
         ('{"seed": "1"}', 'seed is "1"'),
         ('{"seed": true}', "seed is true"),
+        (f'{{"seed": {"9" * 400}}}', "x.log: in its setup, seed: expected a whole number from 0 to 999999999999999"),
+        (f'{{"seed": {"9" * 5000}}}', "x.log: its setup is damaged"),
         ('{"colour": 1}', "'colour', which this version does not know"),
     ],
 )

@@ -199,7 +199,8 @@ def test_b(firmware):
     [
         ('expects("uninitialized")', "no rule 'uninitialized': did you mean uninitialised*"),
         ('fill("ones", "nine")', "unknown fill policy 'nine': one of zero*"),
-        ('seed("x")', "seed 'x': must be a whole number"),
+        ('seed("x")', "seed: expected a whole number from 0 to 999999999999999"),
+        ("seed(10**5000)", "seed: expected a whole number from 0 to 999999999999999"),
         ('float_division("slow")', "float division 'slow': one of calibrated, tmu, fast, standard"),
         ('call_limit("x")', "hil_call_limit 'x': must be a number of seconds above 0"),
         ("call_limit(-1)", "hil_call_limit -1: must be a number of seconds above 0"),
