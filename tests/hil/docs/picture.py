@@ -1,4 +1,4 @@
-"""A picture of the tutorial: ``python -m tests.hil.docs.picture tutorial-red.png`` (``-new``, ``-mended``, ``-board``)."""
+"""A picture of the tutorial: ``python -m tests.hil.docs.picture tutorial-red.png`` (or ``-new``, ``-mended``, ...)."""
 
 from __future__ import annotations
 
