@@ -60,7 +60,9 @@ def build(
         if why:
             _why(json_output=json_output)
         elif wheel is not None:
-            print(builder.wheel(wheel))
+            with show.busy("making the wheel"):
+                made = builder.wheel(wheel)
+            print(made)
         elif clean:
             print("removed" if builder.clean() else "there was no compiled build")
         else:
@@ -76,7 +78,8 @@ def _why(*, json_output: bool) -> None:
     from firmware_model.image import link
     from hil.robot.board import RobotBoard
 
-    stays = builder.interpreted(link(RobotBoard()).linked.program.modules.values())
+    with show.busy("linking the firmware", quiet=json_output):
+        stays = builder.interpreted(link(RobotBoard()).linked.program.modules.values())
     compiled = len([name for source in builder.listed() for name in builder.functions_of(ROOT / source)])
     if json_output:
         show.print_json({"compiled": compiled, "interpreted": [asdict(each) for each in stays]})

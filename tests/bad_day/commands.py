@@ -50,6 +50,8 @@ SHORT = {
 }  # fmt: skip
 #: Commands that serve, or compute for minutes, whatever they are given: what they refuse, they refuse at once.
 LONG = {"demo", "console", "tune", "blind-spots", "compare-filters", "calibrate", "audit", "campaign", "soak"}
+#: Options with which others do.
+LONG_OPTIONS = {"--scenario", "--site"}
 #: Real time that they get.
 LONG_S = 4.0
 
@@ -134,7 +136,7 @@ def case(seed: int) -> str:
     """A command line in a child of its own."""
     lay_out()
     given = chosen(seed)
-    long = given.command in LONG or "--scenario" in given.given
+    long = given.command in LONG or not LONG_OPTIONS.isdisjoint(given.given)
     outcome = forked(lambda: invoke(list(given.arguments)), LONG_S if long else TIMEOUT_S)
     found = wrong(outcome, long=long, refused=given.refused)
     return f"{short(given.arguments)}: {', '.join(found)}: {outcome.error[-300:]}" if found else ""
