@@ -28,6 +28,8 @@ The detector uses the order of accesses, so the threads need not have met in thi
   `Hwi_disableInterrupt`, the enable bit of the peripheral);
 * equal priorities;
 * a hand-over by a semaphore, by `Swi_post`, or by a plain flag that is written after the data and read before them;
+* a flag that keeps the higher thread off, whoever sets it: that thread uses the data only while the flag has a certain
+  value, and the lower thread alone gives it this value again;
 * data that one thread initialises before the other starts;
 * `main` before `BIOS_start` or before the first interrupt.
 
@@ -36,9 +38,11 @@ integer needs no mask there: an index with one writer, a flag, a counter that `m
 steps and uses does need one, if `main` sets it together with another object that the routine uses in a decision.
 Some pairs rarely change within a run (hours and minutes). Then the source shows that the routine sets both and that
 `main` computes with both, or copies the whole structure and uses both. A copy for which a test of what the routine sets
-decides is not reported. A flag that `main` clears before it has copied what the flag stands for lets the routine write
-again too early, if the routine tests this flag. What `main` did before it started a transfer is ordered before the
-interrupt at its end.
+decides is not reported, nor is a loop that reads again until a counter of versions is the same before and after. Two
+threads that only time keeps apart (the routine sets a flag and does not wait; `main` copies before the next
+interrupt) are reported if the run shows that the time is too short. A flag that `main` clears before it has copied
+what the flag stands for lets the routine write again too early, if the routine tests this flag. What `main` did
+before it started a transfer is ordered before the interrupt at its end.
 
 Host tools see nothing: the host has none of these threads and locks.
 

@@ -7,30 +7,62 @@ excludes them (threads.py), and no semaphore, post or plain hand-over word order
 
 `conflicts` compares an access with earlier writes only.  A buffer that was handed over is written again after it was
 read.  Whether its reader has finished by then is a question of time, and the order of events does not answer it.
+
+A Swi or handler also keeps itself off: it uses a buffer only while a flag has a certain value, and the flag has another
+one now (`gates`).  Who gave it that value does not matter, but the thread of the lower level must know of it.
 """
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final, NamedTuple
 
 from emulator.sysbios.watch.statements import StatementNumber
 from emulator.sysbios.watch.threads import Protection, Thread, VectorClock, at_clock, excluded, joined
 
 
+class Flag(NamedTuple):
+    """A scalar that may tell a reader that other data is ready: path of its object, word in it, where its value is."""
+
+    path: str
+    word: int
+    data: list[Any]
+    number: int
+
+
 class LatestAccess:
     """The latest access with one thread, one direction (read or write) and one protection."""
 
-    __slots__ = ("clock", "protection", "statement", "thread", "time", "write")
+    __slots__ = ("clock", "gates", "protection", "statement", "thread", "time", "vc", "write")
 
     def __init__(
         self, thread: Thread, write: bool, protection: Protection, clock: int, statement: StatementNumber, time: int
     ) -> None:
+        #: The words that its run had read before it, with their values: only those that were the same each time.  And
+        #: the level of the thread that has given them these values.
+        self.gates: dict[SharedCell, tuple[Any, int]] = dict(thread.seen)
+        #: The vector clock of its thread at that time.
+        self.vc = thread.vc
         self.thread = thread
         self.write = write
         self.protection = protection
         self.clock = clock
         self.statement = statement
         self.time = time
+
+    def held_off(self, thread: Thread) -> list[Flag]:
+        """The flags that keep it off until `thread`, of a lower level or the same, or one below changes them."""
+        level = thread.level
+        if self.thread.level < level:
+            return []
+        return [
+            cell.flag for cell, (was, by) in self.gates.items()
+            if cell.flag is not None and by <= level and cell.closed(was, thread)
+        ]  # fmt: skip
+
+    def followed(self, thread: Thread, clock: int) -> bool:
+        """Whether it was ordered after what `thread`, of a higher level, had done at its `clock`."""
+        index = thread.index
+        return thread.level > self.thread.level and index < len(self.vc) and self.vc[index] >= clock
 
 
 NONE: Final[tuple[LatestAccess, ...]] = ()
@@ -40,15 +72,16 @@ class SharedCell:
     """A scalar, or another part that only one thread may use at a time."""
 
     __slots__ = (
-        "accesses", "changed", "handed", "hands_over", "last", "owner", "reader", "reader_statement", "writers",
-        "writes",
+        "accesses", "changed", "flag", "handed", "hands_over", "last", "owner", "reader", "reader_statement",
+        "writers", "writes",
     )  # fmt: skip
 
-    def __init__(self, owner: Thread, hands_over: bool = False) -> None:
+    def __init__(self, owner: Thread, flag: Flag | None = None) -> None:
         #: The only thread that has used it so far; None once there are two.
         self.owner: Thread | None = owner
-        #: Whether its value may tell a reader that other data is ready.
-        self.hands_over = hands_over
+        #: Whether its value may tell a reader that other data is ready; if so, what it is.
+        self.hands_over = flag is not None
+        self.flag = flag
         self.accesses: dict[tuple[Thread, bool, Protection], LatestAccess] = {}
         #: The latest of `accesses`, and the writes among them.
         self.last: LatestAccess | None = None
@@ -83,6 +116,18 @@ class SharedCell:
             and not excluded(other.thread, other.protection, thread, protection)
         )  # fmt: skip
 
+    def apart_by_time(self, reader: LatestAccess, thread: Thread) -> bool:
+        """Whether only time keeps a read and a write of `thread`, of a higher level, apart.
+
+        `thread` had told the reader before that it was done, and does not wait until the reader is.  If the time is too
+        short, `conflicts` shows it.
+        """
+        last = max((a.clock for a in self.writes if a.thread is thread), default=1)
+        return reader.followed(thread, last) and not any(
+            reader.thread in flag.writers and len(flag.writers) > 1
+            for a in self.writes if a.thread is thread for flag in a.gates
+        )  # fmt: skip
+
     def hand_over(self, thread: Thread, statement: StatementNumber, time: int) -> None:
         """A write of `thread` tells the readers of this word what it has done so far."""
         self.handed = (thread, thread.clock, thread.vc, thread.run)
@@ -102,6 +147,19 @@ class SharedCell:
         if not thread.knows(writer, clock):
             thread.vc = joined(thread.vc, at_clock(vc, writer.index, clock))
 
+    @property
+    def value(self) -> Any:
+        """The value of a scalar that hands over; None if it was never written."""
+        assert self.flag is not None
+        return self.flag.data[self.flag.number]
+
+    def closed(self, open_at: Any, thread: Thread) -> bool:
+        """Whether it has another value than `open_at`, and `thread` knows who has written it."""
+        if self.value == open_at or self.handed is None:
+            return False
+        writer, clock, _, _ = self.handed
+        return thread.knows(writer, clock)
+
     def cut(self, low: Thread, high: LatestAccess) -> StatementNumber | None:
         """The statement by which `low` read and wrote the cell, if `high` can interrupt it and write too; else None."""
         for protection, statement in self.changed.get(low, {}).items():
@@ -120,6 +178,13 @@ class SharedCell:
                 if write:
                     self.writes.append(known)
             self.last = known
+        if known.gates:
+            for cell, (was, by) in list(known.gates.items()):
+                value, last = thread.seen.get(cell, (None, by))
+                if value != was:
+                    del known.gates[cell]
+                elif last > by:
+                    known.gates[cell] = was, last
         # In `v[n++] = x` the step of the index and the access are one statement: their order is the compiler's.
         known.clock = thread.clock - (thread.stepped == (statement, time) and not self.hands_over)
-        known.statement, known.time = statement, time
+        known.statement, known.time, known.vc = statement, time, thread.vc

@@ -39,7 +39,8 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import bare, blocks, leaves, parts, roots, statements, within
+from emulator.c28x.tree_queries import assigned_variables, bare, blocks, leaves, parts, roots, statements, within
+from emulator.sysbios.watch.kept_off import rereads
 from emulator.sysbios.watch.ways import Ways, below, free_ways, interrupt_routines
 
 #: Operators that combine the values of both operands.
@@ -401,6 +402,10 @@ def _combined(f: Function, shared: set[str]) -> Iterator[frozenset[_Word]]:
     The body of a loop is left out if its test reads a shared object again: the loop checks what it has read.
     """
     given: dict[Variable, list[_Word | None]] = {}
+    for loop in statements(f.body):
+        if isinstance(loop, While) and rereads(loop):
+            for variable in assigned_variables(loop.body):
+                given.setdefault(variable, []).append(None)
     for s in statements(f.body):
         match s:
             case Assign(target=LValue(root=Variable() as root, indices=[]), value=value) if root.kind != "global":

@@ -23,11 +23,12 @@ from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.memory import Memory, Object
 from emulator.c28x.symbols import Module
 from emulator.clock import us
-from emulator.sysbios.watch.accesses import LatestAccess, SharedCell
+from emulator.sysbios.watch.accesses import NONE, Flag, LatestAccess, SharedCell
+from emulator.sysbios.watch.kept_off import Text, rereading_lines
 from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.pairs import HandOver, Pair, arrays_of_flags, continued, handed_over, pairs, turned_by_both
 from emulator.sysbios.watch.statements import Function, StatementLocator, StatementNumber
-from emulator.sysbios.watch.threads import HWI_LEVEL, Gate, Routine, Thread, ThreadWatch, excluded
+from emulator.sysbios.watch.threads import HWI_LEVEL, SWI_LEVEL, Gate, Routine, Thread, ThreadWatch, excluded
 
 _RANK: Final = {"race-word": 1, "unmasked-long": 1, "race-long": 2, "race": 3}
 #: When this many locals are kept, those of functions that have returned are dropped.
@@ -40,7 +41,7 @@ class SharedObject:
 
     __slots__ = (
         "apart", "beside", "cells", "conflicting", "findings", "hands_over", "joint", "known", "object", "pairs",
-        "per_element", "rank", "run", "under", "users", "written",
+        "per_element", "rank", "run", "under", "users", "written", "wrote",
     )  # fmt: skip
 
     def __init__(self, obj: Object, flags: bool = False) -> None:
@@ -56,6 +57,8 @@ class SharedObject:
         #: From the source: words that belong together; by routine and pair, those that `main` has read unprotected.
         self.pairs: list[Pair] | None = None
         self.apart: dict[tuple[Thread, Pair], set[int]] = {}
+        #: If it has pairs: the clock of each thread at its latest write.
+        self.wrote: dict[Thread, int] = {}
         #: Plain integers that such a run wrote too.  One of them may tell `main` whether the words are complete.
         self.beside: set[Object] = set()
         self.findings: dict[str, Finding] = {}
@@ -70,10 +73,12 @@ class SharedObject:
         self.known: set[tuple[StatementNumber, Thread, frozenset[Gate]]] = set()
         self.written = False
 
-    def may_hand_over(self, offset: int) -> bool:
-        """Whether the scalar at word `offset` may tell a reader that other data is ready."""
+    def flag(self, offset: int) -> Flag | None:
+        """The scalar at word `offset`, if its value may tell a reader that other data is ready."""
         leaf = self.object.leaf(offset) if self.hands_over else None
-        return leaf is not None and not isinstance(leaf[1], FloatType)
+        if leaf is None or isinstance(leaf[1], FloatType):
+            return None
+        return Flag(self.object.declaration.path, offset, self.object.data, leaf[0])
 
 
 def _stride(ctype: CType) -> int:
@@ -100,6 +105,10 @@ class Races:
         self._handed: dict[str, set[HandOver]] = {}
         #: Early hand-over -> the words that `main` still uses while the routine may use them too.
         self._late: dict[HandOver, set[tuple[Object, int]]] = {}
+        #: What keeps `main` and a routine apart without a mask: see kept_off.py.
+        self._text = Text(())
+        self._rereading: frozenset[tuple[str, int]] = frozenset()
+        self._of_path: dict[str, SharedObject] = {}
         #: Arrays of flags, from the source; None: not read yet.
         self._flags: set[str] | None = None
         self._threads = threads
@@ -123,12 +132,17 @@ class Races:
         shared = self._objects.get(obj) or self._shared(obj)
         cell = shared.cells.get(offset)
         if cell is None:
-            cell = shared.cells[offset] = SharedCell(thread, shared.may_hand_over(offset))
+            cell = shared.cells[offset] = SharedCell(thread, shared.flag(offset))
+        if not write and cell.hands_over and thread.level >= SWI_LEVEL:
+            thread.seen[cell] = cell.value, (-1 if cell.handed is None else cell.handed[0].level)
+        if shared.pairs is not None:
+            if write:
+                shared.wrote[thread] = thread.clock
+            elif thread is threads.main:
+                self._read_together(shared, offset)
         if cell.owner is not thread:
             cell.owner = None
             self._shared_touch(shared, cell, offset, write, thread)
-        if shared.pairs is not None and not write and thread is threads.main:
-            self._read_together(shared, offset)
         if cell.owner is not thread:
             return
         if write:
@@ -147,14 +161,19 @@ class Races:
         position = self._position
         statement = position.at or position.innermost()
         protection = self._threads.protection()
-        conflicts = cell.conflicts(thread, protection)
+        conflicts, by_time = cell.conflicts(thread, protection), NONE
         if write and self._threads.routines:
             self._joint(shared, offset)
-            conflicts += cell.unfinished(thread, protection)
-        if conflicts:
+            unfinished = cell.unfinished(thread, protection)
+            by_time = tuple(other for other in unfinished if cell.apart_by_time(other, thread))
+            conflicts += tuple(other for other in unfinished if other not in by_time)
+        if conflicts or by_time:
             access = LatestAccess(thread, write, protection, thread.clock, statement, self._clock.now)
             for other in conflicts:
-                self._conflict(shared, cell, offset, other, access)
+                if not self._held_off(shared, other, thread) and not self._reread(other, access):
+                    self._conflict(shared, cell, offset, other, access)
+            for other in by_time:
+                self._alone(shared, offset, other, access)
         cell.keep(thread, write, protection, statement, self._clock.now)
         if write:
             if cell.reader is thread and (cell.reader_statement == statement or self._locator.takes(statement)):
@@ -170,6 +189,22 @@ class Races:
             cell.reader, cell.reader_statement = thread, statement
         if protection.gates:
             self._gates(shared, protection.gates, thread, statement)
+
+    def _held_off(self, shared: SharedObject, other: LatestAccess, thread: Thread) -> bool:
+        """Whether a flag keeps an access of a higher level off, as far as the source does not say that it does not."""
+        path, what = shared.object.declaration.path, other.thread.what
+        routine = what.name if isinstance(what, Routine) else ""
+        return any(
+            not self._text.denies(routine, path, other.write, (flag.path, flag.word)) for flag in other.held_off(thread)
+        )
+
+    def _reread(self, *accesses: LatestAccess) -> bool:
+        """Whether one of the accesses is a read that its loop repeats if the object has changed."""
+        for access in accesses if self._rereading else ():
+            place = self._locator.place(access.statement)
+            if not access.write and place is not None and (place.file, place.line) in self._rereading:
+                return True
+        return False
 
     def _turned_by(self, routines: Collection[str], shared: SharedObject, statement: StatementNumber) -> None:
         """`main` moves an index of a ring buffer.  The source shows that a routine moves it too, when the ring is full.
@@ -209,13 +244,35 @@ class Races:
                 if not isinstance(routine.what, Routine) or routine.what.name not in pair.routines:
                     continue
                 read = shared.apart.setdefault((routine, pair), set())
-                if excluded(threads.main, threads.protection(), routine, routine.protection):
+                apart = excluded(threads.main, threads.protection(), routine, routine.protection)
+                if apart or self._kept_off(shared, routine.what.name):
                     read.clear()
-                    continue
-                read.add(offset)
+                elif read or not self._told_before(shared, routine, routine.what.name):
+                    read.add(offset)
                 if len(read) > 1:
                     self._by_text(shared, statement, self._sentence(shared, "race", False, threads.main, routine, None))
                     return
+
+    def _kept_off(self, shared: SharedObject, routine: str) -> bool:
+        """Whether a flag keeps a routine from writing an object until `main` changes the flag, and `main` knows it."""
+        main = self._threads.main
+        for condition in self._text.writing(routine, shared.object.declaration.path):
+            flag = self._of_path.get(condition.path)
+            cell = None if flag is None else flag.cells.get(condition.word)
+            if cell is None or not cell.hands_over or condition.true_of(cell.value):
+                continue
+            if cell.handed is None or main.knows(cell.handed[0], cell.handed[1]):
+                return True
+        return False
+
+    def _told_before(self, shared: SharedObject, thread: Thread, routine: str) -> bool:
+        """Whether a routine that does not wait for `main` has told `main` that the object is complete.
+
+        Then only time keeps the two apart.  If that fails, a conflict shows it.
+        """
+        conditions = self._text.writing(routine, shared.object.declaration.path)
+        known = shared.wrote.get(thread, thread.run[0])
+        return self._threads.main.knows(thread, known) and not any(condition.answered for condition in conditions)
 
     def _reads(self, pair: Pair, statement: StatementNumber) -> bool:
         """Whether a statement is one that uses the words of a pair together."""
@@ -236,9 +293,10 @@ class Races:
             if self._pairs is None:  # Read late, because most images do not need it.
                 self._pairs, self._continued = pairs(self._modules), continued(self._modules)
                 self._turned, self._handed = turned_by_both(self._modules), handed_over(self._modules)
+                self._text, self._rereading = Text(self._modules), rereading_lines(self._modules)
             shared.pairs = self._pairs.get(obj.declaration.path)
         if not obj.declaration.function:
-            self._objects[obj] = shared
+            self._objects[obj] = self._of_path[obj.declaration.path] = shared
             return shared
         if len(self._locals) >= _LOCALS_KEPT:
             live = set(self._memory.live_locals)
@@ -303,6 +361,15 @@ class Races:
         elif early and not lost:
             said += f", because {early} is handed over before that"
         self._report(shared, rule, said, other, at)
+
+    def _alone(self, shared: SharedObject, offset: int, other: LatestAccess, access: LatestAccess) -> None:
+        """A read that only time keeps apart from a write: a 32-bit scalar by itself may be read in two halves."""
+        leaf = shared.object.leaf(offset)
+        if leaf is None or leaf[1].words == 1 or shared.rank >= _RANK["unmasked-long"]:
+            return
+        shared.rank = _RANK["unmasked-long"]
+        said = self._sentence(shared, "unmasked-long", False, other.thread, access.thread, other)
+        self._report(shared, "unmasked-long", said, access, other.statement)
 
     def _check_continued(self, shared: SharedObject, lower: LatestAccess, higher: LatestAccess) -> bool:
         """Whether `main` sets a count or index that a routine changes and depends on together with other objects."""

@@ -76,8 +76,8 @@ class Thread:
     """A task, Swi, Hwi, Clock object or routine (`what`), or `main`."""
 
     __slots__ = (
-        "clock", "cpu", "entered", "index", "is_task", "left", "level", "name", "protection", "run", "stepped", "taken",
-        "vc", "what",
+        "clock", "cpu", "entered", "index", "is_task", "left", "level", "name", "protection", "run", "seen", "stepped",
+        "taken", "vc", "what",
     )  # fmt: skip
 
     def __init__(
@@ -94,6 +94,8 @@ class Thread:
         self.vc = (*vc, *(0,) * (index - len(vc)), 1)
         #: The clock up to which its present run has come, or its latest one: a Swi or handler runs many times.
         self.run = [1]
+        #: The words that may tell it something, with the values that its present run has read (not a task's).
+        self.seen: dict[Any, Any] = {}
         #: The statement that has last told others something through a plain word, and when it did.
         self.stepped: tuple[int, int] = (0, 0)
         #: What protected it at the last call of `ThreadWatch.protection`.
@@ -124,6 +126,7 @@ class Thread:
         """A run of a Swi or handler begins."""
         self.clock += 1
         self.run = [self.clock]
+        self.seen.clear()
 
     def known(self) -> VectorClock:
         """Its vector clock now, including its own component."""

@@ -125,6 +125,50 @@ def main() -> void:
     BIOS_start()
 """
 
+#: A Swi fills while `full` is 0; another one sets it, and has not read what was filled; a task takes it and gives back.
+WINDOW = """
+words: array[int16, 8]
+at: int16 = 0
+full: int16 = 0
+total: int16 = 0
+quick: Swi_Handle
+slow: Swi_Handle
+
+def Quick() -> void:
+    {fill}
+        words[at & 7] = at
+        at = (at + 1) & 255
+
+def Slow() -> void:
+    if full == 0:
+        full = 1
+        Semaphore_post(semB)
+
+def sample() -> void:
+    Swi_post(quick)
+
+def end() -> void:
+    Swi_post(slow)
+
+def Low(a0: UArg, a1: UArg) -> void:
+    i: int16
+    while 1:
+        Semaphore_pend(semB, BIOS_WAIT_FOREVER)
+        {before}
+        for i in range(8):
+            total = (total + words[i]) & 255
+        {after}
+
+def main() -> void:
+    objects()
+    quick = swi(Quick, 5)
+    slow = swi(Slow, 2)
+    task(Low, 2)
+    every(sample, 1, 1)
+    every(end, 5, 5)
+    BIOS_start()
+"""
+
 PAIRS = {
     "structure": (
         "race", two_tasks(PAIR, WRITE, READ), two_tasks(PAIR, UNDER.format(WRITE), UNDER.format(READ)),
@@ -330,3 +374,16 @@ def clear() -> void:
     assert finding.place.function == "clear"
     assert wrong.rules() == {"wrong-gate"}
     assert found(two_tasks(monitor.format("gate", "gate"), "put()", "x = get()\nclear()")) == set()
+
+
+@pytest.mark.parametrize(
+    ("fill", "before", "after", "rules"),
+    [
+        ("if full == 0:", "pass", "full = 0", set()),
+        # It is given back before the words are taken; the flag keeps nobody off.
+        ("if full == 0:", "full = 0", "pass", {"race"}),
+        ("if full < 9:", "Task_sleep(2)", "full = 0", {"race"}),
+    ],
+)
+def test_a_flag_that_another_thread_sets_hands_over_too(fill: str, before: str, after: str, rules: set[str]) -> None:
+    assert found(WINDOW.format(fill=fill, before=before, after=after)) - {"race-word"} == rules

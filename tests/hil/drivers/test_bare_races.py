@@ -110,6 +110,16 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
          "static Uint16 turns; if (++turns >= 3) { turns = 0; Seen = Now; }", [("race", "Now")]),
         ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; Ready = 1; }",
          "if (Ready) { Ready = 0; Sum++; } Seen = Now;", [("race", "Now")]),  # the flag stands for something else
+        # Time alone keeps the two apart, and it fails: the routine writes again while main still copies.
+        ("Uint16 i; for (i = 0; i < 8; i++) Words[i] = Count; Ready = 1;",
+         "Uint16 i; if (Ready) { Ready = 0; for (i = 0; i < 8; i++) { DELAY_US(9); Sum += Words[i]; } }",
+         [("race", "Words")]),
+        # The flag is another one than that which keeps the routine off; it comes too late; the routine opens it itself.
+        ("Uint16 i; if (!Ready) for (i = 0; i < 8; i++) Words[i] = Count;",
+         "Uint16 i; Waiting = 1; for (i = 0; i < 8; i++) Sum += Words[i]; Waiting = 0;", [("race", "Words")]),
+        ("if (!Ready && ++Count == 9999) { Now.minutes++; Now.hours++; }",
+         "Sum = Now.hours * 60; Ready = 1; Sum = Now.hours + Now.minutes; Ready = 0; Sum = Now.hours + Now.minutes;",
+         [("race", "Now")]),
         ("Millis++;", "Copy = Millis;", [("unmasked-long", "Millis")]),
         # By halves, in two accesses.
         ("Millis++;", "volatile Uint16 *half = (volatile Uint16 *)&Millis; Copy = half[0] | (Uint32)half[1] << 16;",
@@ -203,6 +213,32 @@ def test_what_an_interrupt_can_come_into_is_told(
          "if (Ready) { Sum = Count + Waiting; Ready = 0; } Words[0] = Count;"),
         ("if (Ready) { Seen = Now; Ready = 0; }", "if (!Ready) { Now.hours++; Now.minutes++; Ready = 1; }"),
         ("Millis++;", "DINT; Copy = Millis; EINT;"),
+        # Words that are used together while a flag keeps the routine off: it is raised by the routine, or by main.
+        ("if (!Ready) { Now.minutes++; Now.hours++; Ready = 1; }",
+         "if (Ready) { Sum = Now.hours * 60 + Now.minutes; Ready = 0; }"),
+        ("if (Waiting && !Ready) { Now.minutes = Waiting; Now.hours++; Waiting = 0; Ready = 1; }",
+         "if (!Waiting) Waiting = 5; if (Ready) { Sum = Now.hours * 60 + Now.minutes; Ready = 0; }"),
+        ("if (!Ready && ++Count == 9999) { Now.minutes++; Now.hours++; }",
+         "Ready = 1; Sum = Now.hours * 60 + Now.minutes; Ready = 0;"),
+        ("if (Ready) { Count++; } else { Now.minutes++; Now.hours++; }",
+         "Ready = 1; Sum = Now.hours * 60 + Now.minutes; Ready = 0;"),
+        ("Uint16 i; if (!Ready) for (i = 0; i < 8; i++) Words[i] = Count;",
+         "Uint16 i; Ready = 1; for (i = 0; i < 8; i++) Sum += Words[i]; Ready = 0;"),
+        ("switch (Ready) { case 0: Now.minutes++; Now.hours++; Ready = 1; break; default: break; }",
+         "if (Ready == 1) { Sum = Now.hours * 60 + Now.minutes; Ready = 2; Sum += Now.minutes; Ready = 0; }"),
+        # The routine does not wait for main, which is quick enough; a half is played while the other one is filled.
+        ("Uint16 i; for (i = 0; i < 8; i++) Words[i] = Count; Ready = 1;",
+         "Uint16 i; if (Ready) { Ready = 0; for (i = 0; i < 8; i++) Sum += Words[i]; }"),
+        ("Now.minutes++; Now.hours++; Ready = 1;", "if (Ready) { Ready = 0; Sum = Now.hours * 60 + Now.minutes; }"),
+        ("Halves[Half][Head] = Count++; if (++Head == 4) { Head = 0; Half ^= 1; Ready = 1; }",
+         "Uint16 i; if (Ready) { Ready = 0; for (i = 0; i < 4; i++) Sum += Halves[Half ^ 1][i]; }"),
+        # Read again until nothing has come in between: the values are used behind the loop.
+        ("Count++; Now.minutes++; Now.hours++; Count++;",
+         "Uint16 n, h, m; do { n = Count; h = Now.hours; m = Now.minutes; } while (n != Count || (n & 1));"
+         " Sum = h * 60 + m;"),
+        ("Uint16 i; Count++; for (i = 0; i < 8; i++) Words[i] = Count;",
+         "Uint16 n, i; for (;;) { n = Count; for (i = 0; i < 8; i++) { DELAY_US(1); Halves[0][i & 3] = Words[i]; }"
+         " if (n == Count) break; }"),
         # A structure that is copied while the routine is held off; when a flag says so; until two copies are the same.
         ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; }", "DINT; Seen = Now; EINT;"),
         ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; Ready = 1; }",
@@ -227,6 +263,66 @@ def test_what_an_interrupt_can_come_into_is_told(
 )
 def test_what_is_kept_apart_is_told_nothing(routine: str, turn: str, tmp_path: Path) -> None:
     assert told(routine, turn, tmp_path) == []
+
+
+#: Timer 0 fills while Done is 0.  Timer 1 sets Done, and has not read what was filled.
+TWO_ROUTINES = """#include "F28x_Project.h"
+volatile Uint16 Words[8], Next, Done, Sum;
+__interrupt void Fill(void)
+{
+    FILL
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;
+}
+__interrupt void End(void)
+{
+    Done = 1;
+}
+void main(void)
+{
+    Uint16 i;
+    InitSysCtrl();
+    InitPieCtrl();
+    IER = 0;
+    IFR = 0;
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.TIMER0_INT = &Fill;
+    PieVectTable.TIMER1_INT = &End;
+    EDIS;
+    InitCpuTimers();
+    ConfigCpuTimer(&CpuTimer0, 200, 20);
+    ConfigCpuTimer(&CpuTimer1, 200, 330);
+    PieCtrlRegs.PIEIER1.bit.INTx7 = 1;
+    IER |= M_INT1 | M_INT13;
+    EINT;
+    StartCpuTimer0();
+    StartCpuTimer1();
+    for (;;) {
+        TAKE
+    }
+}
+"""
+TAKE = "if (Done) { for (i = 0; i < 8; i++) Sum += Words[i]; Done = 0; }"
+
+
+@pytest.mark.parametrize(
+    ("fill", "take", "races"),
+    [
+        ("if (!Done) Words[Next++ % 8] = Next;", TAKE, 0),
+        ("if (Done) { PieCtrlRegs.PIEACK.all = PIEACK_GROUP1; return; } Words[Next++ % 8] = Next;", TAKE, 0),
+        ("if (!Done) Sum += Words[Next++ % 8];", TAKE.replace("Sum += Words[i]", "Words[i] = i"), 0),
+        # Nothing keeps the routine off; main gives back too early, does not ask, or asks for nothing.
+        ("Words[Next++ % 8] = Next;", TAKE, 1),
+        ("if (!Done) Words[Next++ % 8] = Next;", "if (Done) { Done = 0; for (i = 0; i < 8; i++) Sum += Words[i]; }", 1),
+        ("if (!Done) Words[Next++ % 8] = Next;", "for (i = 0; i < 8; i++) Sum += Words[i]; if (Done) Done = 0;", 1),
+        ("if (Done) Sum++; Words[Next++ % 8] = Next;", TAKE, 1),
+    ],
+)
+def test_a_flag_that_another_routine_sets_hands_over_too(fill: str, take: str, races: int, tmp_path: Path) -> None:
+    file = tmp_path / "two.c"
+    file.write_text(TWO_ROUTINES.replace("FILL", fill).replace("TAKE", take), encoding="utf-8")
+    findings = check_files(DriverFiles([file], seconds=0.005)).findings
+    assert [f.rule for f in findings if f.rule.startswith("race")] == ["race"] * races
 
 
 def test_it_is_told_where_main_must_hold_the_interrupt_off(tmp_path: Path) -> None:

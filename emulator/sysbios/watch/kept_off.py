@@ -1,0 +1,301 @@
+"""What keeps an interrupt routine and `main` apart without a mask, found in the source of a program without the kernel.
+
+- A routine writes an object only while a flag has a certain value.  While it has another one, the object is `main`'s.
+- `main` reads an object in a loop that reads it again if a routine has been there: a counter of its versions is not
+  the same before and after.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, Final, NamedTuple
+
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    AddressOf,
+    Assign,
+    Break,
+    Call,
+    Compare,
+    Const,
+    CopyStruct,
+    Declare,
+    Expr,
+    Function,
+    If,
+    Load,
+    Logic,
+    LValue,
+    Not,
+    Return,
+    Stmt,
+    Switch,
+    Variable,
+    While,
+)
+from emulator.c28x.tree_queries import assigned_variables, bare, blocks, leaves, parts, roots, statements, within
+from emulator.sysbios.watch.ways import interrupt_routines
+
+
+class Condition(NamedTuple):
+    """A scalar at file scope (path of its object, word in it) is equal to a value, or it is not."""
+
+    path: str
+    word: int
+    equal: bool
+    value: Any
+    #: Whether an interrupt routine makes it false.  None makes it true: then it is left out.
+    answered: bool = False
+
+    def true_of(self, value: Any) -> bool:
+        """Whether it is true if the scalar has this value."""
+        return bool(value == self.value) is self.equal
+
+
+def opposite(condition: Condition) -> Condition:
+    """The condition that is true when this one is not."""
+    return condition._replace(equal=not condition.equal)
+
+
+#: The path of an object, and the offset of a word in it.
+_Place = tuple[str, int]
+_NOTHING: Final[frozenset[Condition]] = frozenset()
+#: Of a local: what is true if it is true, and what is if it is not.
+_Told = tuple[frozenset[Condition], frozenset[Condition]]
+_NO_LOCALS: Final[Mapping[Variable, _Told]] = {}
+
+
+def conditions(test: Expr, locals_: Mapping[Variable, _Told] = _NO_LOCALS) -> list[Condition]:
+    """What is true if a test is: the conditions of one scalar each that it joins by `and`."""
+    match bare(test):
+        case Logic(op="and", operands=operands):
+            return [condition for operand in operands for condition in conditions(operand, locals_)]
+        case Logic():
+            return []
+        case Not(operand=operand):
+            return failed(operand, locals_)
+        case Compare(op="==" | "!=" as op, left=left, right=right) if isinstance(constant := bare(right), Const):
+            if isinstance(loaded := bare(left), Load) and (place := _scalar(loaded.lvalue)) is not None:
+                return [Condition(*place, op == "==", constant.value)]
+        case Load(lvalue=lvalue) if (place := _scalar(lvalue)) is not None:
+            return [Condition(*place, False, 0)]
+        case Load(lvalue=LValue(root=Variable() as root, indices=[])) if root in locals_:
+            return list(locals_[root][0])
+    return []
+
+
+def failed(test: Expr, locals_: Mapping[Variable, _Told] = _NO_LOCALS) -> list[Condition]:
+    """What is true if a test is not."""
+    match bare(test):
+        case Logic(op="or", operands=operands):
+            return [condition for operand in operands for condition in failed(operand, locals_)]
+        case Logic():
+            return []
+        case Not(operand=operand):
+            return conditions(operand, locals_)
+        case Load(lvalue=LValue(root=Variable() as root, indices=[])) if root in locals_:
+            return list(locals_[root][1])
+    return [opposite(condition) for condition in conditions(test, locals_)]
+
+
+class Text:
+    """What the routines' text says: under which conditions each one uses an object."""
+
+    def __init__(self, modules: Iterable[Module]) -> None:
+        own = {f.path: f for module in modules for f in module.functions}
+        found: dict[tuple[str, str, bool], frozenset[Condition]] = {}
+        given: dict[_Place, set[Any]] = {}
+        self._elsewhere: set[tuple[str, str, int]] = set()
+        for routine, reached in interrupt_routines(own):
+            for path, write, now in _uses(routine, frozenset(), own, ()):
+                key = (routine.name, path, write)
+                found[key] = found.get(key, now) & now
+            for f in reached:
+                for place, value in _given(f):
+                    given.setdefault(place, set()).add(value)
+                self._elsewhere |= {(routine.name, *place) for place in _read_elsewhere(f)}
+        self._uses = {key: frozenset(_only_main_opens(now, given)) for key, now in found.items()}
+
+    def writing(self, routine: str, path: str) -> frozenset[Condition]:
+        """What is true whenever a routine writes the object, and only `main` makes true."""
+        return self._uses.get((routine, path, True), frozenset())
+
+    def denies(self, routine: str, path: str, write: bool, flag: _Place) -> bool:
+        """Whether a flag keeps the routine from no use of the object, though it reads the flag: it reads it in tests
+        only, and none of them decides on the use.
+        """
+        uses = self._uses.get((routine, path, write))
+        if uses is None or (routine, *flag) in self._elsewhere:
+            return False
+        return all((condition.path, condition.word) != flag for condition in uses)
+
+
+def _given(f: Function) -> Iterator[tuple[_Place, Any]]:
+    """The scalars at file scope that a function can change, each with the constant that it gets, or None."""
+    for s in statements(f.body):
+        match s:
+            case Assign(target=LValue() as target, value=value) if (place := _scalar(target)) is not None:
+                constant = bare(value)
+                yield place, constant.value if isinstance(constant, Const) else None
+    for p in within(f.body):
+        if isinstance(p, AddressOf) and (place := _scalar(p.lvalue)) is not None:
+            yield place, None
+
+
+def _only_main_opens(now: Iterable[Condition], given: dict[_Place, set[Any]]) -> Iterator[Condition]:
+    """Those conditions that no interrupt routine makes true."""
+    for condition in now:
+        values = given.get((condition.path, condition.word), set())
+        if not any(value is None or condition.true_of(value) for value in values):
+            yield condition._replace(answered=bool(values))
+
+
+def _uses(
+    f: Function, now: frozenset[Condition], own: dict[str, Function], callers: tuple[str, ...]
+) -> Iterator[tuple[str, bool, frozenset[Condition]]]:
+    """The objects that a function and those below it use, whether they may write them, and what is true then.
+
+    `now` is true at the call of the function.
+    """
+    for s, here in _under(f.body, now, {}):
+        inner = [p for root in roots(s) for p in parts(root)]
+        changed = s.target if isinstance(s, Assign | CopyStruct) else None
+        for p in inner:
+            match p:
+                case AddressOf(lvalue=LValue(root=Variable(kind="global") as root)):
+                    yield root.declaration.path, True, here
+                case LValue(root=Variable(kind="global") as root):
+                    yield root.declaration.path, p is changed, here
+        for called in {p.function.path for p in inner if isinstance(p, Call)}:
+            if called in own and called not in callers and called != f.path:
+                yield from _uses(own[called], here, own, (*callers, f.path))
+
+
+def _under(
+    body: list[Stmt], now: frozenset[Condition], known: dict[Variable, _Told]
+) -> Iterator[tuple[Stmt, frozenset[Condition]]]:
+    """The statements of a block, and of those in it, with what was true when the tests above them were evaluated.
+
+    `known`: what the values of locals say; kept up to date.
+    """
+    for s in body:
+        yield s, now
+        match s:
+            case Assign(target=LValue(root=Variable() as root, indices=[]), value=value) if root.kind != "global":
+                known[root] = frozenset(conditions(value, known)), frozenset(failed(value, known))
+            case Declare(variable=root, value=Expr() as value):
+                known[root] = frozenset(conditions(value, known)), frozenset(failed(value, known))
+            case If(test=test, then=then, otherwise=otherwise):
+                met, not_met = frozenset(conditions(test, known)), frozenset(failed(test, known))
+                inside, outside = dict(known), dict(known)
+                yield from _under(then, now | met, inside)
+                yield from _under(otherwise, now | not_met, outside)
+                if leaves(then):
+                    now = now | not_met
+                elif otherwise and leaves(otherwise):
+                    now = now | met
+                _joined(known, bare(test), then, inside, [] if otherwise else None)
+                _forget(known, otherwise)
+            case Switch(subject=subject, cases=cases):
+                place = _scalar(loaded.lvalue) if isinstance(loaded := bare(subject), Load) else None
+                for values, block in cases:
+                    here = now
+                    if place is not None and values is not None and len(values) == 1:
+                        here = now | {Condition(*place, True, values[0])}
+                    yield from _under(block, here, dict(known))
+                for _, block in cases:
+                    _forget(known, block)
+            case _:
+                for block in blocks(s):
+                    _forget(known, block)
+                for block in blocks(s):
+                    yield from _under(block, now, dict(known))
+
+
+def _joined(
+    known: dict[Variable, _Told], test: Expr, then: list[Stmt], inside: dict[Variable, _Told], otherwise: Any
+) -> None:
+    """Keep what locals say after an `if` whose block changes them.
+
+    `t = a; if (t) t = b;` is C's `t = a && b`, and `t = a; if (!t) t = b;` is its `t = a || b`.
+    """
+    negated = isinstance(test, Not)
+    tested = bare(test.operand) if isinstance(test, Not) else test
+    local = tested.lvalue.root if isinstance(tested, Load) and not tested.lvalue.indices else None
+    before = known.get(local) if isinstance(local, Variable) and otherwise is None else None
+    _forget(known, then)
+    if before is not None and isinstance(local, Variable) and local not in known and local in inside:
+        after = inside[local]
+        known[local] = (_NOTHING, before[1] | after[1]) if negated else (before[0] | after[0], _NOTHING)
+
+
+def _forget(known: dict[Variable, _Told], body: list[Stmt]) -> None:
+    """Forget what the locals say that a block changes."""
+    for variable in assigned_variables(body):
+        known.pop(variable, None)
+
+
+def _read_elsewhere(f: Function) -> Iterator[_Place]:
+    """The scalars at file scope that a function reads outside of the tests that `conditions` understands."""
+    known: dict[Variable, _Told] = {}
+    for s, _ in _under(f.body, _NOTHING, known):
+        understood: set[int] = set()
+        test = s.test if isinstance(s, If) else None
+        if test is not None and len(conditions(test) + failed(test)) >= sum(isinstance(p, Load) for p in parts(test)):
+            understood = {id(p) for p in parts(test)}
+        for root in roots(s):
+            for p in parts(root):
+                place = _scalar(p.lvalue) if isinstance(p, Load | AddressOf) and id(p) not in understood else None
+                if place is not None:
+                    yield place
+
+
+def _scalar(lvalue: LValue) -> _Place | None:
+    """The path and word of a scalar at file scope that an lvalue names."""
+    match lvalue:
+        case LValue(root=Variable(kind="global") as root, indices=[], words=words, ctype=ctype) if ctype.leaves == 1:
+            return root.declaration.path, words
+    return None
+
+
+def rereading_lines(modules: Iterable[Module]) -> frozenset[tuple[str, int]]:
+    """(file, line) of the statements in loops that read again what a routine has changed meanwhile."""
+    return frozenset(
+        (f.where.file, s.line)
+        for module in modules for f in module.functions
+        for loop in statements(f.body) if isinstance(loop, While) and rereads(loop)
+        for s in statements(loop.body)
+    )  # fmt: skip
+
+
+def rereads(loop: While) -> bool:
+    """Whether a loop ends only when a shared object still has the value that the loop has copied from it."""
+    copies: dict[Variable, set[_Place]] = {}
+    for s in statements(loop.body):
+        given: tuple[Variable, Expr] | None = None
+        match s:
+            case Assign(target=LValue(root=Variable() as root, indices=[]), value=value):
+                given = root, value
+            case Declare(variable=root, value=Expr() as value):
+                given = root, value
+        loaded = bare(given[1]) if given is not None else None
+        if given is not None and isinstance(loaded, Load) and (place := _scalar(loaded.lvalue)) is not None:
+            copies.setdefault(given[0], set()).add(place)
+    tests = [loop.test]
+    for s in statements(loop.body):
+        if isinstance(s, If) and any(isinstance(inner, Break | Return) for b in blocks(s) for inner in statements(b)):
+            tests.append(s.test)
+    return any(_again(p, copies) for test in tests for p in parts(test) if isinstance(p, Compare))
+
+
+def _again(test: Compare, copies: dict[Variable, set[_Place]]) -> bool:
+    """Whether a test compares an object with a copy of it, or two copies of it."""
+    if test.op not in ("==", "!="):
+        return False
+    sides: list[set[_Place]] = []
+    for side in (bare(test.left), bare(test.right)):
+        lvalue = side.lvalue if isinstance(side, Load) else None
+        root = lvalue.root if lvalue is not None else None
+        place = _scalar(lvalue) if lvalue is not None else None
+        sides.append({place} if place is not None else copies.get(root, set()) if isinstance(root, Variable) else set())
+    return bool(sides[0] & sides[1])
