@@ -72,8 +72,8 @@ class SharedCell:
     """A scalar, or another part that only one thread may use at a time."""
 
     __slots__ = (
-        "accesses", "changed", "flag", "handed", "hands_over", "last", "owner", "reader", "reader_statement",
-        "writers", "writes",
+        "accesses", "changed", "flag", "handed", "handed_at", "hands_over", "last", "owner", "reader",
+        "reader_statement", "writers", "writes",
     )  # fmt: skip
 
     def __init__(self, owner: Thread, flag: Flag | None = None) -> None:
@@ -93,6 +93,8 @@ class SharedCell:
         self.reader: Thread | None = None
         self.reader_statement: StatementNumber = 0
         self.handed: tuple[Thread, int, VectorClock, list[int]] | None = None
+        #: When that write was, in cycles.
+        self.handed_at = -1
 
     def conflicts(self, thread: Thread, protection: Protection) -> tuple[LatestAccess, ...]:
         """Writes of other threads that conflict with an access of `thread` under `protection`."""
@@ -130,7 +132,7 @@ class SharedCell:
 
     def hand_over(self, thread: Thread, statement: StatementNumber, time: int) -> None:
         """A write of `thread` tells the readers of this word what it has done so far."""
-        self.handed = (thread, thread.clock, thread.vc, thread.run)
+        self.handed, self.handed_at = (thread, thread.clock, thread.vc, thread.run), time
         thread.step()
         thread.stepped = (statement, time)
 

@@ -1,4 +1,4 @@
-"""Words that must be read or written together, found in the source of a program without the kernel.
+"""Words that must be read or written together, found in the source of a program without the kernel; double buffers.
 
 The source shows them even where a run does not: a carry from minutes to hours is rare.  There are five forms:
 
@@ -281,6 +281,66 @@ def handed_over(modules: Iterable[Module]) -> dict[str, set[HandOver]]:
                     for path in used & late:
                         found.setdefault(path, set()).add(HandOver(key[0], routine_name))
     return found
+
+
+def alternating(modules: Iterable[Module]) -> dict[str, set[str]]:
+    """Arrays whose parts a routine uses in turn (double buffers), by their paths: what selects the part.
+
+    Such an object is the first of several subscripts, a pointer to the array, or what a test of two arrays asks.  The
+    routine toggles it, or changes it only when something is complete.
+    """
+    own = {f.path: f for module in modules for f in module.functions}
+    chosen: dict[str, set[str]] = {}
+    for _, reached in interrupt_routines(own):
+        turned = set().union(*map(_turned_now_and_then, reached))
+        for f in reached if turned else ():
+            for path, selector in _selected(f.body):
+                if selector in turned:
+                    chosen.setdefault(path, set()).add(selector)
+    pointed = {selector for selectors in chosen.values() for selector in selectors}
+    for f in own.values() if pointed else ():
+        for s in statements(f.body):
+            if isinstance(s, Assign) and (pointer := _path(s.target)) is not None and pointer in pointed:
+                for p in parts(s.value):
+                    if isinstance(p, AddressOf) and (array := _path(p.lvalue)) is not None:
+                        chosen.setdefault(array, set()).add(pointer)
+    return chosen
+
+
+def _turned_now_and_then(f: Function) -> set[str]:
+    """The plain objects that a function toggles, or sets only in branches."""
+    always = [s for s in f.body if isinstance(s, Assign) and not _toggles(s)]
+    plain = [s for s in statements(f.body) if isinstance(s, Assign) and s.target.ctype.leaves == 1]
+    return _written(plain) - _written(always)
+
+
+def _toggles(s: Assign) -> bool:
+    """Whether a statement sets an object to the other one of two values: `x ^= 1`, `x = 1 - x`, `x = !x`."""
+    value = bare(s.value)
+    match value:
+        case Binary(op="^"):
+            return True
+        case Binary(op="-", left=left):
+            return isinstance(bare(left), Const)
+    return isinstance(value, Not)
+
+
+def _selected(body: list[Stmt]) -> Iterator[tuple[str, str]]:
+    """(path of an array, or of a pointer that statements go through; path of what selects it)."""
+    for s in statements(body):
+        targets = [s.target] if isinstance(s, Assign) else []
+        for lvalue in [*targets, *(p.lvalue for root in roots(s) for p in parts(root) if isinstance(p, Load))]:
+            match lvalue:
+                case LValue(root=Variable(kind="global") as root, indices=[Index(expr=first), _, *_]):
+                    if isinstance(row := bare(first), Load) and (selector := _path(row.lvalue)) is not None:
+                        yield root.declaration.path, selector
+                case LValue(root=Load(lvalue=pointed)) if (pointer := _path(pointed)) is not None:
+                    yield pointer, pointer
+        if isinstance(s, If):
+            asked = {path for p in parts(s.test) if isinstance(p, Load) and (path := _path(p.lvalue)) is not None}
+            if len(asked) == 1:
+                for path in _written(s.then) ^ _written(s.otherwise):
+                    yield path, min(asked)
 
 
 def _branches(body: list[Stmt]) -> Iterator[tuple[str, bool, list[Stmt]]]:

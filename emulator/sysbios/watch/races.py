@@ -26,7 +26,16 @@ from emulator.clock import us
 from emulator.sysbios.watch.accesses import NONE, Flag, LatestAccess, SharedCell
 from emulator.sysbios.watch.kept_off import Text, rereading_lines
 from emulator.sysbios.watch.names import HandleNames
-from emulator.sysbios.watch.pairs import HandOver, Pair, arrays_of_flags, continued, handed_over, pairs, turned_by_both
+from emulator.sysbios.watch.pairs import (
+    HandOver,
+    Pair,
+    alternating,
+    arrays_of_flags,
+    continued,
+    handed_over,
+    pairs,
+    turned_by_both,
+)
 from emulator.sysbios.watch.statements import Function, StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import HWI_LEVEL, SWI_LEVEL, Gate, Routine, Thread, ThreadWatch, excluded
 
@@ -103,6 +112,8 @@ class Races:
         self._continued: dict[str, set[tuple[str, str]]] = {}
         self._turned: dict[str, set[str]] = {}
         self._handed: dict[str, set[HandOver]] = {}
+        #: Double buffers, from the source: path -> the paths of what selects the part that a routine uses.
+        self._alternating: dict[str, set[str]] = {}
         #: Early hand-over -> the words that `main` still uses while the routine may use them too.
         self._late: dict[HandOver, set[tuple[Object, int]]] = {}
         #: What keeps `main` and a routine apart without a mask: see kept_off.py.
@@ -166,7 +177,11 @@ class Races:
             self._joint(shared, offset)
             unfinished = cell.unfinished(thread, protection)
             by_time = tuple(other for other in unfinished if cell.apart_by_time(other, thread))
+            if by_time and shared.object.declaration.path in self._alternating:
+                by_time = tuple(other for other in by_time if self._turned_since(shared, thread, other))
             conflicts += tuple(other for other in unfinished if other not in by_time)
+        if conflicts and shared.object.declaration.path in self._alternating:
+            conflicts = tuple(other for other in conflicts if not self._turned_since(shared, thread, other))
         if conflicts or by_time:
             access = LatestAccess(thread, write, protection, thread.clock, statement, self._clock.now)
             for other in conflicts:
@@ -189,6 +204,19 @@ class Races:
             cell.reader, cell.reader_statement = thread, statement
         if protection.gates:
             self._gates(shared, protection.gates, thread, statement)
+
+    def _turned_since(self, shared: SharedObject, thread: Thread, access: LatestAccess) -> bool:
+        """Whether `thread` has turned to another part of a double buffer since another thread used a word of it.
+
+        The other thread had the time until then.  If it was too slow, it goes on after the turn: with words that
+        nothing has handed over to it.
+        """
+        for path in self._alternating[shared.object.declaration.path]:
+            selector = self._of_path.get(path)
+            for cell in selector.cells.values() if selector is not None else ():
+                if cell.handed is not None and cell.handed[0] is thread and cell.handed_at > access.time:
+                    return True
+        return False
 
     def _held_off(self, shared: SharedObject, other: LatestAccess, thread: Thread) -> bool:
         """Whether a flag keeps an access of a higher level off, as far as the source does not say that it does not."""
@@ -293,6 +321,7 @@ class Races:
             if self._pairs is None:  # Read late, because most images do not need it.
                 self._pairs, self._continued = pairs(self._modules), continued(self._modules)
                 self._turned, self._handed = turned_by_both(self._modules), handed_over(self._modules)
+                self._alternating = alternating(self._modules)
                 self._text, self._rereading = Text(self._modules), rereading_lines(self._modules)
             shared.pairs = self._pairs.get(obj.declaration.path)
         if not obj.declaration.function:

@@ -14,7 +14,7 @@ struct TIME { Uint16 hours; Uint16 minutes; };
 volatile Uint16 Count, Waiting, Head, Tail, Ready, Flags, Bytes[8];
 volatile struct { Uint16 head; Uint16 tail; Uint16 words[8]; } Ring;
 volatile Uint32 Millis; volatile struct TIME Now; struct TIME Seen; Uint16 Words[8], Sum; Uint32 Copy;
-Uint16 Halves[2][4], Half; volatile Uint16 Full[2] = {1, 1};
+Uint16 Halves[2][4], Half; volatile Uint16 Full[2] = {1, 1}; Uint16 * volatile Fill = Halves[0];
 """
 
 MAIN = """
@@ -84,6 +84,17 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
         ("Sum += Halves[Half][Head]; if (++Head == 4) { Head = 0; Full[Half] = 0; Half ^= 1; }",
          "Uint16 h, i; for (h = 0; h < 2; h++) { for (i = 0; i < 4; i++) Halves[h][i] = i; Full[h] = 1; }",
          [("race", "Halves")]),
+        # Two halves: main uses the one that the routine uses too, or it is too slow.
+        ("Halves[Half][Head] = Count; if (++Head == 4) { Head = 0; Half ^= 1; Ready = 1; }",
+         "Uint16 i; if (Ready) { Ready = 0; for (i = 0; i < 4; i++) Sum += Halves[Half][i]; }", [("race", "Halves")]),
+        ("Fill[Head] = Count; if (++Head == 4) { Head = 0; Fill = Halves[Half ^= 1]; Ready = 1; }",
+         "Uint16 i; if (Ready) { Ready = 0; for (i = 0; i < 4; i++) Sum += Fill[i]; }", [("race", "Halves")]),
+        ("Halves[Half][Head] = Count; if (++Head == 4) { Head = 0; Half ^= 1; Ready = 1; }",
+         "Uint16 i, h; if (Ready) { Ready = 0; h = Half ^ 1;"
+         " for (i = 0; i < 4; i++) { Sum += Halves[h][i]; DELAY_US(120); } }",
+         [("race", "Halves")]),
+        ("Sum += Halves[Half][Head]; if (++Head == 4) { Head = 0; Half ^= 1; Ready = 1; }",
+         "Uint16 i; if (Ready) { Ready = 0; for (i = 0; i < 4; i++) Halves[Half][i] = i; }", [("race", "Halves")]),
         # An array of data hands nothing over.
         ("Uint16 i; for (i = 0; i < 8; i++) Words[i] = Count;", "Uint16 i; for (i = 0; i < 8; i++) Sum += Words[i];",
          [("race", "Words")]),
@@ -188,6 +199,19 @@ def test_what_an_interrupt_can_come_into_is_told(
             "Uint16 h, i; for (h = 0; h < 2; h++)"
             " if (!Full[h]) { for (i = 0; i < 4; i++) Halves[h][i] = i; Full[h] = 1; }",
         ),
+        # Two halves: main uses the one that the routine does not, by an index, by a pointer, by a test.
+        ("Halves[Half][Head] = Count; if (++Head == 4) { Head = 0; Half ^= 1; Ready = 1; }",
+         "Uint16 i; if (Ready) { Ready = 0; for (i = 0; i < 4; i++) Sum += Halves[Half ^ 1][i]; }"),
+        ("Halves[Half][Head] = Count; if (++Head == 4) { Head = 0; Waiting = Half; Half = 1 - Half; Ready = 1; }",
+         "Uint16 i; if (Ready) { Ready = 0; for (i = 0; i < 4; i++) Sum += Halves[Waiting][i]; }"),
+        ("Fill[Head] = Count; if (++Head == 4) { Head = 0; Fill = Halves[Half ^= 1]; Ready = 1; }",
+         "Uint16 i, *v; DINT; v = Fill == Halves[0] ? Halves[1] : Halves[0]; EINT; if (Ready) {"
+         " Ready = 0; for (i = 0; i < 4; i++) Sum += v[i]; }"),
+        ("if (Half) Words[Head] = Count; else Bytes[Head] = Count;"
+         " if (++Head == 4) { Head = 0; Half = !Half; Ready = 1; }",
+         "Uint16 i; if (Ready) { Ready = 0; for (i = 0; i < 4; i++) Sum += Half ? Bytes[i] : Words[i]; }"),
+        ("Sum += Halves[Half][Head]; if (++Head == 4) { Head = 0; Half ^= 1; Ready = 1; }",
+         "Uint16 i; if (Ready) { Ready = 0; for (i = 0; i < 4; i++) Halves[Half ^ 1][i] = i; }"),
         # A buffer that a flag hands over and back.
         (
             "if (Ready) { Uint16 i; for (i = 0; i < 8; i++) Sum += Words[i]; Ready = 0; }",
