@@ -68,15 +68,16 @@ def record(
         stack.callback(console.close)
         wire = stack.enter_context(new_log(output, header_at(port)))
         show.print_line(f"port: {console.address}", to_stderr=json_output)
-        tap = Tap(robot, console, wire=wire)
-        stop.ends(tap.stop)
         lost: PortError | None = None
-        try:
-            tap.run(for_s)
-        except PortError as reason:  # a robot was switched off, an adapter unplugged: what came until then is told
-            lost = reason
-        finally:
-            wire.end(tap.elapsed_ns)
+        with show.busy("recording", quiet=json_output) as told:
+            tap = Tap(robot, console, wire=wire, tick=lambda tap: told(f"recording: {_counts(tap)}"))
+            stop.ends(tap.stop)
+            try:
+                tap.run(for_s)
+            except PortError as reason:  # a robot was switched off, an adapter unplugged: what came until then is told
+                lost = reason
+            finally:
+                wire.end(tap.elapsed_ns)
         summary = {
             "log": str(output),
             "seconds": tap.elapsed_s,
@@ -87,12 +88,16 @@ def record(
         if json_output:
             show.print_json(summary)
         else:
-            show.print_line(
-                f"{summary['seconds']:.1f} s: {tap.bytes_from_robot} bytes from the robot "
-                f"({console.counters.frames_dropped} frames dropped unread), {tap.bytes_to_robot} to it, in {output}"
-            )
+            show.print_line(f"{_counts(tap)}, in {output}")
         if lost is not None:
             raise lost
+
+
+def _counts(tap: Tap) -> str:
+    return (
+        f"{tap.elapsed_s:.1f} s: {tap.bytes_from_robot} bytes from the robot "
+        f"({tap.console.counters.frames_dropped} frames dropped unread), {tap.bytes_to_robot} to it"
+    )
 
 
 def replay(
@@ -204,8 +209,10 @@ def _play_frames(
         lost: PortError | None = None
         try:
             if wait:
-                player.wait_for_console()
-            player.run()
+                with show.busy("waiting for the console", quiet=json_output):
+                    player.wait_for_console()
+            with show.busy(f"playing {recording.duration_ns / 1e9:.0f} s", quiet=json_output):
+                player.run()
         except PortError as reason:
             lost = reason
         finally:

@@ -418,13 +418,18 @@ def view_until_stopped(
     open_line: Callable[[Machine], SerialPort | None], host: str, number: int, print_line: Callable[[str], None],
 ) -> None:  # fmt: skip
     """Serve the page until Ctrl-C; `print_line` gets its address."""
-    from hil.view.server import run_view
-
     policy = show.policy()
-    with ExitStack() as stack:
+    with ExitStack() as stack, ExitStack() as preparing:
+        preparing.enter_context(show.busy("preparing the page"))
+        from hil.view.server import run_view
+
+        def serves(address: str) -> None:
+            preparing.close()
+            print_line(address)
+
         # Before it serves there is nothing to show, and a signal interrupts.
         engine = run_view(
-            setup, pace, orders, open_line, host=host, port=number, print_line=print_line,
+            setup, pace, orders, open_line, host=host, port=number, print_line=serves,
             on_stop=lambda stop: stack.enter_context(show.ended_by_signals(stop)), read=read,
             policy=policy,
         )  # fmt: skip
