@@ -155,18 +155,22 @@ class ClockModule:
         """Create a Clock that calls `function` `timeout` ticks (16 bits) after its start, then every `period` ticks."""
         core = self.core
         core.clock.charge(core.costs["clock_create"])
-        p = struct_params.read(core, "Clock_Params", params)
+        given = struct_params.read(core, "Clock_Params", params)
         timeout &= 0xFFFF
         core.check(
             core.thread_type not in (HWI, SWI), "Clock_A_badThreadType", "a Clock cannot be created from a Hwi or Swi"
         )
         core.check(
-            not p["startFlag"] or timeout != 0, "Clock_A_timeout", "a Clock that starts at once needs a timeout above 0"
+            not given["startFlag"] or timeout != 0,
+            "Clock_A_timeout",
+            "a Clock that starts at once needs a timeout above 0",
         )
         name = self._names.unique(function_name(function))
-        timer = ClockObject(name, fitted(self.core, function, 1, "Clock function"), timeout, p["period"], p["arg"])
+        timer = ClockObject(
+            name, fitted(self.core, function, 1, "Clock function"), timeout, given["period"], given["arg"]
+        )
         self.queue.append(timer)
-        if p["startFlag"]:
+        if given["startFlag"]:
             self.start(timer)
         return timer
 

@@ -81,7 +81,7 @@ class KernelCore:
 
 def error_number(identifier: str) -> int:
     """The number of an error in `Error_Block.id`, never 0.  CHOICE: it is a sum of the identifier's characters."""
-    return sum((i + 1) * ord(c) for i, c in enumerate(identifier)) & 0xFFFF | 0x10000
+    return sum((index + 1) * ord(letter) for index, letter in enumerate(identifier)) & 0xFFFF | 0x10000
 
 
 def fitted(core: KernelCore, function: Function | None, given: int, what: str) -> Function:
@@ -97,12 +97,15 @@ def fitted(core: KernelCore, function: Function | None, given: int, what: str) -
         parameters = inspect.signature(function).parameters.values()
     except (TypeError, ValueError):
         return function
-    if any(p.kind is p.VAR_POSITIONAL for p in parameters):
+    if any(each.kind is each.VAR_POSITIONAL for each in parameters):
         return function
-    wanted = sum(p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD) and p.default is p.empty for p in parameters)
+    wanted = sum(
+        each.kind in (each.POSITIONAL_ONLY, each.POSITIONAL_OR_KEYWORD) and each.default is each.empty
+        for each in parameters
+    )
     if wanted > given:
         raise ValueError(f"{what} {function_name(function)} wants {wanted} arguments, the kernel passes {given}")
-    accepted = sum(p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD) for p in parameters)
+    accepted = sum(each.kind in (each.POSITIONAL_ONLY, each.POSITIONAL_OR_KEYWORD) for each in parameters)
     if accepted >= given:
         return function
 

@@ -120,12 +120,12 @@ class GateMutexPriModule:
 
         The faulty version (`order_fault`) compares with the low half of an address instead of the priority.
         """
-        for i, other in enumerate(gate.waiters):
+        for place, other in enumerate(gate.waiters):
             compared = other.task.priority
             if self.order_fault:
                 compared = (other.task.address + 0x8000 & 0xFFFF) - 0x8000
             if waiter.task.priority > compared:
-                gate.waiters.insert(i, waiter)
+                gate.waiters.insert(place, waiter)
                 return
         gate.waiters.append(waiter)
 

@@ -37,7 +37,7 @@ class HeapBuf(Heap):
         self.align = align
         self.block_words = block_words
         #: Free blocks by address, the next to be given out first.
-        self.free = deque(base + i * block_words for i in range(count))
+        self.free = deque(base + number * block_words for number in range(count))
 
     def rounded(self, words: int) -> int:
         """The words of a block, the same for any request."""
@@ -106,22 +106,24 @@ class HeapBufModule:
         """Create a heap in the caller's buffer."""
         core = self.core
         core.clock.charge(core.costs["heap_create"])
-        p = struct_params.read(core, "HeapBuf_Params", params)
-        align, count = p["align"] or _ALIGN, p["numBlocks"]
-        core.check(bool(p["buf"]), "HeapBuf_A_nullBuf", "buf is NULL")
+        given = struct_params.read(core, "HeapBuf_Params", params)
+        align, count = given["align"] or _ALIGN, given["numBlocks"]
+        core.check(bool(given["buf"]), "HeapBuf_A_nullBuf", "buf is NULL")
         core.check(count != 0, "HeapBuf_A_zeroBlocks", "numBlocks is 0")
-        core.check(p["blockSize"] >= _SMALLEST, "HeapBuf_A_invalidBlockSize", f"blockSize is below {_SMALLEST} words")
-        core.check(p["bufSize"] != 0, "HeapBuf_A_zeroBufSize", "bufSize is 0")
+        core.check(
+            given["blockSize"] >= _SMALLEST, "HeapBuf_A_invalidBlockSize", f"blockSize is below {_SMALLEST} words"
+        )
+        core.check(given["bufSize"] != 0, "HeapBuf_A_zeroBufSize", "bufSize is 0")
         core.check(
             is_power_of_two(align) and align >= _ALIGN, "HeapBuf_A_invalidAlign",
             f"align is {align}: a power of 2 from {_ALIGN} on is wanted",
         )  # fmt: skip
-        base = buffer_address(core, p["buf"], p["bufSize"], "HeapBuf_create")
+        base = buffer_address(core, given["buf"], given["bufSize"], "HeapBuf_create")
         core.check(base & align - 1 == 0, "HeapBuf_A_bufAlign", f"buf lies at {base:#x}, no multiple of {align}")
-        block_words = -(-p["blockSize"] // align) * align
+        block_words = -(-given["blockSize"] // align) * align
         core.check(
-            p["bufSize"] >= count * block_words, "HeapBuf_A_invalidBufSize",
-            f"{count} blocks of {block_words} words do not fit {p['bufSize']} words",
+            given["bufSize"] >= count * block_words, "HeapBuf_A_invalidBufSize",
+            f"{count} blocks of {block_words} words do not fit {given['bufSize']} words",
         )  # fmt: skip
         return HeapBuf(self._names.unique("HeapBuf"), base, count, block_words, align)
 

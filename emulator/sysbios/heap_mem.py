@@ -66,14 +66,14 @@ class HeapMem(Heap):
             return None
         if not align:
             return None  # CHOICE: with an alignment of 0 the C's search computes with an address below 0.
-        for i, (at, free) in enumerate(self.free):
+        for index, (at, free) in enumerate(self.free):
             self.looked_at += 1
             offset = -at % align
             if free < size + offset:
                 continue
             before = [(at, offset)] if offset else []
             behind = [(at + offset + size, free - size - offset)] if free > size + offset else []
-            self.free[i : i + 1] = before + behind
+            self.free[index : index + 1] = before + behind
             return at + offset
         return None
 
@@ -85,7 +85,7 @@ class HeapMem(Heap):
             return f"address {address:#x} is no multiple of {self.align}"
         if address < self.base or address + size > self.base + self.words:
             return f"{size} words at {address:#x} are not within the heap"
-        place = next((i for i, (at, _) in enumerate(self.free) if at >= address), len(self.free))
+        place = next((index for index, (at, _) in enumerate(self.free) if at >= address), len(self.free))
         self.looked_at = place
         if place and address < sum(self.free[place - 1]):
             return f"address {address:#x} is free already"
@@ -129,10 +129,10 @@ class HeapMemModule:
     def _write_headers(self, heap: HeapMem) -> None:
         """Write the headers of free blocks into memory: the address of the next free block, and the size."""
         memory = self.blocks.memory
-        for i, (at, words) in enumerate(heap.free):
-            behind = heap.free[i + 1][0] if i + 1 < len(heap.free) else 0
-            for j, word in enumerate((behind & 0xFFFF, behind >> 16, words & 0xFFFF, words >> 16)):
-                memory.write_word(at + j, word)
+        for index, (at, words) in enumerate(heap.free):
+            behind = heap.free[index + 1][0] if index + 1 < len(heap.free) else 0
+            for offset, word in enumerate((behind & 0xFFFF, behind >> 16, words & 0xFFFF, words >> 16)):
+                memory.write_word(at + offset, word)
 
     def _charge(self, heap: HeapMem) -> None:
         costs = self.core.costs
@@ -200,14 +200,14 @@ class HeapMemModule:
         """Create a heap in the aligned part of the caller's buffer."""
         core = self.core
         core.clock.charge(core.costs["heap_create"])
-        p = struct_params.read(core, "HeapMem_Params", params)
-        wanted = p["minBlockAlign"]
+        given = struct_params.read(core, "HeapMem_Params", params)
+        wanted = given["minBlockAlign"]
         core.check(is_power_of_two(wanted), "HeapMem_A_align", f"a minBlockAlign of {wanted} is no power of 2")
         align = max(wanted, HEADER_WORDS)
-        base = buffer_address(core, p["buf"], p["size"], "HeapMem_create")
+        base = buffer_address(core, given["buf"], given["size"], "HeapMem_create")
         offset = -base % align
-        words = p["size"] - offset
-        core.check(words >= align, "HeapMem_A_heapSize", f"a heap of {p['size']} words has no room for a block")
+        words = given["size"] - offset
+        core.check(words >= align, "HeapMem_A_heapSize", f"a heap of {given['size']} words has no room for a block")
         heap = HeapMem(self._names.unique("HeapMem"), base + offset, words // align * align, align)
         self._write_headers(heap)
         return heap

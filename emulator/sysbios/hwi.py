@@ -197,24 +197,24 @@ class HwiModule:
         """Create a handler for interrupt `number`.  NULL if it has one already and an Error_Block was passed."""
         core = self.core
         core.clock.charge(core.costs["hwi_create"])
-        p = struct_params.read(core, "Hwi_Params", params)
+        given = struct_params.read(core, "Hwi_Params", params)
         self._check_number(number, LAST_PLUGGED)
         if number in self.table:
             core.error(
                 error_block, "Hwi_E_alreadyDefined", f"interrupt {number} has the handler {self.table[number].name}"
             )
             return None
-        hwi = self.create(number, function, arg=p["arg"], ack=bool(p["enableAck"]))
-        option = p["maskSetting"]
+        hwi = self.create(number, function, arg=given["arg"], ack=bool(given["enableAck"]))
+        option = given["maskSetting"]
         if option == MASKING_NONE:
             hwi.disable_mask = hwi.restore_mask = 0
         elif option == MASKING_ALL:
             hwi.disable_mask = hwi.restore_mask = 0xFFFF
         elif option == MASKING_BITMASK:
-            hwi.disable_mask, hwi.restore_mask = p["disableMask"] & 0xFFFF, p["restoreMask"] & 0xFFFF
+            hwi.disable_mask, hwi.restore_mask = given["disableMask"] & 0xFFFF, given["restoreMask"] & 0xFFFF
         else:  # SELF; LOWER means the same on this family.
             core.check(option in (MASKING_SELF, MASKING_LOWER), "Hwi_A_invalidArg", f"{option} is no MaskingOption")
-        if p["enableInt"]:
+        if given["enableInt"]:
             self.Hwi_enableInterrupt(number)
         return hwi
 

@@ -80,17 +80,17 @@ class MailboxModule:
         """Create a mailbox for `count` messages of `size` words."""
         core = self.core
         core.clock.charge(core.costs["mailbox_create"])
-        p = struct_params.read(core, "Mailbox_Params", params)
+        given = struct_params.read(core, "Mailbox_Params", params)
         wanted = count * (size + HEAD_WORDS)
         core.check(
-            not p["buf"] or p["bufSize"] >= wanted, "Mailbox_A_invalidBufSize",
-            f"a buffer for {count} messages of {size} words takes {wanted} words, not {p['bufSize']}",
+            not given["buf"] or given["bufSize"] >= wanted, "Mailbox_A_invalidBufSize",
+            f"a buffer for {count} messages of {size} words takes {wanted} words, not {given['bufSize']}",
         )  # fmt: skip
         mailbox = Mailbox(self._names.unique("Mailbox"), size, count)
         mailbox.created = core.findings.mark()
         for semaphore, who in ((mailbox.full, "reader"), (mailbox.free, "writer")):
-            event = self.events.given(p[f"{who}Event"], "Mailbox_create")
-            self.semaphores.register(semaphore, event, p[f"{who}EventId"])
+            event = self.events.given(given[f"{who}Event"], "Mailbox_create")
+            self.semaphores.register(semaphore, event, given[f"{who}EventId"])
         return mailbox
 
     def Mailbox_delete(self, pointer: Any) -> None:

@@ -211,13 +211,18 @@ class Scheduler:
 
     def _check_stacks(self, old: Task, new: Task) -> None:
         stacks, sp = self.stacks, self.core.cpu.sp
-        a, b = old.stack, new.stack
-        if a.base <= sp <= a.limit and b.base <= b.sp <= b.limit and stacks.intact(a) and stacks.intact(b):
+        left, entered = old.stack, new.stack
+        if (
+            left.base <= sp <= left.limit
+            and entered.base <= entered.sp <= entered.limit
+            and stacks.intact(left)
+            and stacks.intact(entered)
+        ):
             return
-        for task, top in ((old, sp), (new, b.sp)):
+        for task, top in ((old, sp), (new, entered.sp)):
             if not stacks.intact(task.stack):
                 stacks.overflow(task.name, task.stack, "Task_E_stackOverflow", task.stack.overrun_sp or top)
-        for task, top in ((old, sp), (new, b.sp)):
+        for task, top in ((old, sp), (new, entered.sp)):
             if not task.stack.base <= top <= task.stack.limit:
                 stacks.overflow(task.name, task.stack, "Task_E_spOutOfBounds", top)
 

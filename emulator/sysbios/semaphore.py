@@ -67,10 +67,10 @@ class SemaphoreModule:
         """Create a semaphore with an initial count of 0 to 65535.  As a 16-bit Int, a count above 32767 is negative."""
         core = self.core
         core.clock.charge(core.costs["semaphore_create"])
-        p = struct_params.read(core, "Semaphore_Params", params)
+        given = struct_params.read(core, "Semaphore_Params", params)
         core.check(0 <= count <= 0xFFFF, "Semaphore_A_overflow", f"initial count {count} is not 0..65535")
-        semaphore = Semaphore(self._names.unique("Semaphore"), count & 0xFFFF, p["mode"])
-        self.register(semaphore, self.events.given(p["event"], "Semaphore_create"), p["eventId"])
+        semaphore = Semaphore(self._names.unique("Semaphore"), count & 0xFFFF, given["mode"])
+        self.register(semaphore, self.events.given(given["event"], "Semaphore_create"), given["eventId"])
         return semaphore
 
     def register(self, semaphore: Semaphore, event: Event | None, event_id: int) -> None:
@@ -133,9 +133,9 @@ class SemaphoreModule:
     def _enqueue(semaphore: Semaphore, waiter: Waiter) -> None:
         """Queue a waiter: at the end (FIFO), or before the first waiter that has a lower priority now."""
         if semaphore.mode & 2:
-            for i, other in enumerate(semaphore.waiters):
+            for place, other in enumerate(semaphore.waiters):
                 if waiter.task.priority > other.task.priority:
-                    semaphore.waiters.insert(i, waiter)
+                    semaphore.waiters.insert(place, waiter)
                     return
         semaphore.waiters.append(waiter)
 

@@ -154,8 +154,10 @@ class SwiModule:
     def Swi_create(self, function: Function, params: Any, error_block: Any = None) -> Swi:
         """Create a Swi."""
         self.core.clock.charge(self.core.costs["swi_create"])
-        p = struct_params.read(self.core, "Swi_Params", params)
-        return self.create(function, p["priority"], arg0=p["arg0"], arg1=p["arg1"], trigger=p["trigger"])
+        given = struct_params.read(self.core, "Swi_Params", params)
+        return self.create(
+            function, given["priority"], arg0=given["arg0"], arg1=given["arg1"], trigger=given["trigger"]
+        )
 
     def Swi_delete(self, pointer: Any) -> None:
         """Delete the Swi.  It must not be posted."""

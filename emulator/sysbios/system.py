@@ -96,81 +96,82 @@ class _Printer:
             return form[at - 1] if at <= end else "\0"
 
         while at < end:
-            c = char()
-            if c != "%":
-                literal += c
+            character = char()
+            if character != "%":
+                literal += character
                 continue
             if literal:
                 self._out(literal)
                 literal = ""
             self._core.clock.charge(self._cost_conversion)
-            c = char()
-            left = c == "-"
+            character = char()
+            left = character == "-"
             if left:
-                c = char()
-            zeros = c == "0"
+                character = char()
+            zeros = character == "0"
             if zeros:
-                c = char()
+                character = char()
             width, precision = 0, -1
-            if c == "*":
+            if character == "*":
                 width = signed16(self._va.word())
-                c = char()
+                character = char()
                 if width < 0:
                     left, width = True, -width
             else:
-                while c.isdigit() and c.isascii():
-                    width = width * 10 + int(c)
-                    c = char()
-            if c == ".":
+                while character.isdigit() and character.isascii():
+                    width = width * 10 + int(character)
+                    character = char()
+            if character == ".":
                 precision = 0
-                c = char()
-                if c == "*":
+                character = char()
+                if character == "*":
                     precision = max(0, signed16(self._va.word()))
-                    c = char()
+                    character = char()
                 else:
-                    while c.isdigit() and c.isascii():
-                        precision = precision * 10 + int(c)
-                        c = char()
+                    while character.isdigit() and character.isascii():
+                        precision = precision * 10 + int(character)
+                        character = char()
             padding = max(width if zeros else 0, precision)
-            long = c in "lL" and c != ""
+            long = character in "lL" and character != ""
             if long:
-                c = char()
-            at = self._convert(c, long, left, width, precision, padding, form, at)
+                character = char()
+            at = self._convert(character, long, left, width, precision, padding, form, at)
         if literal:
             self._out(literal)
 
     def _convert(
-        self, c: str, long: bool, left: bool, width: int, precision: int, padding: int, form: str, at: int
+        self, character: str, long: bool, left: bool, width: int, precision: int, padding: int, form: str, at: int
     ) -> int:
         """Print one conversion; returns the index where the format goes on."""
         va = self._va
-        if c in ("d", "i"):
+        if character in ("d", "i"):
             value = signed32(va.long()) if long else signed16(va.word())
             text = self.number(abs(value), padding, 10, minus=value < 0)
-        elif c in ("u", "x", "o"):
+        elif character in ("u", "x", "o"):
             value = va.long() if long else va.word()
-            text = self.number(value, padding, {"u": 10, "x": 16, "o": 8}[c])
-        elif c == "p":
+            text = self.number(value, padding, {"u": 10, "x": 16, "o": 8}[character])
+        elif character == "p":
             text = "@" + self.number(va.pointer()[1], 8, 16)
-        elif c == "c":
+        elif character == "c":
             text = chr(va.word())
-        elif c == "s":
+        elif character == "s":
             pointer, address = va.pointer()
             text = text_of(pointer) if pointer is not None else "" if address else "(null)"
             if precision != -1:
                 text = text[:precision]
-        elif c == "$":
+        elif character == "$":
             return self._extended(form, at, precision, left, width)
-        elif c == "f" and self._float:
+        elif character == "f" and self._float:
             text = self._fixed(va.float32(), padding)
         else:
-            if c == "f":
+            if character == "f":
                 va.float32()
-            if c not in ("%", "\0"):
-                taken = "takes the double" if c == "f" else "takes no argument"
-                message = f"System_printf does not know %{'l' if long else ''}{c}: it prints {c!r} and {taken}"
+            if character not in ("%", "\0"):
+                taken = "takes the double" if character == "f" else "takes no argument"
+                unknown = f"%{'l' if long else ''}{character}"
+                message = f"System_printf does not know {unknown}: it prints {character!r} and {taken}"
                 self._core.findings.report("printf-format", message, object=form)
-            text = c if c != "\0" else ""
+            text = character if character != "\0" else ""
         self._out(text.ljust(width) if left else text.rjust(width))
         return at
 

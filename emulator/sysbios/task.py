@@ -109,19 +109,19 @@ class TaskModule(Scheduler):
         """Create a task.  Main or a task calls it; a task of higher priority pre-empts its creator."""
         core = self.core
         core.clock.charge(core.costs["task_create"])
-        p = struct_params.read(core, "Task_Params", params)
+        wanted = struct_params.read(core, "Task_Params", params)
         core.check(
             core.thread_type not in (HWI, SWI), "Task_A_badThreadType", "a task cannot be created from a Hwi or Swi"
         )
-        priority = p["priority"]
+        priority = wanted["priority"]
         core.check(priority == -1 or 0 < priority < PRIORITIES, "Task_A_badPriority", f"{priority} is not -1 or 1..15")
-        arguments = (p["arg0"], p["arg1"])
-        given = p["stack"]
-        stack = self.stacks.allocate(p["stackSize"], given.addr if given else 0, error_block, arguments)
+        arguments = (wanted["arg0"], wanted["arg1"])
+        given = wanted["stack"]
+        stack = self.stacks.allocate(wanted["stackSize"], given.addr if given else 0, error_block, arguments)
         if stack is None:
             return None
-        task = self.add(function, priority, stack, arguments, bool(p["vitalTaskFlag"]), "")
-        task.env = p["env"]
+        task = self.add(function, priority, stack, arguments, bool(wanted["vitalTaskFlag"]), "")
+        task.env = wanted["env"]
         self.restore(self.lock())
         return task
 

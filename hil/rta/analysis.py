@@ -177,7 +177,7 @@ def _stuck(task_set: TaskSet) -> frozenset[str]:
     orders = [order for task in task_set.tasks for section in task.sections for order in section.orders()]
     while more := {held for held, entered in orders if entered in gates} - gates:
         gates |= more
-    return frozenset(task.name for task in task_set.tasks if any(s.gate in gates for s in task.stays))
+    return frozenset(task.name for task in task_set.tasks if any(stay.gate in gates for stay in task.stays))
 
 
 def _run_between(task_set: TaskSet, task: TaskModel) -> Sequence[TaskModel]:
@@ -185,7 +185,7 @@ def _run_between(task_set: TaskSet, task: TaskModel) -> Sequence[TaskModel]:
     lowest = task.priority
     while True:
         gates = {section.gate for other in task_set.tasks if other.priority >= lowest for section in other.stays}
-        owners = [other.priority for other in task_set.tasks if any(s.gate in gates for s in other.stays)]
+        owners = [other.priority for other in task_set.tasks if any(stay.gate in gates for stay in other.stays)]
         if min(owners, default=lowest) >= lowest:
             return [other for other in task_set.tasks if lowest <= other.priority < task.priority]
         lowest = min(owners)
@@ -257,7 +257,8 @@ def _earliest(arrival: Arrival, number: int) -> int:
 def bounds(task_set: TaskSet) -> Bounds:
     """The results of the tests that use only the utilisation."""
     count = len(task_set.tasks) + len(task_set.interrupts)
-    shares = [task.utilisation for task in task_set.tasks] + [i.utilisation for i in task_set.interrupts]
+    shares = [task.utilisation for task in task_set.tasks]
+    shares += [interrupt.utilisation for interrupt in task_set.interrupts]
     return Bounds(
         task_set.utilisation, count * (2 ** (1 / count) - 1) if count else 1.0, prod(share + 1 for share in shares)
     )
@@ -285,7 +286,8 @@ def most_growth(task_set: TaskSet, protocol: Protocol = Protocol.INHERITANCE) ->
 
     def longer(sections: Sequence[Section], thousandths: int) -> tuple[Section, ...]:
         return tuple(
-            Section(s.gate, -(-s.time_ns * thousandths // 1000), longer(s.inner, thousandths)) for s in sections
+            Section(section.gate, -(-section.time_ns * thousandths // 1000), longer(section.inner, thousandths))
+            for section in sections
         )
 
     def holds_with(thousandths: int) -> bool:

@@ -28,8 +28,8 @@ def draw_moment(
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
-    above = sorted({s.who for s in moment.stretches if s.who not in priorities}, reverse=True)
-    there = {s.who for s in moment.stretches} | {who for _, who in moment.releases} | {moment.task}
+    above = sorted({part.who for part in moment.stretches if part.who not in priorities}, reverse=True)
+    there = {part.who for part in moment.stretches} | {who for _, who in moment.releases} | {moment.task}
     tasks = sorted((name for name in priorities if name in there), key=lambda name: -priorities[name])
     rows = [*above, *tasks]
     figure = Figure(figsize=(10, 2.4 + 0.42 * len(rows)), layout="constrained")
@@ -59,7 +59,7 @@ def draw_moment(
     bound = "no bound" if computed_ns is None else f"computed {computed_ns / 1000:.2f} us (dotted)"
     axes.set_title(f"{moment.task}: longest response seen {end:.2f} us (dashed), {bound}", fontsize="medium")
     axes.grid(axis="x", alpha=0.3)
-    held = sorted({gates.get(s.gate, s.gate) for s in moment.stretches if s.gate})
+    held = sorted({gates.get(part.gate, part.gate) for part in moment.stretches if part.gate})
     patches = [
         Patch(color="black", label="released"), Patch(color=_OWN, label=moment.task),
         Patch(color=_OTHER, label="another task"),

@@ -162,5 +162,7 @@ class TaskSet:
         """The sum of C/T over tasks, their switches and interrupts."""
         switches = sum(2 * self.switch_ns / task.arrival.mean_ns for task in self.tasks)
         return (
-            sum(task.utilisation for task in self.tasks) + sum(i.utilisation for i in self.interrupts) + switches
-        )  # fmt: skip
+            sum(task.utilisation for task in self.tasks)
+            + sum(interrupt.utilisation for interrupt in self.interrupts)
+            + switches
+        )

@@ -180,7 +180,7 @@ def _figure_41(data: Mapping[str, Any]) -> Iterator[PrintedNumber]:
         exact = 0.0 if task is None else blocking_ns(sets, task, Protocol.INHERITANCE) / NS_PER_US
         verdict, why = reasons.get(name, (RIGHT, "above all tasks"))
         if task is not None:
-            other = next(t for t in by_users.tasks if t.name == name)
+            other = next(each for each in by_users.tasks if each.name == name)
             in_firmware = blocking_ns(by_users, other, Protocol.INHERITANCE) / NS_PER_US
             if in_firmware != exact:
                 why += f" [{in_firmware:g} us with the users of annex 1]"
@@ -191,8 +191,8 @@ def _responses(data: Mapping[str, Any]) -> Iterator[PrintedNumber]:
     sets = task_set()
     printed_blocking = {name: round(value * NS_PER_US) for name, value in data["figure_41"].items()}
     alone = replace(sets, interrupts=())
-    by_blocking = {r.task.name: r for r in analyse(alone, blocked_ns=printed_blocking)}
-    whole = {r.task.name: r for r in analyse(sets, Protocol.INHERITANCE)}
+    by_blocking = {one.task.name: one for one in analyse(alone, blocked_ns=printed_blocking)}
+    whole = {one.task.name: one for one in analyse(sets, Protocol.INHERITANCE)}
     for name, printed in data["section_344"].items():
         own = by_blocking[name].course_bound_ns / NS_PER_US
         response = by_blocking[name].response_ns
@@ -225,8 +225,8 @@ def _other_computation(data: Mapping[str, Any]) -> str:
     )
     blocked = {name: round(value * NS_PER_US) for name, value in data["figure_41"].items()}
     changed = analyse(replace(sets, tasks=tasks, interrupts=()), blocked_ns=blocked)
-    bound = next(r.course_bound_ns for r in changed if r.task.name == "TaskORD") / NS_PER_US
-    printed = next(t for t in sets.tasks if t.name == slip["of"]).computation_ns / NS_PER_US
+    bound = next(response.course_bound_ns for response in changed if response.task.name == "TaskORD") / NS_PER_US
+    printed = next(each for each in sets.tasks if each.name == slip["of"]).computation_ns / NS_PER_US
     return f"{slip['of']} has {slip['computation_us']} us here, {printed:g} in figure 39 ({bound:.2f} with the former)"
 
 
@@ -234,7 +234,7 @@ def _utilisation(data: Mapping[str, Any]) -> Iterator[PrintedNumber]:
     table, printed = "3.4.4", data["utilisation"]
     sets = task_set()
     exact = {task.name: (task.computation_ns, task.arrival.period_ns) for task in sets.tasks}
-    exact |= {i.name: (i.computation_ns, i.arrival.period_ns) for i in sets.interrupts}
+    exact |= {interrupt.name: (interrupt.computation_ns, interrupt.arrival.period_ns) for interrupt in sets.interrupts}
     for name, (computation, period) in zip(printed["names"], printed["terms"], strict=True):
         computation_ns, period_ns = exact[name]
         value = computation_ns / 1e6
@@ -244,7 +244,7 @@ def _utilisation(data: Mapping[str, Any]) -> Iterator[PrintedNumber]:
         if not right:
             why = f"cut off in place of rounded: {computation_ns / 1000:g} us is {rounded:.3f} ms"
         yield PrintedNumber(table, f"U {name}: C", "ms", computation, value, value, RIGHT if right else WRONG, why)
-    own = sum(c / t for c, t in printed["terms"])
+    own = sum(cost / each for cost, each in printed["terms"])
     true = sets.utilisation
     yield PrintedNumber(
         table, "U", "", printed["sum"], own, true, RIGHT if _close(printed["sum"], own, 6) else WRONG,

@@ -32,7 +32,7 @@ class Flag(NamedTuple):
 class LatestAccess:
     """The latest access with one thread, one direction (read or write) and one protection."""
 
-    __slots__ = ("clock", "gates", "protection", "statement", "thread", "time", "vc", "write")
+    __slots__ = ("clock", "gates", "protection", "statement", "thread", "time", "vector", "write")
 
     def __init__(
         self, thread: Thread, write: bool, protection: Protection, clock: int, statement: StatementNumber, time: int
@@ -41,7 +41,7 @@ class LatestAccess:
         #: the level of the thread that has given them these values.
         self.gates: dict[SharedCell, tuple[Any, int]] = dict(thread.seen)
         #: The vector clock of its thread at that time.
-        self.vc = thread.vc
+        self.vector = thread.vector
         self.thread = thread
         self.write = write
         self.protection = protection
@@ -62,7 +62,7 @@ class LatestAccess:
     def followed(self, thread: Thread, clock: int) -> bool:
         """Whether it was ordered after what `thread`, of a higher level, had done at its `clock`."""
         index = thread.index
-        return thread.level > self.thread.level and index < len(self.vc) and self.vc[index] >= clock
+        return thread.level > self.thread.level and index < len(self.vector) and self.vector[index] >= clock
 
 
 NONE: Final[tuple[LatestAccess, ...]] = ()
@@ -124,15 +124,15 @@ class SharedCell:
         `thread` had told the reader before that it was done, and does not wait until the reader is.  If the time is too
         short, `conflicts` shows it.
         """
-        last = max((a.clock for a in self.writes if a.thread is thread), default=1)
+        last = max((each.clock for each in self.writes if each.thread is thread), default=1)
         return reader.followed(thread, last) and not any(
             reader.thread in flag.writers and len(flag.writers) > 1
-            for a in self.writes if a.thread is thread for flag in a.gates
+            for each in self.writes if each.thread is thread for flag in each.gates
         )  # fmt: skip
 
     def hand_over(self, thread: Thread, statement: StatementNumber, time: int) -> None:
         """A write of `thread` tells the readers of this word what it has done so far."""
-        self.handed, self.handed_at = (thread, thread.clock, thread.vc, thread.run), time
+        self.handed, self.handed_at = (thread, thread.clock, thread.vector, thread.run), time
         thread.step()
         thread.stepped = (statement, time)
 
@@ -143,11 +143,11 @@ class SharedCell:
         """
         if self.handed is None:
             return
-        writer, clock, vc, run = self.handed
+        writer, clock, vector, run = self.handed
         if writer.level > thread.level and not writer.is_task:
             clock = run[0]
         if not thread.knows(writer, clock):
-            thread.vc = joined(thread.vc, at_clock(vc, writer.index, clock))
+            thread.vector = joined(thread.vector, at_clock(vector, writer.index, clock))
 
     @property
     def value(self) -> Any:
@@ -189,4 +189,4 @@ class SharedCell:
                     known.gates[cell] = was, last
         # In `v[n++] = x` the step of the index and the access are one statement: their order is the compiler's.
         known.clock = thread.clock - (thread.stepped == (statement, time) and not self.hands_over)
-        known.statement, known.time, known.vc = statement, time, thread.vc
+        known.statement, known.time, known.vector = statement, time, thread.vector

@@ -45,15 +45,15 @@ class GateExit(NamedTuple):
 def exits(functions: Iterable[Function]) -> Iterator[tuple[Function, GateExit]]:
     """Every `return` of these functions, and every `continue`, that does not leave a gate."""
     functions = list(functions)
-    entered = {f.path: _paths(f.body, ENTER) for f in functions}
-    left = {f.path: _paths(f.body, LEAVE) for f in functions}
-    shared = {path for f in functions for path in left[f.path] - entered[f.path]}
-    for f in functions:
-        own = (entered[f.path] & left[f.path]) - shared
-        if f.name != "main" and own and None not in shared:
+    entered = {function.path: _paths(function.body, ENTER) for function in functions}
+    left = {function.path: _paths(function.body, LEAVE) for function in functions}
+    shared = {path for function in functions for path in left[function.path] - entered[function.path]}
+    for function in functions:
+        own = (entered[function.path] & left[function.path]) - shared
+        if function.name != "main" and own and None not in shared:
             found: list[GateExit] = []
-            _walk(f.body, {}, {}, found)
-            yield from ((f, exit) for exit in found if exit.path in own)
+            _walk(function.body, {}, {}, found)
+            yield from ((function, exit) for exit in found if exit.path in own)
 
 
 def _paths(body: list[Stmt], functions: tuple[str, ...]) -> set[str | None]:
@@ -63,8 +63,8 @@ def _paths(body: list[Stmt], functions: tuple[str, ...]) -> set[str | None]:
 def _walk(body: list[Stmt], held: Held, outside: Held, found: list[GateExit]) -> Held | None:
     """The gates held after `body`; None if no path reaches its end.  `outside`: those held before the loop around."""
     held = dict(held)
-    for s in body:
-        match s:
+    for statement in body:
+        match statement:
             case If(then=then, otherwise=otherwise):
                 ways = [_walk(then, held, outside, found), _walk(otherwise, held, outside, found)]
             case Switch(cases=cases):
@@ -74,18 +74,18 @@ def _walk(body: list[Stmt], held: Held, outside: Held, found: list[GateExit]) ->
                 _walk(turn, held, held, found)
                 continue
             case Continue():
-                found.extend(GateExit(s, path, at) for path, at in held.items() if path not in outside)
+                found.extend(GateExit(statement, path, at) for path, at in held.items() if path not in outside)
                 return None
             case Return():
-                _calls(s, held)
-                found.extend(GateExit(s, path, at) for path, at in held.items())
+                _calls(statement, held)
+                found.extend(GateExit(statement, path, at) for path, at in held.items())
                 return None
             case Break():
                 return None
             case LeaveSwitch() | FallThrough():
                 return held
             case _:
-                _calls(s, held)
+                _calls(statement, held)
                 continue
         through = [way for way in ways if way is not None]
         if not through:
@@ -95,14 +95,14 @@ def _walk(body: list[Stmt], held: Held, outside: Held, found: list[GateExit]) ->
     return held
 
 
-def _calls(s: Stmt, held: Held) -> None:
+def _calls(statement: Stmt, held: Held) -> None:
     """Update `held` with the gates that a statement without inner blocks enters and leaves."""
-    for call in calls([s]):
+    for call in calls([statement]):
         name = call.function.name
-        for path in first_arguments([s], name) if name in ENTER + LEAVE else ():
+        for path in first_arguments([statement], name) if name in ENTER + LEAVE else ():
             if path is None:
                 held.clear()
             elif name in ENTER:
-                held[path] = s.where
+                held[path] = statement.where
             else:
                 held.pop(path, None)

@@ -114,7 +114,7 @@ class Gates:
 
     def entry(self, thread: Thread, gate: Gate) -> GateEntry | None:
         """Where a thread entered a gate that it has not left."""
-        return next((e for e in reversed(self._entries.get(thread, [])) if e.gate is gate), None)
+        return next((entry for entry in reversed(self._entries.get(thread, [])) if entry.gate is gate), None)
 
     def finish(self) -> None:
         """Report what shows only at the end of a run."""
@@ -137,12 +137,12 @@ class Gates:
     def _exits(self) -> None:
         """Report paths through the source that do not leave a gate, unless the run has reported this gate already."""
         kept = {finding.object for finding in self._findings.of("gate-not-left")}
-        for f, (statement, path, entered) in exits(self._names.functions):
+        for function, (statement, path, entered) in exits(self._names.functions):
             name, at = path.rpartition(".")[2], statement.where
             if name not in kept:
                 on = "the function returns" if isinstance(statement, Return) else "the loop goes on"
                 self._findings.report_at(
-                    Place(at.file, at.line, f.name, f.c_file, at.column), "gate-not-left",
+                    Place(at.file, at.line, function.name, function.c_file, at.column), "gate-not-left",
                     f"{name} was entered in line {entered.line}, and {on} without leaving it", object=name,
                     how="dynamic",
                 )  # fmt: skip
@@ -258,17 +258,17 @@ class Gates:
 
     def _ordered(self, first: Gate, second: Gate, edge: Edge) -> None:
         edges = self._order.setdefault(first, {}).setdefault(second, [])
-        if any(e.thread is edge.thread and e.held == edge.held for e in edges):
+        if any(entry.thread is edge.thread and entry.held == edge.held for entry in edges):
             return
         edges.append(edge)
         path = self._path(second, first, [edge])
         if path is not None:
-            others = ", ".join(str(e.thread) for e in path)
-            a, b = self._names.of(first), self._names.of(second)
+            others = ", ".join(str(entry.thread) for entry in path)
+            held, entered = self._names.of(first), self._names.of(second)
             self._findings.report(
-                "gate-order", f"{edge.thread} enters {b} while it holds {a}, and {others} in the opposite order: a "
-                "deadlock is possible", object=b,
-                details=tuple(f"{e.thread} in {self._locator.text(e.statement)}" for e in path),
+                "gate-order", f"{edge.thread} enters {entered} while it holds {held}, and {others} in the opposite "
+                "order: a deadlock is possible", object=entered,
+                details=tuple(f"{entry.thread} in {self._locator.text(entry.statement)}" for entry in path),
             )  # fmt: skip
 
     def _path(self, start: Gate, end: Gate, taken: list[Edge]) -> list[Edge] | None:
@@ -278,7 +278,7 @@ class Gates:
         """
         for gate, edges in self._order.get(start, {}).items():
             for edge in edges:
-                if any(edge.thread is t.thread or edge.held & t.held for t in taken):
+                if any(edge.thread is before.thread or edge.held & before.held for before in taken):
                     continue
                 if gate is end:
                     return [edge]
@@ -305,7 +305,7 @@ class Gates:
         for member in chain:
             gate, statement = self._waits[member]
             told.append(f"{member} waits for {self._names.of(gate)} in {self._locator.text(statement)}")
-        gates = " and ".join(self._names.of(self._waits[t][0]) for t in chain)
+        gates = " and ".join(self._names.of(self._waits[task][0]) for task in chain)
         self._findings.report(
             "deadlock", f"{' and '.join(map(str, chain))} wait for each other, for {gates}: none of them runs again",
             object=self._names.of(self._waits[thread][0]), details=tuple(told[1:]),

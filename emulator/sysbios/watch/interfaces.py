@@ -80,13 +80,14 @@ class Interfaces:
 
     @cached_property
     def _shared(self) -> set[SharedInterface]:
-        own = {f.path: f for module in self._modules for f in module.functions}
+        own = {function.path: function for module in self._modules for function in module.functions}
         routines = list(interrupt_routines(own))
-        inside = {f.path for _, reached in routines for f in reached}
-        others = [f for f in own.values() if f.path not in inside]
+        inside = {function.path for _, reached in routines for function in reached}
+        others = [function for function in own.values() if function.path not in inside]
         found: set[SharedInterface] = set()
         for routine, reached in routines:
-            used = {interface for f in reached for s in statements(f.body) for interface in _interface(s)}
+            theirs = (statement for function in reached for statement in statements(function.body))
+            used = {interface for statement in theirs for interface in _interface(statement)}
             if not used:
                 continue
             telling = set(_set(reached))
@@ -95,24 +96,24 @@ class Interfaces:
                 return _tells(part, own, telling)
 
             for way in free_ways(others, own, telling, told):
-                for s in way.undecided:
-                    for interface in used.intersection(_interface(s)):
-                        found.add(SharedInterface(interface, routine.name, (way.function.where.file, s.line)))
+                for statement in way.undecided:
+                    for interface in used.intersection(_interface(statement)):
+                        found.add(SharedInterface(interface, routine.name, (way.function.where.file, statement.line)))
         return found
 
 
-def _interface(s: Stmt) -> Iterator[str]:
+def _interface(statement: Stmt) -> Iterator[str]:
     """The interface that a statement writes."""
-    match s:
+    match statement:
         case Assign(target=RegisterRef(block=block, register=register)) if register.startswith(("CAN_IF1", "CAN_IF2")):
             yield f"{block}.{register[:7]}"
 
 
 def _set(functions: Iterable[Function]) -> Iterator[str]:
     """The shared objects that functions set."""
-    for f in functions:
-        for s in statements(f.body):
-            root = assigned(s)
+    for function in functions:
+        for statement in statements(function.body):
+            root = assigned(statement)
             if root is not None and root.kind == "global":
                 yield root.declaration.path
 
@@ -121,12 +122,12 @@ def _tells(part: Call | RegisterLoad, own: dict[str, Function], telling: set[str
     """Whether a register or the result of a call may depend on what a routine has done.  Busy of an interface does not.
     """
     if isinstance(part, RegisterLoad):
-        ref = part.register
-        return not (isinstance(ref, RegisterRef) and ref.register in ("CAN_IF1CMD", "CAN_IF2CMD"))
-    for f in below(part.function.path, own):
-        for inner in within(f.body):
+        register = part.register
+        return not (isinstance(register, RegisterRef) and register.register in ("CAN_IF1CMD", "CAN_IF2CMD"))
+    for function in below(part.function.path, own):
+        for inner in within(function.body):
             if isinstance(inner, RegisterLoad) and _tells(inner, own, telling):
                 return True
-        if any(variable.declaration.path in telling for variable in variables(within(f.body))):
+        if any(variable.declaration.path in telling for variable in variables(within(function.body))):
             return True
     return False

@@ -85,13 +85,13 @@ class LostEvents:
         """Whether some statement sets an object to 0; with `statement`, whether that statement does."""
         if self._clearing is None:
             self._clearing = {}
-            for f in (f for module in self._modules for f in module.functions):
-                for s in statements(f.body):
-                    match s:
+            for function in (function for module in self._modules for function in module.functions):
+                for step in statements(function.body):
+                    match step:
                         case Assign(target=LValue(root=Variable(kind="global") as root), value=Const(value=0)) if (
                             root.ctype.leaves == 1
                         ):
-                            at = s.where.file, s.where.line
+                            at = step.where.file, step.where.line
                             self._clearing.setdefault(root.declaration.path, set()).add(at)
         clearing = self._clearing.get(obj.declaration.path, set())
         if not statement:

@@ -63,14 +63,16 @@ class LostPosts:
 
     def _pends(self) -> Iterator[tuple[str | None, bool]]:
         """The pends of the source: the object that holds the semaphore, and whether a loop may take several things."""
-        own = {f.path: f for module in self._linked.program.modules.values() for f in module.functions}
-        for f in own.values():
-            yield from _in(f.body, None, own)
+        own = {
+            function.path: function for module in self._linked.program.modules.values() for function in module.functions
+        }
+        for function in own.values():
+            yield from _in(function.body, None, own)
 
 
 def _in(body: list[Stmt], around: Stmt | None, own: dict[str, Function]) -> Iterator[tuple[str | None, bool]]:
-    for s in body:
-        for call in (p for root in roots(s) for p in parts(root) if isinstance(p, Call)):
+    for statement in body:
+        for call in (part for root in roots(statement) for part in parts(root) if isinstance(part, Call)):
             if call.function.name == "Semaphore_pend":
                 argument = call.arguments[0]
                 path = None
@@ -78,19 +80,19 @@ def _in(body: list[Stmt], around: Stmt | None, own: dict[str, Function]) -> Iter
                     case Load(lvalue=LValue(root=Variable(kind="global") as variable)):
                         path = variable.declaration.path
                 yield path, around is None or _loops(around, own)
-        for block in blocks(s):
-            yield from _in(block, s if isinstance(s, While | For) else around, own)
+        for block in blocks(statement):
+            yield from _in(block, statement if isinstance(statement, While | For) else around, own)
 
 
 def _loops(loop: Stmt, own: dict[str, Function]) -> bool:
     """Whether a loop contains a `while` loop, in its own body or in a function that it calls."""
     seen: set[str] = set()
-    waiting = [s for block in blocks(loop) for s in statements(block)]
+    waiting = [statement for block in blocks(loop) for statement in statements(block)]
     while waiting:
-        s = waiting.pop()
-        if isinstance(s, While):
+        statement = waiting.pop()
+        if isinstance(statement, While):
             return True
-        for call in (p for root in roots(s) for p in parts(root) if isinstance(p, Call)):
+        for call in (part for root in roots(statement) for part in parts(root) if isinstance(part, Call)):
             path = call.function.path
             if path in own and path not in seen:
                 seen.add(path)

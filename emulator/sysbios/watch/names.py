@@ -38,24 +38,29 @@ class HandleNames:
     @property
     def functions(self) -> list[Function]:
         """The functions of the image that have a body."""
-        return [f for module in self._linked.program.modules.values() for f in module.functions if f.body]
+        return [
+            function
+            for module in self._linked.program.modules.values()
+            for function in module.functions
+            if function.body
+        ]
 
     def passed(self, function: str) -> Paths:
         """The first arguments that statements of the image pass to `function`."""
-        return {path for f in self.functions for path in first_arguments(f.body, function)}
+        return {path for caller in self.functions for path in first_arguments(caller.body, function)}
 
     @property
     def whole(self) -> bool:
         """Whether the image is a whole program: one with a `main`."""
-        return any(f.name == "main" for f in self.functions)
+        return any(function.name == "main" for function in self.functions)
 
     def could(self, function: str, handle: Any) -> bool:
         """Whether a statement of the image can call `function` for `handle`; also True where the source does not tell.
 
         A function whose address is taken can be called for anything.
         """
-        for f in self.functions:
-            for part in within(f.body):
+        for caller in self.functions:
+            for part in within(caller.body):
                 if isinstance(part, FunctionRef) and part.function.name == function:
                     return True
         passed, objects = self.passed(function), self.objects(handle)
@@ -65,27 +70,35 @@ class HandleNames:
     def idle_calls(self, function: str) -> set[tuple[str, int]]:
         """File and line of the calls of `function` whose result nothing uses."""
         return {
-            (s.where.file, s.where.line) for f in self.functions for s in statements(f.body)
-            if isinstance(s, Evaluate) and isinstance(call := bare(s.value), Call) and call.function.name == function
-        }  # fmt: skip
+            (statement.where.file, statement.where.line)
+            for caller in self.functions
+            for statement in statements(caller.body)
+            if isinstance(statement, Evaluate)
+            and isinstance(call := bare(statement.value), Call)
+            and call.function.name == function
+        }
 
     def callers(self, function: str, handle: Any) -> list[str]:
         """The paths of the functions that can call `function` for `handle`, also where the source does not tell."""
         objects: Paths = {None, *self.objects(handle)}
-        return [f.path for f in self.functions if objects & set(first_arguments(f.body, function))]
+        return [caller.path for caller in self.functions if objects & set(first_arguments(caller.body, function))]
 
     def only_given_to(self, path: str, function: str) -> bool:
         """Whether the source mentions the function `path` only in calls of `function`, and never calls it."""
         modules = self._linked.program.modules.values()
-        starts = (e for module in modules for variable in module.variables for e in different(variable.initial or ()))
-        mentions = [p for e in starts for p in parts(e)] + [p for f in self.functions for p in within(f.body)]
+        variables = (variable for module in modules for variable in module.variables)
+        starts = (expression for variable in variables for expression in different(variable.initial or ()))
+        mentions = [part for expression in starts for part in parts(expression)]
+        mentions += [part for caller in self.functions for part in within(caller.body)]
         given = [
-            id(p) for call in mentions if isinstance(call, Call) and call.function.name == function
-            for argument in call.arguments for p in parts(argument)
+            id(part) for call in mentions if isinstance(call, Call) and call.function.name == function
+            for argument in call.arguments for part in parts(argument)
         ]  # fmt: skip
         return all(
-            id(p) in given for p in mentions if isinstance(p, FunctionRef | Call) and p.function.path == path
-        )  # fmt: skip
+            id(part) in given
+            for part in mentions
+            if isinstance(part, FunctionRef | Call) and part.function.path == path
+        )
 
     def bits(self, function: str, handle: Any) -> int:
         """The bits that statements can pass to `function` as second argument, after `handle`.
@@ -93,9 +106,9 @@ class HandleNames:
         All bits where the source does not tell.
         """
         objects, bits = self.objects(handle), 0
-        for f in self.functions:
-            made = [call for call in calls(f.body) if call.function.name == function]
-            for call, path in zip(made, first_arguments(f.body, function), strict=True):
+        for caller in self.functions:
+            made = [call for call in calls(caller.body) if call.function.name == function]
+            for call, path in zip(made, first_arguments(caller.body, function), strict=True):
                 if path is None or path in objects:
                     mask = bare(call.arguments[1])
                     bits |= mask.value if isinstance(mask, Const) and isinstance(mask.value, int) else ~0
@@ -112,7 +125,7 @@ class HandleNames:
 
 def calls(body: list[Stmt]) -> Iterator[Call]:
     """The calls in a function's body."""
-    return (p for p in within(body) if isinstance(p, Call))
+    return (part for part in within(body) if isinstance(part, Call))
 
 
 def first_arguments(body: list[Stmt], function: str) -> Iterator[str | None]:

@@ -68,25 +68,25 @@ class HandOver(NamedTuple):
 
 def pairs(modules: Iterable[Module]) -> dict[str, list[Pair]]:
     """The pairs of each object, by its path."""
-    own = {f.path: f for module in modules for f in module.functions}
+    own = {function.path: function for module in modules for function in module.functions}
     written: dict[_Word, set[str]] = {}
     inside: set[str] = set()
     for routine, reached in interrupt_routines(own):
-        for f in reached:
-            inside.add(f.path)
-            for word in _writes(f):
+        for function in reached:
+            inside.add(function.path)
+            for word in _writes(function):
                 written.setdefault(word, set()).add(routine.name)
     found: dict[str, list[Pair]] = {}
-    for f in own.values() if written else ():
-        if f.path in inside:
+    for function in own.values() if written else ():
+        if function.path in inside:
             continue
-        for words in _combined(f, {path for path, _ in written}):
+        for words in _combined(function, {path for path, _ in written}):
             for path in {path for path, _ in words}:
-                here = frozenset(word for p, word in words if p == path and (p, word) in written)
+                here = frozenset(word for part, word in words if part == path and (part, word) in written)
                 if len(here) > 1:
                     routines = frozenset.intersection(*(frozenset(written[path, word]) for word in here))
                     if routines:
-                        found.setdefault(path, []).append(Pair(here, routines, (f.where.file, f.name)))
+                        found.setdefault(path, []).append(Pair(here, routines, (function.where.file, function.name)))
     _add_copied(own, found)
     return found
 
@@ -101,13 +101,13 @@ def _add_copied(own: dict[str, Function], found: dict[str, list[Pair]]) -> None:
     inside: set[str] = set()
     telling: set[str] = set()
     for routine, reached in interrupt_routines(own):
-        for f in reached:
-            inside.add(f.path)
-            telling |= _written(f.body) | _read_addresses(f)
-            for block in _blocks(f.body):
+        for function in reached:
+            inside.add(function.path)
+            telling |= _written(function.body) | _read_addresses(function)
+            for block in _blocks(function.body):
                 for path, words in _set_together(block).items():
                     together.setdefault(path, []).append((routine.name, words))
-    others = [f for f in own.values() if together and f.path not in inside]
+    others = [function for function in own.values() if together and function.path not in inside]
     for way in free_ways(others, own, telling):
         for source, used, line in _copies(way):
             about = source.declaration.path
@@ -117,9 +117,9 @@ def _add_copied(own: dict[str, Function], found: dict[str, list[Pair]]) -> None:
                     found.setdefault(about, []).append(Pair(words & used, frozenset({routine_name}), reader, line))
 
 
-def _read_addresses(f: Function) -> set[str]:
+def _read_addresses(function: Function) -> set[str]:
     """The objects at file scope whose address a function takes."""
-    addresses = (p.lvalue for p in within(f.body) if isinstance(p, AddressOf))
+    addresses = (part.lvalue for part in within(function.body) if isinstance(part, AddressOf))
     return {path for lvalue in addresses if (path := _path(lvalue)) is not None}
 
 
@@ -127,15 +127,15 @@ def _set_together(block: list[Stmt]) -> dict[str, frozenset[int]]:
     """The words of structures that the statements of a block itself set: several, and not all of them counters."""
     found: dict[str, set[int]] = {}
     counted: dict[str, set[int]] = {}
-    for s in block:
-        match s:
+    for statement in block:
+        match statement:
             case Assign(target=LValue(root=Variable(kind="global", ctype=StructType()) as root, indices=[]) as target):
                 path = root.declaration.path
                 found.setdefault(path, set()).add(target.words)
-                if _counts(s.value, target):
+                if _counts(statement.value, target):
                     counted.setdefault(path, set()).add(target.words)
             case CopyStruct(target=LValue(root=Variable(kind="global", ctype=StructType() as whole) as root)):
-                if s.target.ctype == whole:
+                if statement.target.ctype == whole:
                     found.setdefault(root.declaration.path, set()).update(_words(whole))
     return {
         path: frozenset(words) for path, words in found.items()
@@ -159,10 +159,10 @@ def _words(ctype: StructType) -> frozenset[int]:
 def _copies(way: Ways) -> Iterator[tuple[Variable, frozenset[int], int]]:
     """The structures at file scope that a function copies as a whole, the words of the copies that are used, the line.
     """
-    for s in way.undecided:
+    for statement in way.undecided:
         target: Variable | Expr | None = None
         source: LValue | None = None
-        match s:
+        match statement:
             case CopyStruct(target=LValue(root=target), source=source):
                 pass
             case Declare(variable=target, value=Load(lvalue=source)):
@@ -171,28 +171,28 @@ def _copies(way: Ways) -> Iterator[tuple[Variable, frozenset[int], int]]:
             case LValue(root=Variable(kind="global", ctype=StructType() as whole) as root, ctype=ctype) if (
                 ctype == whole and not whole.word_backed and not _has_array(whole)
             ):
-                yield root, _used_words(way.function, target, whole), s.line
+                yield root, _used_words(way.function, target, whole), statement.line
 
 
 def _has_array(ctype: StructType) -> bool:
     return any(isinstance(member.ctype, ArrayType) for member in ctype.members)
 
 
-def _used_words(f: Function, copy: Variable | Expr | None, whole: StructType) -> frozenset[int]:
+def _used_words(function: Function, copy: Variable | Expr | None, whole: StructType) -> frozenset[int]:
     """The words of a copy that a function reads; all of them if others may read it too."""
     if not isinstance(copy, Variable) or copy.kind == "global":
         return _words(whole)
     used: set[int] = set()
-    for p in within(f.body):
-        match p:
+    for part in within(function.body):
+        match part:
             case AddressOf(lvalue=LValue(root=root)) if root is copy:
                 return _words(whole)
             case Load(lvalue=LValue(root=root, ctype=ctype, words=words)) if root is copy:
                 if isinstance(ctype, StructType):
                     return _words(whole)
                 used.add(words)
-    for s in statements(f.body):
-        if isinstance(s, CopyStruct) and s.source.root is copy:
+    for statement in statements(function.body):
+        if isinstance(statement, CopyStruct) and statement.source.root is copy:
             return _words(whole)
     return frozenset(used)
 
@@ -202,22 +202,22 @@ def continued(modules: Iterable[Module]) -> dict[str, set[tuple[str, str]]]:
 
     The function sets the object, and it sets another object that the routine depends on.
     """
-    own = {f.path: f for module in modules for f in module.functions}
+    own = {function.path: function for module in modules for function in module.functions}
     stepped: dict[str, dict[str, set[str]]] = {}
     inside: set[str] = set()
     for routine, reached in interrupt_routines(own):
-        inside |= {f.path for f in reached}
-        used = {path for f in reached for path in _used(f)}
-        steps = {path for f in reached for path in _steps(f)}
+        inside |= {function.path for function in reached}
+        used = {path for function in reached for path in _used(function)}
+        steps = {path for function in reached for path in _steps(function)}
         for path in used & steps:
             stepped.setdefault(path, {})[routine.name] = used - {path}
     found: dict[str, set[tuple[str, str]]] = {}
-    for f in own.values() if stepped else ():
-        sets = {path for path, _ in _writes(f)}
-        for path in sets & set(stepped) if f.path not in inside else ():
+    for function in own.values() if stepped else ():
+        sets = {path for path, _ in _writes(function)}
+        for path in sets & set(stepped) if function.path not in inside else ():
             for routine_name, others in stepped[path].items():
                 if sets & others:
-                    found.setdefault(path, set()).add((routine_name, f.name))
+                    found.setdefault(path, set()).add((routine_name, function.name))
     return found
 
 
@@ -225,13 +225,13 @@ def arrays_of_flags(modules: Iterable[Module]) -> set[str]:
     """The paths of arrays of integers whose elements are only ever set to constants: each is a flag, not data."""
     arrays: set[str] = set()
     data: set[str] = set()
-    for f in (f for module in modules for f in module.functions):
-        for s in statements(f.body):
-            for part in (p for root in roots(s) for p in parts(root)):
+    for function in (function for module in modules for function in module.functions):
+        for statement in statements(function.body):
+            for part in (inner for root in roots(statement) for inner in parts(root)):
                 whole = part.lvalue if isinstance(part, AddressOf) else None
                 if whole is not None and isinstance(whole.root, Variable):
                     data.add(whole.root.declaration.path)
-            match s:
+            match statement:
                 case Assign(target=LValue(root=Variable(ctype=ArrayType(element=IntType())) as root), value=value):
                     (arrays if isinstance(bare(value), Const) else data).add(root.declaration.path)
     return arrays - data
@@ -242,40 +242,41 @@ def turned_by_both(modules: Iterable[Module]) -> dict[str, set[str]]:
 
     `main` stands for every function that no routine calls.
     """
-    own = {f.path: f for module in modules for f in module.functions}
+    own = {function.path: function for module in modules for function in module.functions}
     by_routine: dict[str, set[str]] = {}
     inside: set[str] = set()
     for routine, reached in interrupt_routines(own):
-        for f in reached:
-            inside.add(f.path)
-            for path in _turns(f):
+        for function in reached:
+            inside.add(function.path)
+            for path in _turns(function):
                 by_routine.setdefault(path, set()).add(routine.name)
-    others = {path for f in own.values() if by_routine and f.path not in inside for path in _turns(f)}
+    outside = (function for function in own.values() if by_routine and function.path not in inside)
+    others = {path for function in outside for path in _turns(function)}
     return {path: routines for path, routines in by_routine.items() if path in others}
 
 
 def handed_over(modules: Iterable[Module]) -> dict[str, set[HandOver]]:
     """The objects that a function uses after it has handed over the flag that stands for them, by their paths."""
-    own = {f.path: f for module in modules for f in module.functions}
+    own = {function.path: function for module in modules for function in module.functions}
     awaited: dict[tuple[str, bool], dict[str, set[str]]] = {}
     inside: set[str] = set()
     for routine, reached in interrupt_routines(own):
-        for f in reached:
-            inside.add(f.path)
-            for flag, raised, body in _branches(f.body):
-                if (flag, not raised) in {key for s in statements(body) if (key := _flag(s)) is not None}:
+        for function in reached:
+            inside.add(function.path)
+            for flag, raised, body in _branches(function.body):
+                if (flag, not raised) in {_flag(statement) for statement in statements(body)}:
                     used = (_read if raised else _written)(body)
                     awaited.setdefault((flag, raised), {}).setdefault(routine.name, set()).update(used - {flag})
     found: dict[str, set[HandOver]] = {}
-    for f in own.values() if awaited else ():
-        for block in _blocks(f.body) if f.path not in inside else ():
-            for number, s in enumerate(block):
-                key = _flag(s)
+    for function in own.values() if awaited else ():
+        for block in _blocks(function.body) if function.path not in inside else ():
+            for number, statement in enumerate(block):
+                key = _flag(statement)
                 if key is None or key not in awaited:
                     continue
                 behind = block[number + 1 :]
-                for called in {p.function.path for p in within(behind) if isinstance(p, Call)}:
-                    behind = [*behind, *(s for other in below(called, own) for s in other.body)]
+                for called in {part.function.path for part in within(behind) if isinstance(part, Call)}:
+                    behind = [*behind, *(statement for other in below(called, own) for statement in other.body)]
                 late = (_written if key[1] else _read)(behind)
                 for routine_name, used in awaited[key].items():
                     for path in used & late:
@@ -345,17 +346,17 @@ def _selected(body: list[Stmt]) -> Iterator[tuple[str, str]]:
 
 def _branches(body: list[Stmt]) -> Iterator[tuple[str, bool, list[Stmt]]]:
     """(path of a flag, whether it must be set, the statements that run only then)."""
-    for number, s in enumerate(body):
-        if isinstance(s, If):
-            behind = body[number + 1 :] if leaves(s.then) else []
-            tested = s.test
+    for number, statement in enumerate(body):
+        if isinstance(statement, If):
+            behind = body[number + 1 :] if leaves(statement.then) else []
+            tested = statement.test
             several = isinstance(tested, Logic) and tested.op == "and"
             for test in tested.operands if isinstance(tested, Logic) and several else [tested]:
                 if (found := _tested(test)) is not None:
-                    yield *found, s.then
+                    yield *found, statement.then
                     if not several:
-                        yield found[0], not found[1], [*s.otherwise, *behind]
-        for block in blocks(s):
+                        yield found[0], not found[1], [*statement.otherwise, *behind]
+        for block in blocks(statement):
             yield from _branches(block)
 
 
@@ -373,9 +374,9 @@ def _tested(test: Expr) -> tuple[str, bool] | None:
     return None
 
 
-def _flag(s: Stmt) -> tuple[str, bool] | None:
+def _flag(statement: Stmt) -> tuple[str, bool] | None:
     """The plain object that a statement sets to a constant, and whether that is another one than 0."""
-    match s:
+    match statement:
         case Assign(target=LValue(root=Variable(kind="global") as root), value=value) if root.ctype.leaves == 1:
             constant = bare(value)
             return (root.declaration.path, constant.value != 0) if isinstance(constant, Const) else None
@@ -384,21 +385,21 @@ def _flag(s: Stmt) -> tuple[str, bool] | None:
 
 def _blocks(body: list[Stmt]) -> Iterator[list[Stmt]]:
     yield body
-    for s in body:
-        for block in blocks(s):
+    for statement in body:
+        for block in blocks(statement):
             yield from _blocks(block)
 
 
 def _written(body: Iterable[Stmt]) -> set[str]:
     """The objects at file scope that statements assign."""
-    targets = [s.target for s in statements(body) if isinstance(s, Assign | CopyStruct)]
+    targets = [statement.target for statement in statements(body) if isinstance(statement, Assign | CopyStruct)]
     return {path for target in targets if (path := _path(target)) is not None}
 
 
 def _read(body: Iterable[Stmt]) -> set[str]:
     """The objects at file scope whose values or addresses statements use."""
-    found = {_path(s.source) for s in statements(body) if isinstance(s, CopyStruct)}
-    found |= {_path(p.lvalue) for p in within(body) if isinstance(p, Load | AddressOf)}
+    found = {_path(statement.source) for statement in statements(body) if isinstance(statement, CopyStruct)}
+    found |= {_path(part.lvalue) for part in within(body) if isinstance(part, Load | AddressOf)}
     return {path for path in found if path is not None}
 
 
@@ -407,99 +408,99 @@ def _path(lvalue: Any) -> str | None:
     return root.declaration.path if isinstance(root, Variable) and root.kind == "global" else None
 
 
-def _turns(f: Function) -> Iterator[str]:
+def _turns(function: Function) -> Iterator[str]:
     """The plain objects that a function moves round a ring buffer: `i = (i + 1) % N`."""
-    for s in statements(f.body):
-        match s:
+    for statement in statements(function.body):
+        match statement:
             case Assign(target=LValue(root=Variable(kind="global") as root), value=value) if root.ctype.leaves == 1:
                 wrapped = bare(value)
                 if not isinstance(wrapped, Binary) or wrapped.op not in ("%", "&"):
                     continue
                 stepped = bare(wrapped.left)
-                own = any(isinstance(p, Load) and p.lvalue.root is root for p in parts(stepped))
+                own = any(isinstance(part, Load) and part.lvalue.root is root for part in parts(stepped))
                 if own and isinstance(stepped, Binary) and stepped.op in ("+", "-"):
                     yield root.declaration.path
 
 
-def _steps(f: Function) -> Iterator[str]:
+def _steps(function: Function) -> Iterator[str]:
     """The plain objects that a function sets to a value computed from the old one, as `n = n + 1`."""
-    for s in statements(f.body):
-        match s:
+    for statement in statements(function.body):
+        match statement:
             case Assign(target=LValue(root=Variable(kind="global") as root), value=value) if root.ctype.leaves == 1:
-                if any(isinstance(p, Load) and p.lvalue.root is root for p in parts(value)):
+                if any(isinstance(part, Load) and part.lvalue.root is root for part in parts(value)):
                     yield root.declaration.path
 
 
-def _used(f: Function) -> Iterator[str]:
+def _used(function: Function) -> Iterator[str]:
     """The plain objects that a function reads in a test or in an array index."""
-    for s in statements(f.body):
-        deciding: list[Any] = [s.test] if isinstance(s, If | While) else []
-        deciding += [p for root in roots(s) for p in parts(root) if isinstance(p, Index)]
-        for p in (p for e in deciding for p in parts(e)):
-            root = p.root if isinstance(p, LValue) else None
+    for statement in statements(function.body):
+        deciding: list[Any] = [statement.test] if isinstance(statement, If | While) else []
+        deciding += [part for root in roots(statement) for part in parts(root) if isinstance(part, Index)]
+        for part in (part for expression in deciding for part in parts(expression)):
+            root = part.root if isinstance(part, LValue) else None
             if isinstance(root, Variable) and root.kind == "global" and root.ctype.leaves == 1:
                 yield root.declaration.path
 
 
-def _word(e: Any) -> _Word | None:
+def _word(expression: Any) -> _Word | None:
     """The word of a file-scope object that an expression reads, or that an lvalue names; None for any other."""
-    lvalue = e.lvalue if isinstance(e, Load) else e
+    lvalue = expression.lvalue if isinstance(expression, Load) else expression
     match lvalue:
         case LValue(root=Variable(kind="global") as root, indices=[], words=words):
             return root.declaration.path, words
     return None
 
 
-def _writes(f: Function) -> Iterator[_Word]:
-    for s in statements(f.body):
-        if isinstance(s, Assign) and (word := _word(s.target)) is not None:
+def _writes(function: Function) -> Iterator[_Word]:
+    for statement in statements(function.body):
+        if isinstance(statement, Assign) and (word := _word(statement.target)) is not None:
             yield word
 
 
-def _combined(f: Function, shared: set[str]) -> Iterator[frozenset[_Word]]:
+def _combined(function: Function, shared: set[str]) -> Iterator[frozenset[_Word]]:
     """The words that each operation of a function combines.
 
     The body of a loop is left out if its test reads a shared object again: the loop checks what it has read.
     """
     given: dict[Variable, list[_Word | None]] = {}
-    for loop in statements(f.body):
+    for loop in statements(function.body):
         if isinstance(loop, While) and rereads(loop):
             for variable in assigned_variables(loop.body):
                 given.setdefault(variable, []).append(None)
-    for s in statements(f.body):
-        match s:
+    for statement in statements(function.body):
+        match statement:
             case Assign(target=LValue(root=Variable() as root, indices=[]), value=value) if root.kind != "global":
                 given.setdefault(root, []).append(_word(bare(value)))
             case Declare(variable=root, value=Expr() as value):
                 given.setdefault(root, []).append(_word(bare(value)))
             case For(variable=LValue(root=Variable() as root)):
                 given.setdefault(root, []).append(None)
-    copies = {v: words[0] for v, words in given.items() if len(words) == 1 and words[0] is not None}
-    for s in _once(f.body, shared):
-        for root in roots(s):
-            for e in parts(root):
-                if isinstance(e, Binary) and e.op in _COMBINE:
-                    yield frozenset(_leaves(e, copies))
+    copies = {variable: words[0] for variable, words in given.items() if len(words) == 1 and words[0] is not None}
+    for statement in _once(function.body, shared):
+        for root in roots(statement):
+            for expression in parts(root):
+                if isinstance(expression, Binary) and expression.op in _COMBINE:
+                    yield frozenset(_leaves(expression, copies))
 
 
-def _leaves(e: Any, copies: dict[Variable, _Word]) -> Iterator[_Word]:
-    for p in parts(e):
-        if isinstance(p, Load):
-            word = _word(p)
-            if word is None and isinstance(p.lvalue.root, Variable):
-                word = copies.get(p.lvalue.root)
+def _leaves(expression: Any, copies: dict[Variable, _Word]) -> Iterator[_Word]:
+    for part in parts(expression):
+        if isinstance(part, Load):
+            word = _word(part)
+            if word is None and isinstance(part.lvalue.root, Variable):
+                word = copies.get(part.lvalue.root)
             if word is not None:
                 yield word
 
 
 def _once(body: list[Stmt], shared: set[str]) -> Iterator[Stmt]:
     """The statements that are not in a loop whose test reads a shared object."""
-    for s in body:
-        yield s
-        if isinstance(s, While) and any(
-            isinstance(p, LValue) and isinstance(p.root, Variable) and p.root.declaration.path in shared
-            for p in parts(s.test)
+    for statement in body:
+        yield statement
+        if isinstance(statement, While) and any(
+            isinstance(part, LValue) and isinstance(part.root, Variable) and part.root.declaration.path in shared
+            for part in parts(statement.test)
         ):  # fmt: skip
             continue
-        for block in blocks(s):
+        for block in blocks(statement):
             yield from _once(block, shared)

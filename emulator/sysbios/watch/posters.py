@@ -29,10 +29,10 @@ class Posters:
     def _read(self) -> None:
         """Read the calls of every function, once."""
         for module in self._linked.program.modules.values() if not self._posted else ():
-            for f in module.functions:
-                self._mentioned[f.path] = f.calls
-                self._called[f.path] = {call.function.path for call in calls(f.body)}
-                self._posted[f.path] = set(first_arguments(f.body, "Semaphore_post"))
+            for function in module.functions:
+                self._mentioned[function.path] = function.calls
+                self._called[function.path] = {call.function.path for call in calls(function.body)}
+                self._posted[function.path] = set(first_arguments(function.body, "Semaphore_post"))
 
     def of(self, semaphore: Semaphore) -> set[Task] | None:
         """Tasks whose code posts `semaphore`; None if a Clock, Swi, Hwi or unknown code could post it too."""
@@ -47,7 +47,7 @@ class Posters:
             if path not in self._posted:
                 return None
             reached = _reached(self._mentioned, path)
-            if any(self._posted[p] & objects for p in reached):
+            if any(self._posted[name] & objects for name in reached):
                 if not isinstance(what, Task):
                     return None
                 found.add(what)

@@ -96,7 +96,7 @@ def _stride(ctype: CType) -> int:
 
 
 def _has_array(ctype: CType) -> bool:
-    return isinstance(ctype, StructType) and any(isinstance(m.ctype, ArrayType) for m in ctype.members)
+    return isinstance(ctype, StructType) and any(isinstance(member.ctype, ArrayType) for member in ctype.members)
 
 
 class Races:
@@ -329,7 +329,7 @@ class Races:
             return shared
         if len(self._locals) >= _LOCALS_KEPT:
             live = set(self._memory.live_locals)
-            self._locals = {o: s for o, s in self._locals.items() if o in live}
+            self._locals = {item: kept for item, kept in self._locals.items() if item in live}
         self._locals[obj] = shared
         return shared
 
@@ -338,14 +338,14 @@ class Races:
     def _conflict(
         self, shared: SharedObject, cell: SharedCell, offset: int, other: LatestAccess, access: LatestAccess
     ) -> None:
-        p, q = other.protection.gates, access.protection.gates
-        if p and q:
+        other_gates, access_gates = other.protection.gates, access.protection.gates
+        if other_gates and access_gates:
             self._wrong_gate(shared, other, access)
             return
         element = offset // shared.per_element if shared.per_element else 0
         conflicting = shared.conflicting.setdefault(element, set())
         conflicting.add(offset)
-        lower, higher = sorted((other, access), key=lambda a: a.thread.level)
+        lower, higher = sorted((other, access), key=lambda each: each.thread.level)
         low, high = lower.thread, higher.thread
         cut = cell.cut(low, higher)
         if low.level == HWI_LEVEL and cut is None:  # Two handlers can nest either way round.
@@ -380,9 +380,9 @@ class Races:
             # Report it at the statement that must hold the interrupt off.
             access, other = other, access
         at = (access.statement if cut is None else cut) if bare else 0
-        if not bare and p and not q:
+        if not bare and other_gates and not access_gates:
             at = access.statement
-        elif not bare and q and not p:
+        elif not bare and access_gates and not other_gates:
             access, other, at = other, access, other.statement  # reported where the gate is missing
         said = self._sentence(shared, rule, lost, low, high, access, "writes" if other.write else "reads")
         if goes_on:
@@ -497,7 +497,9 @@ class Races:
                 self._findings.count(finding)
                 for access in accesses:
                     told = self._access_text(access, timed=False)
-                    if len(finding.details) < _DETAILS and not any(d.startswith(told) for d in finding.details):
+                    if len(finding.details) < _DETAILS and not any(
+                        detail.startswith(told) for detail in finding.details
+                    ):
                         finding.details += (told,)
 
     def _access_text(self, access: LatestAccess, *, timed: bool = True) -> str:
@@ -511,8 +513,8 @@ class Races:
 
     def _wrong_gate(self, shared: SharedObject, other: LatestAccess, access: LatestAccess) -> None:
         """Two threads use an object under different gates, which do not exclude each other."""
-        a, b = (", ".join(sorted(map(self._names.of, x.protection.gates))) for x in (other, access))
-        how = f"under {a} by {other.thread} and under {b} by {access.thread}"
+        one, another = (", ".join(sorted(map(self._names.of, each.protection.gates))) for each in (other, access))
+        how = f"under {one} by {other.thread} and under {another} by {access.thread}"
         self._add_detail(shared, how, self._access_text(other), access.statement)
 
     def _gates(self, shared: SharedObject, gates: frozenset[Gate], thread: Thread, statement: StatementNumber) -> None:
@@ -536,10 +538,10 @@ class Races:
         for gate, users in shared.under.items():
             for user, where in users.items():
                 if user not in functions and len(users) < len(functions):
-                    a, b = self._names.of(usual), self._names.of(gate)
-                    how = f"under {a} by {len(functions)} functions, but under {b} by {user[1]}"
+                    most, one = self._names.of(usual), self._names.of(gate)
+                    how = f"under {most} by {len(functions)} functions, but under {one} by {user[1]}"
                     first = self._locator.text(next(iter(functions.values())))
-                    self._add_detail(shared, how, f"under {a} in {first}", where)
+                    self._add_detail(shared, how, f"under {most} in {first}", where)
 
     def _add_detail(self, shared: SharedObject, how: str, detail: str, statement: StatementNumber) -> None:
         known = shared.findings.get("wrong-gate")

@@ -78,7 +78,7 @@ class Releases:
 
     def period(self, thread: Thread) -> int:
         """Cycles between the releases of a task; 0 if it has none."""
-        return max((s.period for s in self._sources.values() if s.consumer is thread), default=0)
+        return max((source.period for source in self._sources.values() if source.consumer is thread), default=0)
 
     # Listeners
 
@@ -221,5 +221,5 @@ class Releases:
 
     def _ran_since(self, thread: Thread, release: Release) -> tuple[str, ...]:
         """The threads that had the CPU since a release, as sentences."""
-        used = [(t, cycles) for t, cycles in self._threads.used_since(release.usage) if cycles > CYCLES_PER_US]
-        return tuple(f"{t} ran for {us(cycles):.1f} us of it" for t, cycles in used[:4])
+        used = [(other, cycles) for other, cycles in self._threads.used_since(release.usage) if cycles > CYCLES_PER_US]
+        return tuple(f"{other} ran for {us(cycles):.1f} us of it" for other, cycles in used[:4])

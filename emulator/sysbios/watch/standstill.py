@@ -241,9 +241,9 @@ class Standstill:
         place = self._locator.place(statement)
         if place is None:
             return
-        a, b = self._names.of(semaphore), self._names.of(gate)
+        awaited, held = self._names.of(semaphore), self._names.of(gate)
         self._findings.report_at(
-            place, "deadlock", f"{consumer} waits for {a} while it holds {b}, and {producer}, which would post {a}, "
-            f"waits for {b}: neither runs again", object=b, how="dynamic", task=consumer.name,
+            place, "deadlock", f"{consumer} waits for {awaited} while it holds {held}, and {producer}, which would "
+            f"post {awaited}, waits for {held}: neither runs again", object=held, how="dynamic", task=consumer.name,
             details=(f"{producer} waits in {self._locator.text(self._gates.statement(producer))}",),
         )  # fmt: skip

@@ -187,7 +187,7 @@ class StarvationWatch:
         if waited <= limit:
             return
         blamed = self._blamed(thread, waiting.since)
-        used = [(t, cycles) for t, cycles in self._threads.used_since(waiting.usage) if t is not thread]
+        used = [(other, cycles) for other, cycles in self._threads.used_since(waiting.usage) if other is not thread]
         if blamed is None or not used:
             return
         (culprit, statement, kind), ticks = blamed
@@ -198,12 +198,12 @@ class StarvationWatch:
         place = self._locator.place(statement)
         if place is None:
             return
-        share = next((cycles for t, cycles in used if t is culprit), 0)
+        share = next((cycles for other, cycles in used if other is culprit), 0)
         message = (
             f"{thread} was ready from {ms(waiting.since):.3f} ms and got no CPU for {ms(waited):.3f} ms: {culprit} "
             f"used it for {ms(share):.3f} ms and {doing}"
         )
-        details = tuple(f"{t} ran for {ms(cycles):.3f} ms of it" for t, cycles in used[:4])
+        details = tuple(f"{other} ran for {ms(cycles):.3f} ms of it" for other, cycles in used[:4])
         if waiting.finding is None:
             waiting.finding = self._findings.report_at(
                 place, "starvation", message, object=thread.name, value=us(waited), details=details, how="dynamic",
@@ -221,6 +221,6 @@ class StarvationWatch:
                 break
             if sample[0] is not thread:
                 counted[sample] += 1
-        waits = Counter({sample: n for sample, n in counted.items() if sample[2]})
+        waits = Counter({sample: count for sample, count in counted.items() if sample[2]})
         most = (waits or counted).most_common(1)
         return most[0] if most else None

@@ -77,11 +77,12 @@ class Thread:
 
     __slots__ = (
         "clock", "cpu", "entered", "index", "is_task", "left", "level", "name", "protection", "run", "seen", "stepped",
-        "taken", "vc", "what",
+        "taken", "vector", "what",
     )  # fmt: skip
 
     def __init__(
-        self, name: str, what: Task | Swi | Hwi | ClockObject | Routine | None, level: int, index: int, vc: VectorClock
+        self, name: str, what: Task | Swi | Hwi | ClockObject | Routine | None, level: int, index: int,
+        vector: VectorClock,
     ) -> None:  # fmt: skip
         self.name = name
         self.what = what
@@ -89,9 +90,9 @@ class Thread:
         self.is_task = isinstance(what, Task)
         self.level = level
         self.index = index
-        #: Its own clock, which grows at each release.  `vc` holds its value as of the last call of `known`.
+        #: Its own clock, which grows at each release.  `vector` holds its value as of the last call of `known`.
         self.clock = 1
-        self.vc = (*vc, *(0,) * (index - len(vc)), 1)
+        self.vector = (*vector, *(0,) * (index - len(vector)), 1)
         #: The clock up to which its present run has come, or its latest one: a Swi or handler runs many times.
         self.run = [1]
         #: The words that may tell it something, with the values that its present run has read (not a task's).
@@ -114,8 +115,8 @@ class Thread:
 
     def knows(self, other: Thread, clock: int) -> bool:
         """Whether what `other` did at its `clock` is ordered before what this thread does now."""
-        vc = self.vc
-        return other is self or (other.index < len(vc) and vc[other.index] >= clock)
+        vector = self.vector
+        return other is self or (other.index < len(vector) and vector[other.index] >= clock)
 
     def step(self) -> None:
         """What it does from now on is later than what it has told others."""
@@ -130,20 +131,20 @@ class Thread:
 
     def known(self) -> VectorClock:
         """Its vector clock now, including its own component."""
-        vc = self.vc
-        if vc[self.index] != self.clock:
-            vc = self.vc = at_clock(vc, self.index, self.clock)
-        return vc
+        vector = self.vector
+        if vector[self.index] != self.clock:
+            vector = self.vector = at_clock(vector, self.index, self.clock)
+        return vector
 
 
-def at_clock(vc: VectorClock, index: int, clock: int) -> VectorClock:
+def at_clock(vector: VectorClock, index: int, clock: int) -> VectorClock:
     """A copy of a vector clock with the component at `index` replaced by `clock`."""
-    return (*vc[:index], clock, *vc[index + 1 :])
+    return (*vector[:index], clock, *vector[index + 1 :])
 
 
-def joined(a: VectorClock, b: VectorClock) -> VectorClock:
+def joined(one: VectorClock, other: VectorClock) -> VectorClock:
     """The maximum of two vector clocks, component by component."""
-    return tuple(map(max, a, b) if len(a) == len(b) else map(max, zip_longest(a, b, fillvalue=0)))
+    return tuple(map(max, one, other) if len(one) == len(other) else map(max, zip_longest(one, other, fillvalue=0)))
 
 
 class ThreadWatch:
@@ -326,7 +327,7 @@ class ThreadWatch:
             thread = thread or self.current
             if thread.taken.get(what) is not carried:
                 thread.taken[what] = carried
-                thread.vc = joined(thread.vc, carried)
+                thread.vector = joined(thread.vector, carried)
 
     # Exclusion
 
@@ -390,31 +391,34 @@ class ThreadWatch:
     def used_since(self, usage: list[int]) -> list[tuple[Thread, int]]:
         """The threads that had the CPU since `usage` was taken, each with its cycles, longest first."""
         then = usage + [0] * (len(self.all) - len(usage))
-        used = [(t, now - before) for t, now, before in zip(self.all, self.usage(), then, strict=True)]
-        return sorted(((t, n) for t, n in used if n > 0), key=lambda row: -row[1])
+        used = [(thread, now - before) for thread, now, before in zip(self.all, self.usage(), then, strict=True)]
+        return sorted(((thread, cycles) for thread, cycles in used if cycles > 0), key=lambda row: -row[1])
 
     def ready_below(self, level: int) -> list[Thread]:
         """Tasks of a lower level that could run, without the idle task."""
         return [
-            t
-            for t in self.all
-            if isinstance(t.what, Task) and 0 < t.level < level and t.what.mode == READY and t is not self.current
+            thread
+            for thread in self.all
+            if isinstance(thread.what, Task)
+            and 0 < thread.level < level
+            and thread.what.mode == READY
+            and thread is not self.current
         ]
 
 
-def excluded(a: Thread, p: Protection, b: Thread, q: Protection) -> bool:
-    """Whether an access of `a` under `p` and one of `b` under `q` can never interrupt each other.
+def excluded(first: Thread, first_protection: Protection, second: Thread, second_protection: Protection) -> bool:
+    """Whether accesses of two threads, each under its protection, can never interrupt each other.
 
     A common gate excludes them.  Otherwise only the thread of lower level can be interrupted, so it is enough that this
     one holds the other off.  Equal levels do not pre-empt each other.  A masked line or a cleared enable holds a Hwi
     off.  Two handlers can nest either way round.
     """
-    if p.gates & q.gates:
+    if first_protection.gates & second_protection.gates:
         return True
-    if a.level > b.level:
-        a, p, b, q = b, q, a, p
-    if not isinstance(b.what, Hwi | Routine):
-        return p.ceiling >= b.level
-    if not p.lines & b.what.ier_bit and b.what.number not in p.disabled:
+    if first.level > second.level:
+        first, first_protection, second, second_protection = second, second_protection, first, first_protection
+    if not isinstance(second.what, Hwi | Routine):
+        return first_protection.ceiling >= second.level
+    if not first_protection.lines & second.what.ier_bit and second.what.number not in first_protection.disabled:
         return False
-    return not isinstance(a.what, Hwi | Routine) or bool(q.lines & a.what.ier_bit)
+    return not isinstance(first.what, Hwi | Routine) or bool(second_protection.lines & first.what.ier_bit)

@@ -112,11 +112,17 @@ class TimeoutWatch:
         """File and line of the pends on a mailbox whose result the program does not use."""
         if self._ignored is None:
             modules = self._linked.program.modules.values()
-            self._ignored = {at for module in modules for f in module.functions for at in _ignored_results(f)}
+            self._ignored = {
+                at for module in modules for function in module.functions for at in _ignored_results(function)
+            }
         return self._ignored
 
 
-def _ignored_results(f: Function) -> Iterator[tuple[str, int]]:
-    for s in statements(f.body):
-        if isinstance(s, Evaluate) and isinstance(s.value, Call) and s.value.function.name == "Mailbox_pend":
-            yield s.where.file, s.where.line
+def _ignored_results(function: Function) -> Iterator[tuple[str, int]]:
+    for statement in statements(function.body):
+        if (
+            isinstance(statement, Evaluate)
+            and isinstance(statement.value, Call)
+            and statement.value.function.name == "Mailbox_pend"
+        ):
+            yield statement.where.file, statement.where.line

@@ -75,7 +75,7 @@ class Transactions:
 
     def _blocks(self, _cycles: int, _kind: str, name: str) -> None:
         """A task blocks.  Its conversions and words are now its interrupt's, so they no longer count as open."""
-        for part in [p for p, o in self._open.items() if o.thread.name == name and not o.lasts]:
+        for part in [key for key, opened in self._open.items() if opened.thread.name == name and not opened.lasts]:
             del self._open[part]
 
     def begin(self, block: str, part: str, *, opens: bool) -> None:
@@ -106,7 +106,7 @@ class Transactions:
         cell.keep(thread, True, protection, statement, self._clock.now)
 
     def _cut(self, block: str, part: str, thread: Thread, other: LatestAccess) -> None:
-        opened = next((o for o in self._open.values() if o.block == block and o.thread is not thread), None)
+        opened = next((each for each in self._open.values() if each.block == block and each.thread is not thread), None)
         happened = () if opened is None else (
             f"it has happened: {opened.thread.name} began at {us(opened.time):.3f} us in "
             f"{self._locator.text(opened.statement)} and had not ended",
@@ -118,7 +118,7 @@ class Transactions:
             if happened and len(known.details) < 2:
                 known.details += happened
             return
-        low, high = sorted((thread, other.thread), key=lambda t: t.level)
+        low, high = sorted((thread, other.thread), key=lambda side: side.level)
         finding = self._findings.report(
             "transaction-cut", f"{part} is used by {thread} and by {other.thread} without a common gate: {high} can "
             f"cut a transaction of {low}", object=block,
@@ -132,7 +132,7 @@ class Transactions:
     def watch_adc(self, regs: WatchedBlock, results: WatchedBlock) -> None:
         """A conversion occupies a SOC and an interrupt flag from the trigger until the result is read."""
         socs = [f"{regs.name} SOC{soc}" for soc in range(16)]
-        flags = [f"{regs.name} ADCINT{n}" for n in range(1, 5)]
+        flags = [f"{regs.name} ADCINT{number}" for number in range(1, 5)]
         for soc, part in enumerate(socs):
             self._on_read(results, f"ADCRESULT{soc}", part)
         self._on_bits(regs, "ADCSOCFRC1", socs, opens=True, tasks_only=False)
@@ -172,7 +172,7 @@ class Transactions:
     def _throughout(opened: OpenTransaction, begun: Protection, now: Protection) -> Protection:
         """The protection that held from begin to end.  A gate that was left meanwhile does not count."""
         left = opened.thread.left
-        gates = frozenset(g for g in begun.gates & now.gates if left.get(g, -1) < opened.time)
+        gates = frozenset(gate for gate in begun.gates & now.gates if left.get(gate, -1) < opened.time)
         ceiling = min(begun.ceiling, now.ceiling)
         return Protection(gates, ceiling, begun.lines & now.lines, begun.disabled & now.disabled)
 
@@ -224,4 +224,4 @@ def _bits(parts: list[str], word: int) -> list[str]:
     word &= (1 << len(parts)) - 1
     if word and not word & word - 1:
         return [parts[word.bit_length() - 1]]
-    return [part for n, part in enumerate(parts) if word >> n & 1]
+    return [part for number, part in enumerate(parts) if word >> number & 1]

@@ -68,7 +68,7 @@ def free_ways(
         if not more:
             break
         known |= more
-    decided = {f.path for way in ways for path in way.decided for f in below(path, own)}
+    decided = {called.path for way in ways for path in way.decided for called in below(path, own)}
     return [way for way in ways if way.function.path not in decided]
 
 
@@ -93,9 +93,9 @@ class Ways:
         known = -1
         while known != len(self._told):
             known, self.undecided = len(self._told), list[Stmt]()
-            for s in statements(function.body):
-                root = assigned(s)
-                if root is not None and root.kind != "global" and any(map(self.tells, roots(s))):
+            for statement in statements(function.body):
+                root = assigned(statement)
+                if root is not None and root.kind != "global" and any(map(self.tells, roots(statement))):
                     self._told.add(root)
             self._walk(function.body, free=True)
 
@@ -104,29 +104,41 @@ class Ways:
 
         Returns whether its end is reached whatever they have told.
         """
-        for s in body:
+        for statement in body:
             if free:
-                self.undecided.append(s)
+                self.undecided.append(statement)
             else:
-                self.decided |= {p.function.path for root in roots(s) for p in parts(root) if isinstance(p, Call)}
-                root = assigned(s)
+                self.decided |= {
+                    part.function.path for root in roots(statement) for part in parts(root) if isinstance(part, Call)
+                }
+                root = assigned(statement)
                 if root is not None and root.kind == "global":
                     self.passed_on.add(root.declaration.path)
                 elif root is not None:
                     self._told.add(root)
-            test = s.test if isinstance(s, If | While) else s.subject if isinstance(s, Switch) else None
+            test = (
+                statement.test
+                if isinstance(statement, If | While)
+                else statement.subject
+                if isinstance(statement, Switch)
+                else None
+            )
             told = test is not None and self.tells(test)
-            ends = [self._walk(block, free=free and not told) for block in blocks(s)]
-            leaves = any(isinstance(inner, Return | Break | Continue) for b in blocks(s) for inner in statements(b))
-            if (told and (leaves or isinstance(s, While))) or (free and not told and not all(ends)):
+            ends = [self._walk(block, free=free and not told) for block in blocks(statement)]
+            leaves = any(
+                isinstance(inner, Return | Break | Continue)
+                for branch in blocks(statement)
+                for inner in statements(branch)
+            )
+            if (told and (leaves or isinstance(statement, While))) or (free and not told and not all(ends)):
                 free = False
         return free
 
-    def tells(self, e: Any) -> bool:
+    def tells(self, expression: Any) -> bool:
         """Whether the value of an expression may depend on what the routines have done."""
-        for p in parts(e):
-            match p:
-                case Call() | RegisterLoad() if self._part_tells(p):
+        for part in parts(expression):
+            match part:
+                case Call() | RegisterLoad() if self._part_tells(part):
                     return True
                 case CallPointer() | LValue(root=Expr()):
                     return True
