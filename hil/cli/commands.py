@@ -14,12 +14,16 @@ from typer.core import TyperCommand, TyperGroup
 
 from hil.cli.help import Command, with_lists
 
-#: The commands in the order of `hil --help`.  One is the function of its name, in the file of its name.
-NAMES: Final = (
-    "run", "demo", "drive", "conformance", "tasks", "rta", "board", "build", "check", "new", "explain", "export",
-    "faults", "docs", "console", "record", "replay", "compare", "scenario", "soak", "campaign", "calibrate",
-    "compare-filters", "blind-spots", "tune", "diff", "audit",
-)  # fmt: skip
+#: The commands as `hil --help` lists them.  One is the function of its name, in the file of its name.
+GROUPS: Final = {
+    "Run and drive the robot": ("demo", "run", "drive", "console", "tasks", "board"),
+    "Your own code": ("new", "check", "explain", "diff", "conformance"),
+    "Record and look again": ("record", "replay", "compare", "export"),
+    "Scenarios and faults": ("scenario", "faults", "soak", "campaign"),
+    "The robot of the thesis": ("audit", "rta", "calibrate", "compare-filters", "blind-spots", "tune"),
+    "This tool": ("docs", "build"),
+}
+NAMES: Final = tuple(name for names in GROUPS.values() for name in names)
 #: Those in the file of another.
 IN_FILE_OF: Final = {"replay": "record", "compare": "record"}
 #: Commands whose arguments may look like options: negative speeds.
@@ -29,8 +33,8 @@ ACCEPT_NEGATIVE_NUMBERS: Final = ("drive",)
 class LazyCommand(TyperCommand):
     """A command whose module is not imported yet: enough for `hil --help`.  `whole` imports the module."""
 
-    def __init__(self, name: str) -> None:
-        super().__init__(name=name)
+    def __init__(self, name: str, group: str) -> None:
+        super().__init__(name=name, rich_help_panel=group)
         self._function = name.replace("-", "_")
         #: Where it is.
         self.module = f"hil.cli.{IN_FILE_OF.get(name, self._function)}"
@@ -68,7 +72,7 @@ class LazyCommand(TyperCommand):
         return self.whole.make_context(*arguments, **more)
 
 
-COMMANDS: Final = {name: LazyCommand(name) for name in NAMES}
+COMMANDS: Final = {name: LazyCommand(name, group) for group, names in GROUPS.items() for name in names}
 
 
 def import_chosen(arguments: list[str]) -> None:
