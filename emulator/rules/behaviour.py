@@ -190,7 +190,8 @@ input whose result can be computed by hand, and it returns something else.
 The machine continues with an old value after its source is silent: a motor follows an order of a link that is lost, a
 heater follows a sensor that is dead.
 
-The variable keeps its last value, and nothing in it says how old it is. `hil check FILE... --silence` finds this. It
+The variable keeps its last value, and nothing in it says how old it is. `hil check FILE... --silence` finds this; a
+check without it names what could fall silent. It
 runs a whole program a second time, three times as long as usual, and cuts off serial lines, I2C parts and the other
 nodes of a CAN; a source may also be silent by itself. It follows each value with its time of arrival from the register
 or mailbox where it came in, through objects, parameters and results, also to an object through a pointer, to the

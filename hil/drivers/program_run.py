@@ -17,7 +17,7 @@ from emulator.registers.i2c import I2CSTR
 from hil.drivers.budget import RUN, TimeBudget, computed
 from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
-from hil.drivers.stale import AgeWatch, cut_off, watched
+from hil.drivers.stale import AgeWatch, buses, cut_off, silent_sources, watched
 from hil.drivers.waiting import (
     EndedParties,
     in_last_loop,
@@ -71,6 +71,8 @@ class ProgramOutcome:
     stopped: str = ""
     #: Why it is shorter than it was meant to be; empty if it is not.
     cut: str = ""
+    #: Its sources that have not fallen silent, because nobody asked for it (`--silence`).
+    not_silenced: tuple[str, ...] = ()
 
 
 def run_program(
@@ -92,17 +94,18 @@ def run_program(
         known = {(finding.rule, finding.place) for finding in kept}
         hung = _without_parts(build, roles, for_s, board_named=board_named)
         kept = (*kept, *(f for f in hung if (f.rule, f.place) not in known), *_stale(build, roles, for_s))
-    return replace(ran, findings=kept)
+    left = () if silence or roles.main is None else silent_sources(roles)
+    return replace(ran, findings=kept, not_silenced=left)
 
 
 def _without_parts(build: Build, roles: Roles, for_s: float, *, board_named: bool) -> list[Finding]:
     """The loops that wait without a limit when no part on an I2C or a CAN answers, from the middle of a run on."""
-    used = {block[:3] for written in roles.registers.values() for block, _ in written} & {"I2c", "Can"}
+    used = buses(roles)
     if not used:
         return []
     ran = _run(build, roles, for_s, lambda fraction: None, patient=True, board_named=board_named, parts_s=for_s / 2)
-    buses = " and ".join(f"the {kind.upper()}" for kind in sorted(used, reverse=True))
-    lost = f"from {for_s / 2:.3g} s on, nothing on {buses} answers"
+    named = " and ".join(f"the {kind.upper()}" for kind in used)
+    lost = f"from {for_s / 2:.3g} s on, nothing on {named} answers"
     return [
         replace(finding, details=(*finding.details, lost))
         for finding in ran.findings if finding.rule in _HANGS and not is_intended(finding, roles)

@@ -541,6 +541,19 @@ def watched(
     return found
 
 
+def silent_sources(roles: Roles) -> tuple[str, ...]:
+    """What a program uses of what can be cut off: serial lines that its outputs follow, the I2C, the CAN."""
+    _, inputs = ValueSources(roles.functions).relevant()
+    lines = {match[1].upper() for name in inputs if (match := re.match(r"(Sci\w)Regs", name))}
+    return (*sorted(lines), *(f"the {kind.upper()}" for kind in buses(roles)))
+
+
+def buses(roles: Roles) -> list[str]:
+    """The kinds of buses that a program uses, of which parts can be cut off: "I2c", "Can"."""
+    used = {block[:3] for written in roles.registers.values() for block, _ in written}
+    return [kind for kind in ("I2c", "Can") if kind in used]
+
+
 def cut_off(board: Board) -> None:
     """From now on no part on an I2C answers, and no node of a CAN but the chip's own."""
     for bus in board.i2c_bus.values():

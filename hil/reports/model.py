@@ -62,6 +62,8 @@ class Run:
     outcome: Mapping[str, Any] = field(default_factory=dict)
     #: Of driver files: their functions.
     functions: tuple[CalledFunction, ...] = ()
+    #: Sources of a program that could fall silent, which was not tried.
+    not_silenced: tuple[str, ...] = ()
     #: Code ran that was not calibrated: its computation times may be so many times longer or shorter on the chip.
     uncalibrated_factor: float | None = None
     #: What came of each fault that was declared.

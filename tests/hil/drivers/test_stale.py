@@ -227,6 +227,22 @@ def test_an_order_of_another_task_grows_old_too(tmp_path: Path) -> None:
     assert finding.object.startswith("mailbox ")
 
 
+def test_what_could_fall_silent_is_named_when_it_was_not_tried(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("link.c").write_text(RIGHT, encoding="utf-8")
+    said = "could fall silent, which was not tried (--silence): SCIA"
+    for option, expected in ((), True), (("--silence",), False):
+        invoke(["check", "link.c", "--for", "0.01", "--calls", "1", *option])
+        assert (said in capsys.readouterr().out) is expected
+        invoke(["check", "link.c", "--for", "0.01", "--calls", "1", "--json", *option])
+        assert json.loads(capsys.readouterr().out)["run"]["not_silenced"] == (["SCIA"] if expected else [])
+    Path("link.c").write_text(RIGHT.replace("CMPA = duty * 100", "CMPA = 100"), encoding="utf-8")  # nothing follows it
+    invoke(["check", "link.c", "--for", "0.01", "--calls", "1"])
+    assert "could fall silent" not in capsys.readouterr().out
+
+
 def test_it_is_looked_for_on_demand(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = RIGHT.replace(AGE, "")
     assert not stale(tmp_path, text, silence=False)
