@@ -161,7 +161,8 @@ def programs(own: Iterable[Path] = ()) -> dict[str, Linked]:
     each as it runs, and as it is watched.  Raises ValueError for C files that cannot be linked.
     """
     own = list(own)
-    variants: list[tuple[list[str], list[Path]]] = [([], []), ([ALL], []), *([([], own)] if own else [])]
+    # First the files that may be wrong: that is told before anything takes its time.
+    variants: list[tuple[list[str], list[Path]]] = [*([([], own)] if own else []), ([], []), ([ALL], [])]
     linked = [
         link(RobotBoard(), charge_by_call=True, fixes=fixes, firmware=files, watch=watch).linked
         for fixes, files in variants for watch in (False, True)

@@ -200,7 +200,12 @@ def check(
             )  # fmt: skip
             report = _report_of_drivers(wanted, policy, quiet=json_output, update=update)
         else:
-            proven = (replace(scenario, seconds=min(proof_for_s, scenario.seconds)), against) if proof else None
+            proven = None
+            if proof:
+                from hil.reports.two_fill import check_fills
+
+                check_fills(scenario.setup.fill, against)
+                proven = (replace(scenario, seconds=min(proof_for_s, scenario.seconds)), against)
             report = _report(scenario, policy, proven, coverage, quiet=json_output, update=update)
         writes += _writes(report, sarif=sarif, html=html, junit=junit)
         if lcov is not None and coverage is not None:

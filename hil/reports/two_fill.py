@@ -45,12 +45,8 @@ def prove(
 
     Raises ValueError for an unknown fill and for one that is the scenario's own.
     """
-    parse_fill(against)
+    check_fills(scenario.setup.fill, against)
     own = scenario.setup.fill
-    if against == own:
-        raise ValueError(f"the two-fill proof needs two fills: the scenario's own is {own!r}")
-    if "trap" in (own, against):
-        raise ValueError("the two-fill proof needs fills that run on: trap ends the run")
     # Who watches changes nothing that is put out, and costs time.
     scenario = replace(scenario, setup=replace(scenario.setup, watch=False, static=False))
     bench = scenario.bench()
@@ -63,6 +59,15 @@ def prove(
         progress(len(parts) / len(examined))
         parts[subject] = _reach(scenario, first, change, [fill for fill in (against, *FURTHER_FILLS) if fill != own])
     return TwoFillProof(own, against, whole, parts)
+
+
+def check_fills(own: str, against: str) -> None:
+    """Raise ValueError for fills between which there is no proof: `prove` does so, too, but after a run."""
+    parse_fill(against)
+    if against == own:
+        raise ValueError(f"the two-fill proof needs two fills: the scenario's own is {own!r}")
+    if "trap" in (own, against):
+        raise ValueError("the two-fill proof needs fills that run on: trap ends the run")
 
 
 def _reach(scenario: Scenario, first: RunOutputs, change: Change, fills: list[str]) -> RunDifferences:

@@ -139,13 +139,15 @@ def test_a_firmware_that_stops_fails_with_its_findings(capfd: pytest.CaptureFixt
         (["--fill", "heap"], "unknown fill policy 'heap'"),
         (["--fix", "no-such-fix"], "no-such-fix"),
         (["--proof", "--against", "zero"], "two fills"),
+        (["--proof", "--against", "heap"], "unknown fill policy 'heap'"),
         (["--for", "0"], "seconds 0.0: must be more than 0"),
         (["none.toml"], "none.toml"),
     ],
 )
 def test_bad_input_is_one_line_before_anything_runs(
-    arguments: list[str], expected: str, capsys: pytest.CaptureFixture[str]
+    arguments: list[str], expected: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr("hil.scenarios.scenario.Scenario.run", None)
     assert invoke([*SHORT, *arguments]) == 2
     out, err = capsys.readouterr()
     assert out == ""
