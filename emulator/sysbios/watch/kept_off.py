@@ -102,7 +102,7 @@ class Text:
     """What the routines' text says: under which conditions each one uses an object."""
 
     def __init__(self, modules: Iterable[Module]) -> None:
-        own = {f.path: f for module in modules for f in module.functions}
+        own = {function.path: function for module in modules for function in module.functions}
         found: dict[tuple[str, str, bool], frozenset[Condition]] = {}
         given: dict[_Place, set[Any]] = {}
         self._elsewhere: set[tuple[str, str, int]] = set()
@@ -110,10 +110,10 @@ class Text:
             for path, write, now in _uses(routine, frozenset(), own, ()):
                 key = (routine.name, path, write)
                 found[key] = found.get(key, now) & now
-            for f in reached:
-                for place, value in _given(f):
+            for function in reached:
+                for place, value in _given(function):
                     given.setdefault(place, set()).add(value)
-                self._elsewhere |= {(routine.name, *place) for place in _read_elsewhere(f)}
+                self._elsewhere |= {(routine.name, *place) for place in _read_elsewhere(function)}
         self._uses = {key: frozenset(_only_main_opens(now, given)) for key, now in found.items()}
 
     def writing(self, routine: str, path: str) -> frozenset[Condition]:
@@ -130,15 +130,15 @@ class Text:
         return all((condition.path, condition.word) != flag for condition in uses)
 
 
-def _given(f: Function) -> Iterator[tuple[_Place, Any]]:
+def _given(function: Function) -> Iterator[tuple[_Place, Any]]:
     """The scalars at file scope that a function can change, each with the constant that it gets, or None."""
-    for s in statements(f.body):
-        match s:
+    for statement in statements(function.body):
+        match statement:
             case Assign(target=LValue() as target, value=value) if (place := _scalar(target)) is not None:
                 constant = bare(value)
                 yield place, constant.value if isinstance(constant, Const) else None
-    for p in within(f.body):
-        if isinstance(p, AddressOf) and (place := _scalar(p.lvalue)) is not None:
+    for part in within(function.body):
+        if isinstance(part, AddressOf) and (place := _scalar(part.lvalue)) is not None:
             yield place, None
 
 
@@ -151,24 +151,24 @@ def _only_main_opens(now: Iterable[Condition], given: dict[_Place, set[Any]]) ->
 
 
 def _uses(
-    f: Function, now: frozenset[Condition], own: dict[str, Function], callers: tuple[str, ...]
+    function: Function, now: frozenset[Condition], own: dict[str, Function], callers: tuple[str, ...]
 ) -> Iterator[tuple[str, bool, frozenset[Condition]]]:
     """The objects that a function and those below it use, whether they may write them, and what is true then.
 
     `now` is true at the call of the function.
     """
-    for s, here in _under(f.body, now, {}):
-        inner = [p for root in roots(s) for p in parts(root)]
-        changed = s.target if isinstance(s, Assign | CopyStruct) else None
-        for p in inner:
-            match p:
+    for statement, here in _under(function.body, now, {}):
+        inner = [part for root in roots(statement) for part in parts(root)]
+        changed = statement.target if isinstance(statement, Assign | CopyStruct) else None
+        for part in inner:
+            match part:
                 case AddressOf(lvalue=LValue(root=Variable(kind="global") as root)):
                     yield root.declaration.path, True, here
                 case LValue(root=Variable(kind="global") as root):
-                    yield root.declaration.path, p is changed, here
-        for called in {p.function.path for p in inner if isinstance(p, Call)}:
-            if called in own and called not in callers and called != f.path:
-                yield from _uses(own[called], here, own, (*callers, f.path))
+                    yield root.declaration.path, part is changed, here
+        for called in {part.function.path for part in inner if isinstance(part, Call)}:
+            if called in own and called not in callers and called != function.path:
+                yield from _uses(own[called], here, own, (*callers, function.path))
 
 
 def _under(
@@ -178,9 +178,9 @@ def _under(
 
     `known`: what the values of locals say; kept up to date.
     """
-    for s in body:
-        yield s, now
-        match s:
+    for statement in body:
+        yield statement, now
+        match statement:
             case Assign(target=LValue(root=Variable() as root, indices=[]), value=value) if root.kind != "global":
                 known[root] = frozenset(conditions(value, known)), frozenset(failed(value, known))
             case Declare(variable=root, value=Expr() as value):
@@ -206,9 +206,9 @@ def _under(
                 for _, block in cases:
                     _forget(known, block)
             case _:
-                for block in blocks(s):
+                for block in blocks(statement):
                     _forget(known, block)
-                for block in blocks(s):
+                for block in blocks(statement):
                     yield from _under(block, now, dict(known))
 
 
@@ -235,17 +235,21 @@ def _forget(known: dict[Variable, _Told], body: list[Stmt]) -> None:
         known.pop(variable, None)
 
 
-def _read_elsewhere(f: Function) -> Iterator[_Place]:
+def _read_elsewhere(function: Function) -> Iterator[_Place]:
     """The scalars at file scope that a function reads outside of the tests that `conditions` understands."""
     known: dict[Variable, _Told] = {}
-    for s, _ in _under(f.body, _NOTHING, known):
+    for statement, _ in _under(function.body, _NOTHING, known):
         understood: set[int] = set()
-        test = s.test if isinstance(s, If) else None
-        if test is not None and len(conditions(test) + failed(test)) >= sum(isinstance(p, Load) for p in parts(test)):
-            understood = {id(p) for p in parts(test)}
-        for root in roots(s):
-            for p in parts(root):
-                place = _scalar(p.lvalue) if isinstance(p, Load | AddressOf) and id(p) not in understood else None
+        test = statement.test if isinstance(statement, If) else None
+        if test is not None and len(conditions(test) + failed(test)) >= sum(
+            isinstance(part, Load) for part in parts(test)
+        ):
+            understood = {id(part) for part in parts(test)}
+        for root in roots(statement):
+            for part in parts(root):
+                place = (
+                    _scalar(part.lvalue) if isinstance(part, Load | AddressOf) and id(part) not in understood else None
+                )
                 if place is not None:
                     yield place
 
@@ -261,19 +265,19 @@ def _scalar(lvalue: LValue) -> _Place | None:
 def rereading_lines(modules: Iterable[Module]) -> frozenset[tuple[str, int]]:
     """(file, line) of the statements in loops that read again what a routine has changed meanwhile."""
     return frozenset(
-        (f.where.file, s.line)
-        for module in modules for f in module.functions
-        for loop in statements(f.body) if isinstance(loop, While) and rereads(loop)
-        for s in statements(loop.body)
+        (function.where.file, statement.line)
+        for module in modules for function in module.functions
+        for loop in statements(function.body) if isinstance(loop, While) and rereads(loop)
+        for statement in statements(loop.body)
     )  # fmt: skip
 
 
 def rereads(loop: While) -> bool:
     """Whether a loop ends only when a shared object still has the value that the loop has copied from it."""
     copies: dict[Variable, set[_Place]] = {}
-    for s in statements(loop.body):
+    for statement in statements(loop.body):
         given: tuple[Variable, Expr] | None = None
-        match s:
+        match statement:
             case Assign(target=LValue(root=Variable() as root, indices=[]), value=value):
                 given = root, value
             case Declare(variable=root, value=Expr() as value):
@@ -282,10 +286,12 @@ def rereads(loop: While) -> bool:
         if given is not None and isinstance(loaded, Load) and (place := _scalar(loaded.lvalue)) is not None:
             copies.setdefault(given[0], set()).add(place)
     tests = [loop.test]
-    for s in statements(loop.body):
-        if isinstance(s, If) and any(isinstance(inner, Break | Return) for b in blocks(s) for inner in statements(b)):
-            tests.append(s.test)
-    return any(_again(p, copies) for test in tests for p in parts(test) if isinstance(p, Compare))
+    for statement in statements(loop.body):
+        if isinstance(statement, If) and any(
+            isinstance(inner, Break | Return) for block in blocks(statement) for inner in statements(block)
+        ):
+            tests.append(statement.test)
+    return any(_again(part, copies) for test in tests for part in parts(test) if isinstance(part, Compare))
 
 
 def _again(test: Compare, copies: dict[Variable, set[_Place]]) -> bool:
