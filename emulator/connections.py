@@ -1223,7 +1223,8 @@ class Connections:
                 continue
             choices = {choice for choice, (of, _) in COMPARES.items() if of == compare}
             switches = (
-                not self._stuck(f"{name}.AQCTL{output}", f"C{x}{way}", bool) for output in "AB" for way in "UD"
+                not self._stuck(f"{name}.AQCTL{output}", f"C{x}{way}", bool)
+                for output in "AB" for way in "UD" if not self._constant_output(name, output)
             )
             triggers = (
                 self._could(f"{name}.ETSEL", choices.__contains__, f"{event}SEL") for event in ("INT", "SOCA", "SOCB")

@@ -1,8 +1,8 @@
 """The values that a program's source can write to registers.  They are read from its typed tree.
 
 Only functions that can run count: `main`, interrupt routines, and all functions that these call or name (a task, an
-entry of a table).  A parameter has the values that its calls pass.  A pointer to a block that is a parameter points to
-the blocks that its calls name.
+entry of a table).  A parameter has the values that its calls pass.  A pointer to a block points to the blocks that the
+calls name, if it is a parameter, or those that it is set to, as a local or in a table that nobody changes.
 """
 
 from __future__ import annotations
@@ -15,11 +15,14 @@ from typing import Final
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
+    AddressOf,
     Assign,
     Binary,
     Call,
     Conditional,
     Const,
+    CopyStruct,
+    Declare,
     Expr,
     Function,
     FunctionRef,
@@ -112,6 +115,11 @@ class RegisterWrites:
         self._over = self._of_start_up(own) - self._behind_start_up(modules, own)
         self._given: dict[Variable, list[Expr]] = {}
         self._free: set[Variable] = set()
+        #: What locals are set to.  Objects at file scope that the program stores to, or takes the address of.
+        self._set_to: dict[Variable, list[Expr]] = {}
+        self._stored: set[Variable] = set()
+        for f in own.values():
+            self._read_stores(f)
         #: Parameters that their function assigns to.
         self._changed = {v for f in reached for s in statements(f.body) if (v := assigned(s)) is not None}
         for f in reached:
@@ -190,6 +198,20 @@ class RegisterWrites:
                 waiting += [own[path] for path in called if path in own and path not in seen]
         return found
 
+    def _read_stores(self, f: Function) -> None:
+        for s in statements(f.body):
+            match s:
+                case Declare(variable=variable, value=Expr() as value):
+                    self._set_to.setdefault(variable, []).append(value)
+                case Assign(target=LValue(root=Variable() as variable), value=value):
+                    self._set_to.setdefault(variable, []).append(value)
+                    self._stored.add(variable)
+                case CopyStruct(target=LValue(root=Variable() as variable)):
+                    self._stored.add(variable)
+            for part in (part for root in roots(s) for part in parts(root)):
+                if isinstance(part, AddressOf) and isinstance(part.lvalue.root, Variable):
+                    self._stored.add(part.lvalue.root)
+
     def _read_calls(self, f: Function) -> None:
         for s in statements(f.body):
             for part in (part for root in roots(s) for part in parts(root)):
@@ -235,18 +257,24 @@ class RegisterWrites:
         pointer = bare(pointer)
         if isinstance(pointer, RegisterAddress):
             return None if pointer.register else [pointer.block]
+        values: list[Expr] = []
         match pointer:
-            case Load(lvalue=LValue(root=Variable(kind="parameter") as variable, indices=[])) if deep:
-                if variable in self._free or variable in self._changed or variable.in_memory:
-                    return None
-                found: list[str] = []
-                for given in self._given.get(variable, ()):
-                    named = self._pointed_at(given, deep - 1)
-                    if named is None:
-                        return None
-                    found += [block for block in named if block not in found]
-                return found or None
-        return None
+            case Load(lvalue=LValue(root=Variable(kind="parameter") as variable, indices=[])):
+                if variable not in self._free and variable not in self._changed and not variable.in_memory:
+                    values = self._given.get(variable, [])
+            case Load(lvalue=LValue(root=Variable(kind="local") as variable, indices=[])):
+                if not variable.in_memory:
+                    values = self._set_to.get(variable, [])
+            case Load(lvalue=LValue(root=Variable(kind="global", initial=list() as initial) as variable) as lvalue):
+                if variable not in self._stored:
+                    values = [initial[at] for at in _leaves(lvalue, len(initial))]
+        found: list[str] = []
+        for value in values if deep else ():
+            named = self._pointed_at(value, deep - 1)
+            if named is None:
+                return None
+            found += [block for block in named if block not in found]
+        return found or None
 
     def _bits(self, value: Expr) -> tuple[int, Values]:
         """The mask of the bits that an assignment to a whole register sets, and their values.
@@ -326,6 +354,14 @@ class RegisterWrites:
             if its_block == block and name == (register or name) and not write.place.file.startswith("<")
         ]  # fmt: skip
         return max(places, key=lambda place: (place.file, place.line)) if places else None
+
+
+def _leaves(lvalue: LValue, count: int) -> list[int]:
+    """The scalars of an object with `count` of them that an lvalue can mean, whatever its subscripts are."""
+    found = [lvalue.leaf]
+    for index in lvalue.indices:
+        found = [at for first in found for at in range(first, count, index.leaves)]
+    return found
 
 
 def _place(f: Function, where: Where) -> Place:

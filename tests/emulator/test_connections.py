@@ -683,6 +683,65 @@ def test_a_block_that_only_a_pointer_names(tmp_path: Path, was: str, at: str, wh
     assert all(f.place is not None and at in text.splitlines()[f.place.line - 1] for f in findings)
 
 
+@pytest.mark.parametrize("by", [
+    "for (i = 0; i < 1; i++) Set_Up(Modules[i]);", "Set_Up(Rows[i].regs);",
+    "volatile struct EPWM_REGS *p = &EPwm4Regs; Set_Up(p);",
+])  # fmt: skip
+def test_a_block_that_a_table_or_a_local_names(tmp_path: Path, by: str) -> None:
+    text = POINTED.replace("Set_Up(&EPwm4Regs);", f"{{ Uint16 i = 0; {by} (void)i; }}")
+    text = text.replace("static void Set_Up", """static volatile struct EPWM_REGS * const Modules[1] = {&EPwm4Regs};
+static const struct { Uint16 pin; volatile struct EPWM_REGS *regs; } Rows[1] = {{6, &EPwm4Regs}};
+static void Set_Up""")
+    assert told(tmp_path, text, seconds=0.01) == []
+    (finding,) = told(tmp_path, text.replace("pwm->TZDCSEL.bit.DCAEVT1 = TZ_DCAH_HI;", ""), seconds=0.01)
+    assert "names no condition" in finding.message
+
+
+#: Three bridges by a table; `ACTION` is what clears their outputs.
+BRIDGES = """#include "F28x_Project.h"
+static volatile struct EPWM_REGS * const Bridge[3] = {&EPwm1Regs, &EPwm2Regs, &EPwm3Regs};
+volatile Uint16 Duty = 0;
+void main(void)
+{
+    Uint16 i;
+    InitSysCtrl();
+    EALLOW;
+    CpuSysRegs.PCLKCR2.bit.EPWM1 = 1;
+    CpuSysRegs.PCLKCR2.bit.EPWM2 = 1;
+    CpuSysRegs.PCLKCR2.bit.EPWM3 = 1;
+    EDIS;
+    InitEPwm1Gpio();
+    InitEPwm2Gpio();
+    InitEPwm3Gpio();
+    for (i = 0; i < 3; i++) {
+        Bridge[i]->TBPRD = 2000;
+        Bridge[i]->AQCTLA.bit.CAU = AQ_SET;
+        ACTION
+        Bridge[i]->TBCTL.bit.CTRMODE = TB_COUNT_UPDOWN;
+    }
+    EALLOW;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 1;
+    EDIS;
+    for (;;) {
+        DELAY_US(100);
+        Duty = Duty < 1900 ? Duty + 10 : 0;
+        for (i = 0; i < 3; i++)
+            Bridge[i]->CMPA.bit.CMPA = Duty;
+    }
+}
+"""
+
+
+@pytest.mark.parametrize(("action", "count"), [
+    ("", 3), ("Bridge[i]->AQCTLA.bit.CAD = AQ_SET;", 3), ("Bridge[i]->AQCTLA.bit.CAD = AQ_CLEAR;", 0),
+    ("Bridge[i]->AQCTLA.bit.ZRO = AQ_CLEAR;", 0), ("Bridge[i]->AQCTLA.bit.CAU = AQ_TOGGLE;", 0),
+])  # fmt: skip
+def test_a_compare_that_only_sets_its_output(tmp_path: Path, action: str, count: int) -> None:
+    findings = told(tmp_path, BRIDGES.replace("ACTION", action), "not-connected", seconds=0.002)
+    assert [f.object for f in findings] == [f"EPwm{n}Regs.AQCTLA" for n in range(1, count + 1)]
+    assert all("only sets output A" in f.message for f in findings)
+
+
 #: ePWM2 moves two outputs and is tripped on order; its counter starts SOC0, whose result is watched; eCAP1 measures
 #: GPIO24, while GPIO0 is an output of ePWM1.
 PARTS = """#include "F28x_Project.h"
