@@ -39,7 +39,7 @@ from emulator.chip import (
     XINT_PIE,
     Chip,
 )
-from emulator.clock import CYCLES_PER_US, SYSCLK_HZ
+from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ
 from emulator.peripherals.can import REQUEST, WRITE
 from emulator.peripherals.can_objects import DIR, ID, MSGLST, MSGVAL, OBJECTS, RXIE, STANDARD_ID
 from emulator.peripherals.dma import CHANNELS as DMA_CHANNELS
@@ -1154,7 +1154,7 @@ class Connections:
                 self._report(used, f"{block} gets codes but drives no pin", missing, f"{block}.DACOUTEN")
 
     def _serial(self) -> None:
-        """A SCI that is used while SWRESET keeps it in reset."""
+        """A SCI that is used while SWRESET keeps it in reset, or that hears nothing any more since a break."""
         for letter in SCI_PIE:
             block = f"Sci{letter.lower()}Regs"
             register = f"{block}.SCICTL1"
@@ -1163,6 +1163,12 @@ class Connections:
             if used is not None and self._stuck(register, "SWRESET", bool):
                 missing = MissingLink(f"{register}.SWRESET = 0: the module stays in reset", register, "SWRESET")
                 self._report(used, f"{block} never sends or receives a character", missing, register)
+            receiver = self._chip.sci[letter].receiver
+            if reads and receiver.unheard and not self._writes_again(register, lambda value: not value, "SWRESET"):
+                at = f"{receiver.broken_at / CYCLES_PER_MS:.3g} ms"
+                why = f"a break at {at} has stopped the receiver, and no statement clears {register}.SWRESET again"
+                message = f"{block} receives nothing any more: {receiver.unheard} characters have come since"
+                self._report(reads[-1], message, MissingLink(why, register, "SWRESET"), f"{block}.SCIRXST")
 
     def _epwms(self) -> Iterator[tuple[int, str, str, Block]]:
         """Each compare register that the program writes, of ePWMs that can count: number, name, compare, registers."""

@@ -87,7 +87,7 @@ class Sci:
         #: The last result of `format`, kept for speed, and the register values that it was made from.
         self._format_key: tuple[int, int, int] | None = None
         self._format: Format
-        self._receiver = SciReceiver(clock, cpu, regs, rx, rx_interrupt, self.format, break_bits, on_blocked)
+        self.receiver = SciReceiver(clock, cpu, regs, rx, rx_interrupt, self.format, break_bits, on_blocked)
         #: Without FIFO: whether SCITXBUF holds a character that waits for the shifter.
         #: The statement that wrote the latest character.  Findings about its frame are reported there.
         self._cause: Cause | None = None
@@ -111,7 +111,7 @@ class Sci:
         self._stop()
         self._regs.reset()
         self._fifo.reset()
-        self._receiver.reset()
+        self.receiver.reset()
 
     def format(self) -> Format:
         """The character format and bit length (SYSCLK cycles) that the registers ask for."""
@@ -138,11 +138,11 @@ class Sci:
 
     def _write_baud(self, register: Cell, word: int, lanes: int) -> None:
         register.store(word, lanes)
-        self._receiver.rate_set_by = self._cpu.findings.mark()
+        self.receiver.rate_set_by = self._cpu.findings.mark()
 
     def _write_SCICCR(self, word: int, lanes: int) -> None:
         self._ccr.store(word, lanes)
-        self._receiver.loopback = bool(self._ccr.value & LOOPBKENA)
+        self.receiver.loopback = bool(self._ccr.value & LOOPBKENA)
 
     def _write_SCICTL1(self, word: int, lanes: int) -> None:
         before = self._ctl1.value
@@ -150,9 +150,9 @@ class Sci:
         after = self._ctl1.value
         if before & SWRESET and not after & SWRESET:
             self._stop()
-            self._receiver.hold()
+            self.receiver.hold()
         elif after & SWRESET and not before & SWRESET:
-            self._receiver.run()
+            self.receiver.run()
         self._next()
 
     def _read_SCICTL2(self) -> int:
@@ -186,7 +186,7 @@ class Sci:
         self._next()
 
     def _write_SCIFFTX(self, word: int, lanes: int) -> None:
-        receiver = self._receiver
+        receiver = self.receiver
         enabled = bool(word & ENHANCED)
         # CHOICE: SCIRST holds the channels in FIFO mode only.
         on_blocked = enabled and not word & CHANNELS_RUN
@@ -238,7 +238,7 @@ class Sci:
         )
         if self._ccr.value & LOOPBKENA:
             # CHOICE: in loopback the TX pin stays idle.
-            self._receiver.accept(frame)
+            self.receiver.accept(frame)
         else:
             findings = self._cpu.findings
             findings.cause = self._cause

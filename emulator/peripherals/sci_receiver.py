@@ -71,6 +71,8 @@ class SciReceiver:
         self._running = False
         #: Whether a break was detected.  Then the receiver is deaf until SWRESET.
         self._blocked = False
+        #: The cycle of the latest break that was detected, and the characters that came to the deaf receiver since.
+        self.broken_at = self.unheard = 0
         #: Whether the pin is disconnected from the line.
         self.loopback = False
         #: The statement that set the baud registers.
@@ -116,6 +118,7 @@ class SciReceiver:
     def hold(self) -> None:
         """SWRESET=0: state machine held, flags cleared; the FIFO keeps its characters."""
         self._running = self._blocked = False
+        self.unheard = 0
         self._rxst.value = 0
         self._forget_low()
 
@@ -148,6 +151,7 @@ class SciReceiver:
     def accept(self, frame: SerialFrame) -> None:
         """A frame has ended at the receiver's input."""
         if not self._running or self._blocked or not self._regs.clocked:
+            self.unheard += self._blocked
             return
         own = self._own_format()
         if frame.start >= self._busy_until and matches(frame, own):
@@ -212,6 +216,7 @@ class SciReceiver:
     def _break_detected(self) -> None:
         self._break_event = None
         self._blocked = True
+        self.broken_at, self.unheard = self._clock.now, 0
         # With the FIFO on, a break interrupts through RXERROR only (TRM, SCI interrupt flags).
         self._raise(BRKDT, also=not self.fifo.enabled and bool(self._ctl2.value & RXBKINTENA))
 

@@ -216,6 +216,7 @@ connections are checked:
   compare, or its actions only set the output or only clear it. A trip that the program forces changes no output
   (`TZA = 3`).
 * DAC: it gets codes and drives no pin.
+* SCI: characters come, a break on the line has stopped the receiver before, and no statement clears `SWRESET` again.
 * I2C and SCI: the module stays in reset, no interrupt of a direction is enabled, or one needs more characters than the
   FIFO holds.
 * SPI: the interrupt of a direction is not enabled.

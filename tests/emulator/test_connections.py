@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from emulator.c28x.findings import Finding
-from hil.board import load
+from emulator.clock import CYCLES_PER_MS
+from hil.board import Board, load
 from hil.drivers.check import DriverFiles, check_files
 from tests.corpus.corpus import chosen, measured
 
@@ -925,6 +927,89 @@ def test_a_flag_that_only_the_start_up_clears_gives_one_interrupt(
     text = HEARD.replace(was, now) if was else HEARD
     places = [f.place for f in told(tmp_path, text, "flag-not-cleared", seconds=0.06)]
     assert [place and at and at in text.splitlines()[place.line - 1] for place in places] == [True] * (at is not None)
+
+
+#: SCI-A hears a PC at GPIO28 and 29.
+HEARS_A_PC = """#include "F28x_Project.h"
+volatile Uint16 Heard;
+interrupt void heard(void)
+{
+    while (SciaRegs.SCIFFRX.bit.RXFFST > 0)
+        Heard = SciaRegs.SCIRXBUF.all;
+    SciaRegs.SCIFFRX.bit.RXFFINTCLR = 1;
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP9;
+}
+void Start(void)
+{
+    SciaRegs.SCICTL1.all = 0x0003;
+    SciaRegs.SCICTL1.all = 0x0023;
+}
+void main(void)
+{
+""" + START_UP + """    EALLOW;
+    PieVectTable.SCIA_RX_INT = &heard;
+    EDIS;
+    GPIO_SetupPinMux(28, GPIO_MUX_CPU1, 1);
+    GPIO_SetupPinMux(29, GPIO_MUX_CPU1, 1);
+    SciaRegs.SCICCR.all = 0x0007;
+    SciaRegs.SCIHBAUD.all = 0;
+    SciaRegs.SCILBAUD.all = 53;
+    SciaRegs.SCIFFTX.all = 0xE040;
+    SciaRegs.SCIFFRX.all = 0x6061;
+    Start();
+    PieCtrlRegs.PIEIER9.bit.INTx1 = 1;
+    IER |= M_INT9;
+    EINT;
+    for (;;) {
+        DELAY_US(300);
+    }
+}
+"""
+RESET = """        if (SciaRegs.SCIRXST.bit.RXERROR) {
+            SciaRegs.SCICTL1.bit.SWRESET = 0;
+            SciaRegs.SCICTL1.bit.SWRESET = 1;
+        }
+"""
+LOOP = "        DELAY_US(300);\n"
+
+
+class PcSwitchedOff(Board):
+    """A PC sends a character each ms; its line is low from 2 to 4 ms, and nothing comes any more if it `stays_off`."""
+
+    stays_off = False
+
+    def solder(self) -> None:
+        """Connect it."""
+        pc = self.to_pc(tx_gpio=29, rx_gpio=28, baud=115200)
+        for ms in range(1, 3 if self.stays_off else 12):
+            self.clock.schedule(ms * CYCLES_PER_MS, partial(pc.feed, b"x"))
+        for ms, low in (2, True), (4, False):
+            self.clock.schedule(ms * CYCLES_PER_MS + 100_000, partial(self.serial_pins[28].hold_low, low))
+
+
+class PcStaysOff(PcSwitchedOff):
+    """The same, and nothing comes behind the break."""
+
+    stays_off = True
+
+
+@pytest.mark.parametrize(("was", "now", "board", "found"), [
+    (LOOP, LOOP, PcSwitchedOff, True),
+    (LOOP, LOOP, PcStaysOff, False),  # nothing is lost
+    (LOOP, LOOP + RESET, PcSwitchedOff, False),
+    # Started once more when nothing has come for a time that is longer than this run.
+    (LOOP, LOOP + "        if (++Heard > 9999) Start();\n", PcSwitchedOff, False),
+    # The errors are counted only; the FIFO is reset, which is not enough.
+    (LOOP, LOOP + "        if (SciaRegs.SCIRXST.bit.BRKDT) Heard++;\n", PcSwitchedOff, True),
+    (LOOP, LOOP + "        if (SciaRegs.SCIRXST.bit.RXERROR) { SciaRegs.SCIFFRX.bit.RXFIFORESET = 0;"
+     " SciaRegs.SCIFFRX.bit.RXFIFORESET = 1; }\n", PcSwitchedOff, True),
+])  # fmt: skip
+def test_a_receiver_that_a_break_has_stopped_hears_again_only_after_a_reset(
+    tmp_path: Path, was: str, now: str, board: type[Board], found: bool
+) -> None:
+    (tmp_path / "drv.c").write_text(HEARS_A_PC.replace(was, now), encoding="utf-8")
+    checked = check_files(DriverFiles([tmp_path / "drv.c"], calls=1, board=board, board_named=True, seconds=0.012))
+    assert ["a break at" in f.message for f in checked.findings if f.rule == "not-connected"] == [True] * found
 
 
 #: The DMA takes a result at each tick of timer 0; behind a buffer its interrupt names the other one.

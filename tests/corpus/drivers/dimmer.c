@@ -50,6 +50,12 @@ __interrupt void Ordered(void)
 __interrupt void Letters(void)
 {
     Uint16 c;
+    if (ScibRegs.SCIRXST.bit.RXERROR) {
+        ScibRegs.SCICTL1.bit.SWRESET = 0;       /* a break stops the receiver until then */
+        ScibRegs.SCICTL1.bit.SWRESET = 1;
+        if (!Line_Ready)
+            Length = 0;
+    }
     while (ScibRegs.SCIFFRX.bit.RXFFST > 0) {
         c = ScibRegs.SCIRXBUF.bit.SAR;
         if (Line_Ready)
@@ -114,7 +120,7 @@ static void Init_Line(void)
     ScibRegs.SCIFFTX.all = 0xE040;
     ScibRegs.SCIFFRX.all = 0x2061;
     ScibRegs.SCIFFCT.all = 0;
-    ScibRegs.SCICTL1.all = 0x0021;
+    ScibRegs.SCICTL1.all = 0x0061;
 }
 
 static void Wait_IF1(void)

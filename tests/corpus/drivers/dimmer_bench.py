@@ -12,6 +12,9 @@ from hil.board import Board
 #: Lines of the PC, one each 15 ms.
 LINES: Final = (b"gain 7\n", b"?\n", b"off\n", b"gain 11\n")
 RUN_MS: Final = 200
+#: From when to when the PC is off: its line is low.
+OFF_MS: Final = 75
+ON_MS: Final = 77
 
 
 class Photodiode:
@@ -23,7 +26,10 @@ class Photodiode:
 
 
 class Bench(Board):
-    """A wall switch on CAN-A, which sends a brightness each 10 ms; a PC on SCI-B; a photodiode at ADCINB4."""
+    """A wall switch on CAN-A, which sends a brightness each 10 ms; a PC on SCI-B, which is off once.
+
+    A photodiode is at ADCINB4.
+    """
 
     def solder(self) -> None:
         """Connect all of it."""
@@ -36,3 +42,5 @@ class Bench(Board):
             self.clock.schedule((ms + 3) * CYCLES_PER_MS, partial(switch.send, CanFrame(0x2A0, b"\x00\x00\x01")))
         for number, ms in enumerate(range(8, RUN_MS, 15)):
             self.clock.schedule(ms * CYCLES_PER_MS, partial(pc.feed, LINES[number % len(LINES)]))
+        for ms, low in (OFF_MS, True), (ON_MS, False):
+            self.clock.schedule(ms * CYCLES_PER_MS, partial(self.serial_pins[19].hold_low, low))
