@@ -70,6 +70,8 @@ class CDeclarationReader:
         self.spare: set[Function] = set()
         #: The objects that this file has defined so far.
         self.objects: set[Variable] = set()
+        #: Object at file scope -> its qualifiers: each declaration has the same ones.
+        self.qualifiers: dict[Variable, set[str]] = {}
         self.tags: dict[str, CType | EnumType] = {}
         self.b = build.file_scope(module, remarks_pointers=True)
         self.expressions = CExpressionReader(self.b, self.tags, abi, self.implicit, self.use)
@@ -200,8 +202,12 @@ class CDeclarationReader:
                 self.module.own.append(name)
         if isinstance(node.type, c_ast.TypeDecl):
             self.declared_as(variable, node.type)
-        variable.volatile = variable.volatile or self.types.qualified(node, "volatile")
-        variable.constant = variable.constant or self.types.qualified(node, "const")
+        qualifiers = {word for word in ("const", "volatile") if self.types.qualified(node, word)}
+        for word in sorted(qualifiers ^ self.qualifiers.setdefault(variable, qualifiers)):
+            said = "here and not before" if word in qualifiers else "before and not here"
+            raise SourceError.at(where, f"{name} is declared {word} {said}")
+        variable.volatile = variable.volatile or "volatile" in qualifiers
+        variable.constant = variable.constant or "const" in qualifiers
         if "static" in node.storage:
             self.linkage.static.add(name)
         if extern:

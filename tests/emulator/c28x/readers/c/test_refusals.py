@@ -94,6 +94,8 @@ CASES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("no structure", body("return @n.x;"), ("structure",)),
     ("arrow on an object", body("return @o->x;"), ("->",)),
     ("declared twice", body("int a;", "int @a;", "return n;"), ("a", "twice")),
+    ("volatile before", "extern volatile int g;\nint @g = 0;\n", ("g", "volatile before and not here")),
+    ("const here", "extern int v[2];\nconst int @v[2] = {1, 2};\n", ("v", "const here and not before")),
     ("defined twice", "int f(void)\n{\n    return 1;\n}\nint @f(void)\n{\n    return 2;\n}\n", ("f", "twice")),
     ("two values", "int x = 1;\nint @x = 2;\n", ("x", "twice")),
     ("another type", "int x;\nlong @x;\n", ("x", "int", "long")),
