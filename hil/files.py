@@ -9,16 +9,20 @@ import re
 import shutil
 import stat
 import tomllib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, BinaryIO, Final, TextIO
+from typing import Any, BinaryIO, Final, TextIO, TypeAlias
 
 #: Larger than any scenario, map, table or baseline that somebody writes; a log of a day fits, too.
 MAX_BYTES: Final = 64 << 20
 _AT_LINE: Final = re.compile(r" \(at line (\d+), column \d+\)")
 # A FIFO that nobody writes to would keep a plain open waiting.
 _FLAGS: Final = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+
+
+#: What writes a file each.
+Writes: TypeAlias = list[Callable[[], object]]
 
 
 class NotWritten(OSError):
@@ -109,13 +113,25 @@ def replacing(path: str | Path) -> Iterator[Path]:
             os.close(pipe)
 
 
-def write_each(writes: Sequence[Callable[[], None]]) -> None:
-    """Call each, whatever becomes of the others.  Raises the last NotWritten; those before are its context."""
+@contextmanager
+def at_last() -> Iterator[Writes]:
+    """A list for what writes files: called when the block ends, after it has told its results.
+
+    Each is tried, whatever becomes of the others.  Raises the last NotWritten; those before are its context.
+    """
+    writes: Writes = []
+    try:
+        yield writes
+    finally:
+        _each(writes)
+
+
+def _each(writes: Writes) -> None:
     if writes:
         try:
             writes[0]()
         finally:
-            write_each(writes[1:])
+            _each(writes[1:])
 
 
 class GrowingFile:

@@ -106,8 +106,6 @@ def audit(
             check_plot_file(plot)
         own = own_c.own_c(firmware, project, include, define)
         outcomes = _run(names, jobs, own, but_one=all_but_one, quiet=json_output)
-        if plot is not None and outcomes:
-            save_picture(outcomes[0], plot)
     interrupted = len(outcomes) < len(names)
     if json_output:
         entries = [outcome.as_dict() for outcome in outcomes]
@@ -121,6 +119,9 @@ def audit(
     for outcome in outcomes:
         if outcome.error:
             show.print_line(f"{outcome.id}: {outcome.error}", to_stderr=True)
+    if plot is not None and outcomes:
+        with show.user_errors():
+            save_picture(outcomes[0], plot)
     if interrupted:
         show.print_line(f"{len(names) - len(outcomes)} of {len(names)} entries were not examined", to_stderr=True)
         raise typer.Exit(EXIT_INTERRUPTED)

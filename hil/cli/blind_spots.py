@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -9,6 +10,7 @@ import typer
 from rich.table import Table
 
 from hil.cli import show
+from hil.files import at_last
 
 
 def blind_spots(
@@ -21,7 +23,7 @@ def blind_spots(
       hil blind-spots --plot blind.png
       hil blind-spots --json
     """
-    with show.user_errors():
+    with show.user_errors(), at_last() as writes:
         from hil.client.plot import check_plot_file
         from hil.procedures import blind_spots as procedure
 
@@ -29,7 +31,7 @@ def blind_spots(
             check_plot_file(plot)
         found = procedure.both()
         if plot is not None:
-            procedure.plot(plot, found)
+            writes.append(partial(procedure.plot, plot, found))
         if json_output:
             robots = {one.name: one.as_dict() for one in found}
             show.print_json({"robots": robots, "sentence": procedure.sentence(found)})

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 from rich.markup import escape
@@ -12,7 +13,10 @@ from rich.table import Table as Shown
 
 from emulator.seed import MAX_SEED
 from hil.cli import show
-from hil.files import check_target, replacing
+from hil.files import at_last, check_target, replacing
+
+if TYPE_CHECKING:
+    from hil.procedures.calibrate import Table
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
@@ -47,7 +51,7 @@ def calibrate(
     json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout.")] = False,
 ) -> None:
     """Compute slope and offset of `Calibrate_US` from distances and raw values, with and without suspect rows."""
-    with show.user_errors():
+    with show.user_errors(), at_last() as writes:
         from hil.client.plot import check_plot_file
         from hil.procedures import calibrate as procedure
 
@@ -74,10 +78,9 @@ def calibrate(
             title = "emulated, ideal sonars" if ideal else f"emulated, seed {seed}"
         found = procedure.calibrate(table)
         if write is not None:
-            with replacing(write) as new:
-                new.write_text(table.text(), encoding="utf-8")
+            writes.append(partial(_write, write, table))
         if plot is not None:
-            procedure.plot(plot, found, title)
+            writes.append(partial(procedure.plot, plot, found, title))
         if json_output:
             show.print_json({"source": title, "sonars": [one.as_dict() for one in found]})
             return
@@ -105,3 +108,8 @@ def calibrate(
 
 
 calibrate.__doc__ = f"{calibrate.__doc__}\n\n{EXAMPLES}"
+
+
+def _write(path: Path, table: Table) -> None:
+    with replacing(path) as new:
+        new.write_text(table.text(), encoding="utf-8")

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 from rich.progress import BarColumn, Progress, TextColumn
@@ -18,7 +18,7 @@ from hil.cli.board import Option
 from hil.cli.faults import Fault, checked_faults
 from hil.cli.feeds import Feed
 from hil.extras import require
-from hil.files import check_target, write_each
+from hil.files import Writes, at_last, check_target
 
 if TYPE_CHECKING:
     from emulator.c28x.coverage import Coverage
@@ -26,9 +26,6 @@ if TYPE_CHECKING:
     from hil.reports.model import Report
     from hil.reports.policy import Policy
     from hil.scenarios.scenario import Scenario
-
-#: What writes a file each.
-Writes: TypeAlias = list[Callable[[], None]]
 
 EXAMPLES: Final = """
 [bold]Examples[/bold]
@@ -134,7 +131,7 @@ def check(
     json_output: Annotated[bool, typer.Option("--json", help="Print the report as one JSON object on stdout.")] = False,
 ) -> None:
     """Run the robot or your own drivers with all detectors; report findings as text, JSON, SARIF, HTML, JUnit."""
-    with show.user_errors():
+    with show.user_errors(), at_last() as writes:
         from emulator.c28x.coverage import Coverage
         from hil.reports.lcov import write_lcov
         from hil.reports.policy import Policy, parse_fail_on
@@ -189,7 +186,6 @@ def check(
         if html is not None:
             require("matplotlib")
         coverage = None if lcov is None else Coverage()
-        writes: Writes = []
         update = writes if update_baseline else None
         if drivers:
             wanted = _drivers(drivers, *own_c.read_as(drivers, project, include, define), abi, board)
@@ -210,11 +206,7 @@ def check(
         writes += _writes(report, sarif=sarif, html=html, junit=junit)
         if lcov is not None and coverage is not None:
             writes.append(partial(write_lcov, lcov, coverage))
-        try:
-            # First: a disk that is full takes no file, but what was found is told.
-            _print(report, details=details, as_lines=lines, json_output=json_output)
-        finally:
-            write_each(writes)
+        _print(report, details=details, as_lines=lines, json_output=json_output)
     if report.failed:
         raise typer.Exit(show.EXIT_FAILED)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -11,6 +12,7 @@ from rich.table import Table
 
 from emulator.seed import MAX_SEED
 from hil.cli import show
+from hil.files import at_last
 
 
 def compare_filters(
@@ -25,7 +27,7 @@ def compare_filters(
       hil compare-filters
       hil compare-filters --seed 3 --readings 100 --plot filters.png
     """
-    with show.user_errors():
+    with show.user_errors(), at_last() as writes:
         from hil.client.plot import check_plot_file
         from hil.procedures import compare_filters as procedure
 
@@ -39,7 +41,7 @@ def compare_filters(
             )
         thesis = procedure.of_the_thesis()
         if plot is not None:
-            procedure.plot(plot, found, thesis)
+            writes.append(partial(procedure.plot, plot, found, thesis))
         if json_output:
             show.print_json({
                 "seed": seed, "filters": [one.as_dict() for one in (*thesis, *found)],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final
 
@@ -12,7 +13,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from rich.table import Table
 
 from hil.cli import show
-from hil.files import check_target
+from hil.files import at_last, check_target
 from hil.reports.json_report import findings_of
 from hil.reports.model import Report, merged_by, report_of
 
@@ -51,7 +52,7 @@ def scenario(
     ] = False,
 ) -> None:
     """Run scenario files: a robot, a world, orders, and the expected results."""
-    with show.user_errors():
+    with show.user_errors(), at_last() as writes:
         from hil.scenarios import keys as table
         from hil.scenarios import running
         from hil.scenarios.junit import write_junit
@@ -68,7 +69,7 @@ def scenario(
         _readable(paths)
         outcomes = _run(paths, jobs, quiet=json_output)
         if junit is not None:
-            write_junit(junit, outcomes)
+            writes.append(partial(write_junit, junit, outcomes))
         if json_output:
             show.print_json({
                 "scenarios": [outcome.as_dict() for outcome in outcomes], "findings": findings_of(_report(outcomes))

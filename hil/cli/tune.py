@@ -11,6 +11,7 @@ from rich.progress import Progress, TaskID
 from rich.table import Table
 
 from hil.cli import show
+from hil.files import at_last
 
 
 def tune(
@@ -41,7 +42,7 @@ def tune(
       hil tune 1,0 1,10 2,10 --for 8 --plot gains.png
       hil tune 1,0.5 --true-step --realistic --seed 3
     """
-    with show.user_errors():
+    with show.user_errors(), at_last() as writes:
         from hil.client.plot import check_plot_file
         from hil.procedures import tune as procedure
 
@@ -61,7 +62,7 @@ def tune(
                     realistic=realistic, progress=partial(_show, progress, task, done),
                 ))  # fmt: skip
         if plot is not None:
-            procedure.plot(plot, responses)
+            writes.append(partial(procedure.plot, plot, responses))
         if json_output:
             show.print_json({"responses": [one.as_dict() for one in responses]})
             return
