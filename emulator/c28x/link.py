@@ -101,7 +101,7 @@ class Linked:
         self.first = len(runtime.findings.places)
         module = built(self.identity) if built is not None and not self.replaced else None
         #: The program's functions as methods; None: they are interpreted.
-        self._methods: Any = None if module is None else module.Program()
+        self._methods: Any = None if module is None else module.Program(self.namespace, self._some_register())
         for variable, _ in compiled.objects:
             self._place(variable)
         for finding in compiled.findings:
@@ -161,6 +161,12 @@ class Linked:
         name = object_name(variable)
         self.namespace[f"_g_{name}"] = obj.data
         self.namespace[f"_p_{name}"] = Pointer(self.runtime.memory, obj, 0, pointed(variable.ctype))
+
+    def _some_register(self) -> Any:
+        """Any register that the program uses, or None if it uses none."""
+        used = (name for function in self.compiled.functions for name in function.written.names.registers.values())
+        block, register, _ = next(used, ("", "", ""))
+        return self.registers(block, register) if register else None
 
     def pointer(self, variable: Variable) -> Pointer:
         """A pointer to a whole file-scope object.  (Generated code points to the first element of an array instead.)"""

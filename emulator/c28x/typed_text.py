@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import ast
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from hashlib import sha256
 from typing import Final
@@ -41,8 +41,8 @@ class {CLASS}:
 '''
 #: Names that the text uses itself: one of C's that is the same gets the prefix of `escaped`.
 _TAKEN: Final = frozenset({
-    CLASS, "Any", "Callable", "Cell", "Clock", "Cpu", "NAMES", "Position", "Runtime", "cast", "f32", "float", "int",
-    "len", "list", "look", "max", "put", "range", "self",
+    CLASS, "Any", "Callable", "Cell", "Clock", "Cpu", "NAMES", "Position", "Runtime", "bool", "cast", "dict", "f32",
+    "float", "int", "len", "list", "look", "max", "put", "range", "self", "str", "__init__",
 })  # fmt: skip
 #: What the linker binds to these names is the same for every program.
 _COMMON: Final = {"_range": "range", "_max": "max", "_len": "len", "_c_f32": "f32"}
@@ -63,6 +63,8 @@ _ACCESSES: Final = {
     "cleared": "Cell", "read": "Callable[[], int]", "write": "Callable[[int, int], None]",
     "modify": "Callable[[int, int, int], None]", "steady": "bool",
 }  # fmt: skip
+#: What an attribute has until the linker binds its name; a register and its accesses have those of some register.
+_UNBOUND: Final = {"int": "0", "bool": "False", "list[Any]": "[]", "Any": "None", "Cell": "register"}
 #: The types of the names that the writer makes up within a function; those of objects of the emulator are inferred.
 _WITHIN: Final = dict.fromkeys(("_e", "_fp", "_i", "_n", "_q", "_since", "_t", "_w"), "int")
 _INFERRED: Final = ("_k", "_p", "_up")
@@ -121,7 +123,26 @@ def typed_text(compiled: Compiled, first: int) -> str:
         first += len(each.written.places)
     bound = program.bound
     declared = [f"    {attribute(name)}: {kind}\n" for name, kind in sorted(bound.items())]
-    return "".join([_HEADER, *declared, *written, f"\nNAMES = frozenset({sorted(bound)!r})\n"])
+    return "".join([_HEADER, *declared, *_made(bound), *written, f"\nNAMES = frozenset({sorted(bound)!r})\n"])
+
+
+def _made(bound: Mapping[str, str]) -> Iterator[str]:
+    """The method that makes an object of the class.
+
+    It gives each attribute a value: mypyc then does not ask whether there is one.  `names` are those that the linker
+    binds to the runtime, `some` is any register that the program uses.
+    """
+    yield "    def __init__(self, names: dict[str, Any], some: Any) -> None:\n"
+    if any(name.startswith("_r_") for name in bound):
+        yield "        register: Cell = some\n"
+    for name, kind in sorted(bound.items()):
+        if name.startswith(("_c_", "_cpu")):
+            value = f"names[{name!r}]"
+        else:
+            value = _UNBOUND.get(kind) or f"register.{name.rpartition('_')[2]}"
+        yield f"        self.{attribute(name)} = {value}\n"
+    if not bound:
+        yield "        pass\n"
 
 
 @dataclass(frozen=True, slots=True)

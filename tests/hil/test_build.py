@@ -126,8 +126,8 @@ def small(tree: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
     if shutil.which(os.environ.get("CC", "cc")) is None:
         pytest.skip("needs a C compiler: apt install gcc")
     compiled.programs_of(store_of(tree), sources_of(tree)).mkdir()
-    (store_of(tree) / build.KEPT).mkdir()
-    (store_of(tree) / build.KEPT / "emulator").touch()
+    build.kept(store_of(tree)).mkdir(parents=True)
+    (build.kept(store_of(tree)) / "emulator").touch()
 
     def translate(_root: Path, target: Path, programs: dict[str, object]) -> list[Any]:
         assert [file.name for file in target.iterdir()] == ["emulator"]
@@ -160,6 +160,16 @@ def test_a_program_that_is_missing_is_compiled_alone_and_put_beside_the_others(
     assert set(both) - set(one) == {f"program_{'b' * 16}", f"c2000_program_{'b' * 16}__mypyc"}
     assert small("a" * 64, "b" * 64, meanwhile=lambda: pytest.fail("it was translated")) == 0
     assert [each.name for each in store_of(tree).parent.iterdir()] == [store_of(tree).name]
+
+
+def test_what_another_mypyc_has_translated_is_not_used(
+    tree: Path, small: Callable[..., int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A program that it makes does not fit the modules of that one: all is compiled anew."""
+    monkeypatch.setattr(build, "version", lambda package: f"another {package}")
+    with pytest.raises(FileNotFoundError):  # `small` translates nothing but programs
+        small("a" * 64)
+    assert not [*compiled.programs_of(store_of(tree), sources_of(tree)).iterdir()]
 
 
 def test_two_builds_of_a_program_at_once_leave_one(tree: Path, small: Callable[..., int]) -> None:
@@ -363,6 +373,11 @@ def test_every_listed_module_can_be_translated(tmp_path: Path) -> None:
     name = compiled.program_name("f" * 64)
     assert {name, f"{build._group(name)}__mypyc"} <= more
     assert all(name in made for made in {file.name for file in (there / "c").iterdir()} - before)
+    # What it has, and whose methods it calls, is known when it is compiled.
+    written = (there / "c" / f"__native_{name}.c").read_text("utf-8")
+    assert "Clock___run_due(" in written
+    assert "CPY_GET_METHOD" not in written
+    assert '"Program", "_c_clock"' not in written
 
 
 @pytest.mark.skipif(compiled.MODE != "compiled", reason="needs `hil build` (extra speed)")
@@ -458,12 +473,18 @@ def test_a_debugger_finds_the_firmware_interpreted(monkeypatch: pytest.MonkeyPat
     assert compiled.program("0123456789abcdef0") is None
 
 
-def test_files_are_compiled_side_by_side_and_linked_in_their_order() -> None:
+def test_files_are_compiled_side_by_side_each_once_and_linked_in_their_order() -> None:
     class Compiler:
-        def compile(self, sources: list[str], *, output_dir: str) -> list[str]:
-            if sources == ["bad.c"]:
+        def __init__(self) -> None:
+            self.options: dict[str, list[str]] = {}
+
+        def compile(self, sources: list[str], *, output_dir: str, extra_postargs: list[str]) -> list[str]:
+            (source,) = sources
+            assert source not in self.options
+            self.options[source] = extra_postargs
+            if source == "bad.c":
                 raise OSError("bad.c")
-            return [f"{output_dir}/{source}.o" for source in sources]
+            return [f"{output_dir}/{source}.o"]
 
     class Command:
         def __init__(self, *extensions: list[str]) -> None:
@@ -472,12 +493,18 @@ def test_files_are_compiled_side_by_side_and_linked_in_their_order() -> None:
             self.linked: list[list[str]] = []
 
         def build_extension(self, extension: SimpleNamespace) -> None:
-            self.linked.append(self.compiler.compile(extension.sources, output_dir="objects"))
+            made = self.compiler.compile(extension.sources, output_dir="objects", extra_postargs=["-O2"])
+            self.linked.append(made)
 
-    names = [f"{number}.c" for number in range(9)]
-    command, told = Command(names, ["last.c"]), list[float]()
+    names = [f"{number}.c" for number in range(8)]
+    program, told = f"{build.PROGRAM_C}1.c", list[float]()
+    command = Command(names, [program, *names])
+    compiler = command.compiler
+    fast = {name: ["-O2"] for name in names} | {program: ["-O2", *build.PROGRAM_FLAGS]}
     build._build_extensions(command, told.append)
-    assert command.linked == [[f"objects/{name}.o" for name in names], ["objects/last.c.o"]]
-    assert told == pytest.approx([number / 10 for number in range(1, 11)])
+    objects = [f"objects/{name}.o" for name in names]
+    assert sorted(command.linked, key=len) == [objects, [f"objects/{program}.o", *objects]]
+    assert compiler.options == fast
+    assert told == pytest.approx([number / 9 for number in range(1, 10)])
     with pytest.raises(OSError, match=r"bad\.c"):
-        build._build_extensions(Command([*names, "bad.c"]), told.append)
+        build._build_extensions(Command([*names, "bad.c"], [program]), told.append)

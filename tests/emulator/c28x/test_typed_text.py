@@ -133,7 +133,8 @@ def test_variables_of_c_have_types_and_what_may_be_unwritten_has_none() -> None:
     tree = ast.parse(typed_text(linked.compiled, linked.first))
     (program,) = (node for node in tree.body if isinstance(node, ast.ClassDef))
     method = {node.name: ast.unparse(node) for node in program.body if isinstance(node, ast.FunctionDef)}
-    assert list(method) == methods(linked.compiled.functions) == ["add", "scaled", "fill", "chosen"]
+    assert list(method) == ["__init__", *methods(linked.compiled.functions)]
+    assert methods(linked.compiled.functions) == ["add", "scaled", "fill", "chosen"]
     assert method["scaled"].startswith("def scaled(self, x: float, n: int) -> float:")
     assert "last: Any" in method["fill"]
     assert "i: int" in method["fill"]
