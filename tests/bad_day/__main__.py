@@ -37,8 +37,11 @@ def main() -> int:
             continue
         end, seed, failed = time.monotonic() + arguments.seconds / len(chosen), arguments.first, 0
         while seed == arguments.first or time.monotonic() < end:
-            with redirect_stdout(StringIO()):
-                found = tried(figure, seed)
+            try:
+                with redirect_stdout(StringIO()):
+                    found = tried(figure, seed)
+            except Exception as error:  # of the figure itself: the others are tried all the same
+                found = f"{type(error).__name__}: {error}"
             if found:
                 failed += 1
                 terminal.print(f"{figure.name} {seed}: {found}", markup=False, highlight=False)
