@@ -20,7 +20,7 @@ from emulator.sysbios.watch.statements import StatementNumber
 from emulator.sysbios.watch.threads import Protection, Thread, VectorClock, at_clock, excluded, joined
 
 
-class Flag(NamedTuple):
+class ReadyFlag(NamedTuple):
     """A scalar that may tell a reader that other data is ready: path of its object, word in it, where its value is."""
 
     path: str
@@ -49,7 +49,7 @@ class LatestAccess:
         self.statement = statement
         self.time = time
 
-    def held_off(self, thread: Thread) -> list[Flag]:
+    def held_off(self, thread: Thread) -> list[ReadyFlag]:
         """The flags that keep it off until `thread`, of a lower level or the same, or one below changes them."""
         level = thread.level
         if self.thread.level < level:
@@ -76,7 +76,7 @@ class SharedCell:
         "reader_statement", "writers", "writes",
     )  # fmt: skip
 
-    def __init__(self, owner: Thread, flag: Flag | None = None) -> None:
+    def __init__(self, owner: Thread, flag: ReadyFlag | None = None) -> None:
         #: The only thread that has used it so far; None once there are two.
         self.owner: Thread | None = owner
         #: Whether its value may tell a reader that other data is ready; if so, what it is.

@@ -37,7 +37,7 @@ from emulator.c28x.tree_queries import assigned_variables, bare, blocks, leaves,
 from emulator.sysbios.watch.ways import interrupt_routines
 
 
-class Condition(NamedTuple):
+class ScalarCondition(NamedTuple):
     """A scalar at file scope (path of its object, word in it) is equal to a value, or it is not."""
 
     path: str
@@ -52,20 +52,20 @@ class Condition(NamedTuple):
         return bool(value == self.value) is self.equal
 
 
-def opposite(condition: Condition) -> Condition:
+def opposite(condition: ScalarCondition) -> ScalarCondition:
     """The condition that is true when this one is not."""
     return condition._replace(equal=not condition.equal)
 
 
 #: The path of an object, and the offset of a word in it.
 _Place = tuple[str, int]
-_NOTHING: Final[frozenset[Condition]] = frozenset()
+_NOTHING: Final[frozenset[ScalarCondition]] = frozenset()
 #: Of a local: what is true if it is true, and what is if it is not.
-_Told = tuple[frozenset[Condition], frozenset[Condition]]
+_Told = tuple[frozenset[ScalarCondition], frozenset[ScalarCondition]]
 _NO_LOCALS: Final[Mapping[Variable, _Told]] = {}
 
 
-def conditions(test: Expr, locals_: Mapping[Variable, _Told] = _NO_LOCALS) -> list[Condition]:
+def conditions(test: Expr, locals_: Mapping[Variable, _Told] = _NO_LOCALS) -> list[ScalarCondition]:
     """What is true if a test is: the conditions of one scalar each that it joins by `and`."""
     match bare(test):
         case Logic(op="and", operands=operands):
@@ -76,15 +76,15 @@ def conditions(test: Expr, locals_: Mapping[Variable, _Told] = _NO_LOCALS) -> li
             return failed(operand, locals_)
         case Compare(op="==" | "!=" as op, left=left, right=right) if isinstance(constant := bare(right), Const):
             if isinstance(loaded := bare(left), Load) and (place := _scalar(loaded.lvalue)) is not None:
-                return [Condition(*place, op == "==", constant.value)]
+                return [ScalarCondition(*place, op == "==", constant.value)]
         case Load(lvalue=lvalue) if (place := _scalar(lvalue)) is not None:
-            return [Condition(*place, False, 0)]
+            return [ScalarCondition(*place, False, 0)]
         case Load(lvalue=LValue(root=Variable() as root, indices=[])) if root in locals_:
             return list(locals_[root][0])
     return []
 
 
-def failed(test: Expr, locals_: Mapping[Variable, _Told] = _NO_LOCALS) -> list[Condition]:
+def failed(test: Expr, locals_: Mapping[Variable, _Told] = _NO_LOCALS) -> list[ScalarCondition]:
     """What is true if a test is not."""
     match bare(test):
         case Logic(op="or", operands=operands):
@@ -103,7 +103,7 @@ class Text:
 
     def __init__(self, modules: Iterable[Module]) -> None:
         own = {function.path: function for module in modules for function in module.functions}
-        found: dict[tuple[str, str, bool], frozenset[Condition]] = {}
+        found: dict[tuple[str, str, bool], frozenset[ScalarCondition]] = {}
         given: dict[_Place, set[Any]] = {}
         self._elsewhere: set[tuple[str, str, int]] = set()
         for routine, reached in interrupt_routines(own):
@@ -116,7 +116,7 @@ class Text:
                 self._elsewhere |= {(routine.name, *place) for place in _read_elsewhere(function)}
         self._uses = {key: frozenset(_only_main_opens(now, given)) for key, now in found.items()}
 
-    def writing(self, routine: str, path: str) -> frozenset[Condition]:
+    def writing(self, routine: str, path: str) -> frozenset[ScalarCondition]:
         """What is true whenever a routine writes the object, and only `main` makes true."""
         return self._uses.get((routine, path, True), frozenset())
 
@@ -142,7 +142,7 @@ def _given(function: Function) -> Iterator[tuple[_Place, Any]]:
             yield place, None
 
 
-def _only_main_opens(now: Iterable[Condition], given: dict[_Place, set[Any]]) -> Iterator[Condition]:
+def _only_main_opens(now: Iterable[ScalarCondition], given: dict[_Place, set[Any]]) -> Iterator[ScalarCondition]:
     """Those conditions that no interrupt routine makes true."""
     for condition in now:
         values = given.get((condition.path, condition.word), set())
@@ -151,8 +151,8 @@ def _only_main_opens(now: Iterable[Condition], given: dict[_Place, set[Any]]) ->
 
 
 def _uses(
-    function: Function, now: frozenset[Condition], own: dict[str, Function], callers: tuple[str, ...]
-) -> Iterator[tuple[str, bool, frozenset[Condition]]]:
+    function: Function, now: frozenset[ScalarCondition], own: dict[str, Function], callers: tuple[str, ...]
+) -> Iterator[tuple[str, bool, frozenset[ScalarCondition]]]:
     """The objects that a function and those below it use, whether they may write them, and what is true then.
 
     `now` is true at the call of the function.
@@ -172,8 +172,8 @@ def _uses(
 
 
 def _under(
-    body: list[Stmt], now: frozenset[Condition], known: dict[Variable, _Told]
-) -> Iterator[tuple[Stmt, frozenset[Condition]]]:
+    body: list[Stmt], now: frozenset[ScalarCondition], known: dict[Variable, _Told]
+) -> Iterator[tuple[Stmt, frozenset[ScalarCondition]]]:
     """The statements of a block, and of those in it, with what was true when the tests above them were evaluated.
 
     `known`: what the values of locals say; kept up to date.
@@ -201,7 +201,7 @@ def _under(
                 for values, block in cases:
                     here = now
                     if place is not None and values is not None and len(values) == 1:
-                        here = now | {Condition(*place, True, values[0])}
+                        here = now | {ScalarCondition(*place, True, values[0])}
                     yield from _under(block, here, dict(known))
                 for _, block in cases:
                     _forget(known, block)

@@ -23,7 +23,7 @@ from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.memory import Memory, Object
 from emulator.c28x.symbols import Module
 from emulator.clock import us
-from emulator.sysbios.watch.accesses import NONE, Flag, LatestAccess, SharedCell
+from emulator.sysbios.watch.accesses import NONE, LatestAccess, ReadyFlag, SharedCell
 from emulator.sysbios.watch.kept_off import Text, rereading_lines
 from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.pairs import (
@@ -82,12 +82,12 @@ class SharedObject:
         self.known: set[tuple[StatementNumber, Thread, frozenset[Gate]]] = set()
         self.written = False
 
-    def flag(self, offset: int) -> Flag | None:
+    def flag(self, offset: int) -> ReadyFlag | None:
         """The scalar at word `offset`, if its value may tell a reader that other data is ready."""
         leaf = self.object.leaf(offset) if self.hands_over else None
         if leaf is None or isinstance(leaf[1], FloatType):
             return None
-        return Flag(self.object.declaration.path, offset, self.object.data, leaf[0])
+        return ReadyFlag(self.object.declaration.path, offset, self.object.data, leaf[0])
 
 
 def _stride(ctype: CType) -> int:
