@@ -116,6 +116,7 @@ class Connections:
         self._adc_triggers()
         self._adc_inputs()
         self._interrupts()
+        self._kept_out()
         self._always_masked()
         self._latches()
         self._captures()
@@ -455,6 +456,28 @@ class Connections:
         if self._chip.cpu.ier & 1 << group - 1 or self._source.could("CPU", "IER", 1 << group - 1, bool):
             return None
         return MissingLink(f"bit {group - 1} of IER (M_INT{group}) is 0", f"PieCtrlRegs.PIEIER{group}", f"INTx{n}")
+
+    def _kept_out(self) -> None:
+        """Routines in the vector table whose interrupt has come, while no statement enables its line."""
+        pie, vectors = self._chip.pie, self._chip.vectors
+        for group in range(1, 13):
+            register, flags = f"PieCtrlRegs.PIEIER{group}", f"PIEIFR{group}"
+            if self._writes(f"PieCtrlRegs.{flags}") or ("PieCtrlRegs", flags) in self._source.reads:
+                continue  # the firmware asks for interrupts itself
+            told = any(f.object.startswith(f"{register}.") for f in self._chip.findings.of("not-connected"))
+            for n in range(1, 17) if not told else ():
+                entry, routine = vectors.entry(group, n), vectors.routine(group, n)
+                place = self._source.last("PieVectTable", entry)
+                if place is None or routine is None or not pie.kept_out(group, n):
+                    continue
+                if self._stuck(register, f"INTx{n}", bool):
+                    message = (
+                        f"{routine} never runs for interrupt {group}.{n}, which has come: "
+                        f"no statement sets {register}.INTx{n}"
+                    )
+                    self._chip.findings.report_at(
+                        place, "not-connected", message, object=f"PieVectTable.{entry}", how="dynamic"
+                    )
 
     def _always_masked(self) -> None:
         """Interrupts that wait in IFR and are enabled in IER, in a program that never sets INTM to 0."""

@@ -146,6 +146,10 @@ class Pie:
         """Whether PIEIER lets interrupt `group`.`n` through."""
         return bool(self._ier[group - 1].value & 1 << n - 1)
 
+    def kept_out(self, group: int, n: int) -> bool:
+        """Whether interrupt `group`.`n` is pending, and PIEIER does not let it through."""
+        return bool(self._ifr[group - 1].value & ~self._ier[group - 1].value & 1 << n - 1)
+
     def waits(self, group: int, n: int) -> bool:
         """Whether interrupt `group`.`n` is pending and enabled while no interrupt of its group was ever taken."""
         return bool(self._ifr[group - 1].value & self._ier[group - 1].value & 1 << n - 1) and not self._taken[group - 1]

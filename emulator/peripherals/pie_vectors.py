@@ -31,6 +31,7 @@ class VectorTable:
         self._cpu, self._pie = cpu, pie
         self._routines: dict[int, Routine] = {}
         self._ids = {name: entry.id for name, entry in regs.layout.items() if isinstance(entry, Vector)}
+        self._names = {number: name for name, number in self._ids.items()}
         self._around: Callable[[Routine], Routine] = lambda routine: routine
         #: (number, name): a routine begins; it has ended.
         self.began: Signal[int, str] = Signal()
@@ -52,6 +53,10 @@ class VectorTable:
         number = vector_id(group, n)
         routine = self._routines.get(number)
         return routine.__name__ if routine is not None else "the kernel's" if self._pie.has_vector(number) else None
+
+    def entry(self, group: int, n: int) -> str:
+        """The name of the entry of PIE interrupt `group`.`n` in the table; empty for a reserved one."""
+        return self._names.get(vector_id(group, n), "")
 
     def cpu_routine(self, number: int) -> str | None:
         """The name of the routine of vector `number` of the CPU itself (13: CPU timer 1); None: it has none."""

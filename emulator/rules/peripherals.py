@@ -200,7 +200,8 @@ connections are checked:
   CPU timer that does not run.
 * Interrupts: `PIEIER` enables an interrupt whose source is not enabled, or an external interrupt whose pin was never
   selected (`INPUTxSELECT`). Or it enables a line without a routine, while another line of the group has a routine and
-  is not enabled. Or `IER` or `ENPIE` does not pass the interrupt on, or no statement executes `EINT`.
+  is not enabled. Or the interrupt of a routine in the vector table has come, and no statement enables its line. Or
+  `IER` or `ENPIE` does not pass the interrupt on, or no statement executes `EINT`.
 * DMA: a channel was never started, has no trigger, does not interrupt (`CHINTE`), or uses an ADC interrupt that is not
   enabled. It has stopped after a transfer, and is given the addresses of the next one without a start.
 * ADC post-processing: an event interrupts, and nothing starts the SOC of its block.

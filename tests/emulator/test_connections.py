@@ -699,6 +699,55 @@ static void Set_Up""")
     assert "names no condition" in finding.message
 
 
+#: A timer, and a pin whose edges are an external interrupt; LINES enables their lines, LATER is done in each turn.
+TWO_LINES = """#include "F28x_Project.h"
+volatile Uint16 Ticks = 0, Edges = 0;
+__interrupt void Tick(void) { Ticks++; PieCtrlRegs.PIEACK.all = PIEACK_GROUP1; }
+__interrupt void Edge(void) { Edges++; PieCtrlRegs.PIEACK.all = PIEACK_GROUP1; }
+void main(void)
+{
+    InitSysCtrl();
+    DINT;
+    InitPieCtrl();
+    IER = 0; IFR = 0;
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.TIMER0_INT = &Tick;
+    PieVectTable.XINT1_INT = &Edge;
+    InputXbarRegs.INPUT4SELECT = 5;
+    EDIS;
+    GPIO_SetupPinMux(5, GPIO_MUX_CPU1, 0);
+    GPIO_SetupPinOptions(5, GPIO_OUTPUT, GPIO_PUSHPULL);
+    XintRegs.XINT1CR.bit.POLARITY = 3;
+    XintRegs.XINT1CR.bit.ENABLE = 1;
+    InitCpuTimers();
+    ConfigCpuTimer(&CpuTimer0, 200, 1000);
+    CpuTimer0Regs.TCR.all = 0x4000;
+    LINES
+    IER |= M_INT1;
+    EINT;
+    for (;;) { DELAY_US(500); GpioDataRegs.GPATOGGLE.bit.GPIO5 = 1; LATER }
+}
+"""
+TIMER_LINE, EDGE_LINE = "PieCtrlRegs.PIEIER1.bit.INTx7 = 1;", "PieCtrlRegs.PIEIER1.bit.INTx4 = 1;"
+
+
+@pytest.mark.parametrize(("lines", "later", "at"), [
+    (TIMER_LINE, "", "PieVectTable.XINT1_INT"),
+    (EDGE_LINE, "", "PieVectTable.TIMER0_INT"),
+    (TIMER_LINE + EDGE_LINE, "", ""),
+    ("PieCtrlRegs.PIEIER1.all = 0x48;", "", ""),
+    (TIMER_LINE, f"if (Ticks > 9999) {EDGE_LINE}", ""),
+    (TIMER_LINE, "if (PieCtrlRegs.PIEIFR1.bit.INTx4) Edges++;", ""),
+    (TIMER_LINE, "PieCtrlRegs.PIEIFR1.bit.INTx4 = 0;", ""),
+])  # fmt: skip
+def test_a_routine_whose_line_is_never_enabled(tmp_path: Path, lines: str, later: str, at: str) -> None:
+    text = TWO_LINES.replace("LINES", lines).replace("LATER", later)
+    findings = told(tmp_path, text, seconds=0.005)
+    assert [f.object for f in findings] == [at] * bool(at)
+    assert all(f.place is not None and f"{at} =" in text.splitlines()[f.place.line - 1] for f in findings)
+
+
 #: Three bridges by a table; `ACTION` is what clears their outputs.
 BRIDGES = """#include "F28x_Project.h"
 static volatile struct EPWM_REGS * const Bridge[3] = {&EPwm1Regs, &EPwm2Regs, &EPwm3Regs};
