@@ -112,11 +112,11 @@ class Cell:
             self.reads = self.writes = None
             self.read, self.write, self.modify = self._read_first, self._write_first, self._modify_first
 
-    def _read_first(self) -> int:
+    def _read_first(self) -> Any:  # a vector holds a function
         self._choose()
         return self.read()
 
-    def _write_first(self, word: int, lanes: int = ALL) -> None:
+    def _write_first(self, word: Any, lanes: int = ALL) -> None:
         self._choose()
         self.write(word, lanes)
 

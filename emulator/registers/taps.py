@@ -42,8 +42,8 @@ class Tapped(Hook):
         self._told = list(taps)
         self._told_reads = [seen for seen, reads in taps.items() if reads]
 
-    def read(self) -> int:
-        """The CPU's read."""
+    def read(self) -> Any:
+        """The CPU's read: of a word, or of the function that a vector holds."""
         for seen in self._told_reads:
             seen(self._register, "read", 0, 0)
         return self._read() if self._reads is None else self._reads.read()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL
 from emulator.registers.fields import HIGH
@@ -94,3 +96,19 @@ def test_a_register_that_was_tapped_is_bound_as_before() -> None:
     assert (register.read, register.write) != before
     register.untap(log.told)
     assert (register.read, register.write) == before
+
+
+def test_a_vector_that_is_followed_holds_its_routine() -> None:
+    board = System()
+    board.cpu.eallow = True
+
+    def routine() -> None: ...
+
+    register, log = tapped(board, "PieVectTable", "TIMER0_INT", reads=True)
+    written: Any = routine
+    register.write(written, ALL)  # what C does: PieVectTable.TIMER0_INT = &routine
+    held: Any = register.read()
+    assert held is routine
+    assert [access for access, *_ in log] == ["write", "read"]
+    other = board.register("PieVectTable", "TIMER1_INT")
+    assert not other.read()
