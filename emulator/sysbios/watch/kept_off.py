@@ -104,21 +104,29 @@ class Text:
     def __init__(self, modules: Iterable[Module]) -> None:
         own = {function.path: function for module in modules for function in module.functions}
         found: dict[tuple[str, str, bool], frozenset[ScalarCondition]] = {}
+        steps: dict[tuple[str, str], frozenset[ScalarCondition]] = {}
         given: dict[_Place, set[Any]] = {}
         self._elsewhere: set[tuple[str, str, int]] = set()
         for routine, reached in interrupt_routines(own):
-            for path, write, now in _uses(routine, frozenset(), own, ()):
+            for path, write, now in _uses(routine, own):
                 key = (routine.name, path, write)
                 found[key] = found.get(key, now) & now
+            for path, now in _steps(routine, own):
+                steps[routine.name, path] = steps.get((routine.name, path), now) & now
             for function in reached:
                 for place, value in _given(function):
                     given.setdefault(place, set()).add(value)
                 self._elsewhere |= {(routine.name, *place) for place in _read_elsewhere(function)}
         self._uses = {key: frozenset(_only_main_opens(now, given)) for key, now in found.items()}
+        self._steps = {key: frozenset(_only_main_opens(now, given)) for key, now in steps.items()}
 
     def writing(self, routine: str, path: str) -> frozenset[ScalarCondition]:
         """What is true whenever a routine writes the object, and only `main` makes true."""
         return self._uses.get((routine, path, True), frozenset())
+
+    def stepping(self, routine: str, path: str) -> frozenset[ScalarCondition]:
+        """As `writing`, for other writes than those of a constant."""
+        return self._steps.get((routine, path), frozenset())
 
     def denies(self, routine: str, path: str, write: bool, flag: _Place) -> bool:
         """Whether a flag keeps the routine from no use of the object, though it reads the flag: it reads it in tests
@@ -150,25 +158,40 @@ def _only_main_opens(now: Iterable[ScalarCondition], given: dict[_Place, set[Any
             yield condition._replace(answered=bool(values))
 
 
-def _uses(
-    function: Function, now: frozenset[ScalarCondition], own: dict[str, Function], callers: tuple[str, ...]
-) -> Iterator[tuple[str, bool, frozenset[ScalarCondition]]]:
-    """The objects that a function and those below it use, whether they may write them, and what is true then.
-
-    `now` is true at the call of the function.
-    """
-    for statement, here in _under(function.body, now, {}):
-        inner = [part for root in roots(statement) for part in parts(root)]
+def _uses(function: Function, own: dict[str, Function]) -> Iterator[tuple[str, bool, frozenset[ScalarCondition]]]:
+    """The objects that a function and those below it use, whether they may write them, and what is true then."""
+    for statement, here in _run(function, _NOTHING, own, ()):
         changed = statement.target if isinstance(statement, Assign | CopyStruct) else None
-        for part in inner:
+        for part in (part for root in roots(statement) for part in parts(root)):
             match part:
                 case AddressOf(lvalue=LValue(root=Variable(kind="global") as root)):
                     yield root.declaration.path, True, here
                 case LValue(root=Variable(kind="global") as root):
                     yield root.declaration.path, part is changed, here
+
+
+def _steps(function: Function, own: dict[str, Function]) -> Iterator[tuple[str, frozenset[ScalarCondition]]]:
+    """The objects of which a function and those below it change a scalar by a value, and what is true then."""
+    for statement, here in _run(function, _NOTHING, own, ()):
+        match statement:
+            case Assign(target=LValue() as target, value=value) if (place := _scalar(target)) is not None:
+                if not isinstance(bare(value), Const):
+                    yield place[0], here
+
+
+def _run(
+    function: Function, now: frozenset[ScalarCondition], own: dict[str, Function], callers: tuple[str, ...]
+) -> Iterator[tuple[Stmt, frozenset[ScalarCondition]]]:
+    """The statements of a function and of those below it, with what is true when they are reached.
+
+    `now` is true at the call of the function.
+    """
+    for statement, here in _under(function.body, now, {}):
+        yield statement, here
+        inner = (part for root in roots(statement) for part in parts(root))
         for called in {part.function.path for part in inner if isinstance(part, Call)}:
             if called in own and called not in callers and called != function.path:
-                yield from _uses(own[called], here, own, (*callers, function.path))
+                yield from _run(own[called], here, own, (*callers, function.path))
 
 
 def _under(

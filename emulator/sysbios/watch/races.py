@@ -24,7 +24,7 @@ from emulator.c28x.memory import Memory, Object
 from emulator.c28x.symbols import Module
 from emulator.clock import us
 from emulator.sysbios.watch.accesses import NONE, LatestAccess, ReadyFlag, SharedCell
-from emulator.sysbios.watch.kept_off import Text, rereading_lines
+from emulator.sysbios.watch.kept_off import ScalarCondition, Text, rereading_lines
 from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.pairs import (
     HandOver,
@@ -273,7 +273,7 @@ class Races:
                     continue
                 read = shared.apart.setdefault((routine, pair), set())
                 apart = excluded(threads.main, threads.protection(), routine, routine.protection)
-                if apart or self._kept_off(shared, routine.what.name):
+                if apart or self._kept_off(self._text.writing(routine.what.name, shared.object.declaration.path)):
                     read.clear()
                 elif read or not self._told_before(shared, routine, routine.what.name):
                     read.add(offset)
@@ -281,10 +281,10 @@ class Races:
                     self._by_text(shared, statement, self._sentence(shared, "race", False, threads.main, routine, None))
                     return
 
-    def _kept_off(self, shared: SharedObject, routine: str) -> bool:
-        """Whether a flag keeps a routine from writing an object until `main` changes the flag, and `main` knows it."""
+    def _kept_off(self, conditions: Collection[ScalarCondition]) -> bool:
+        """Whether one of the conditions of a routine is not met until `main` changes a flag, and `main` knows it."""
         main = self._threads.main
-        for condition in self._text.writing(routine, shared.object.declaration.path):
+        for condition in conditions:
             flag = self._of_path.get(condition.path)
             cell = None if flag is None else flag.cells.get(condition.word)
             if cell is None or not cell.hands_over or condition.true_of(cell.value):
@@ -406,7 +406,10 @@ class Races:
         if not lower.write or lower.thread is not self._threads.main or not isinstance(what, Routine):
             return False
         _, function = self._locator.function(lower.statement)
-        return (what.name, function) in self._continued.get(shared.object.declaration.path, ())
+        path = shared.object.declaration.path
+        return (what.name, function) in self._continued.get(path, ()) and not self._kept_off(
+            self._text.stepping(what.name, path)
+        )
 
     def _early(self, shared: SharedObject, offset: int, lower: LatestAccess, higher: LatestAccess) -> str:
         """The flag that `main` has handed over too early, if it uses several words after that; else an empty text."""

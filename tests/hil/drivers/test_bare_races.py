@@ -101,6 +101,8 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
         # What the routine goes on with is set anew, one object after the other.
         ("if (Ready) { Sum += Words[Head]; Head++; if (Head == 8) { Head = 0; Ready = 0; } }", "Head = 0; Ready = 1;",
          [("race", "Head")]),
+        ("if (Ready) Head = 0; else { Words[Head & 7] = Count; Head++; if (Head == 8) Ready = 1; }",
+         "if (Ready && ++Sum > 5) { Sum = 0; Ready = 0; Head = 0; }", [("race", "Head")]),
         # Handed back before it is copied; handed over before it is complete.
         ("if (!Ready) { Now.hours = Count++; Now.minutes = Count; Ready = 1; }",
          "if (Ready) { Ready = 0; Seen = Now; }", [("race", "Now")]),
@@ -171,6 +173,9 @@ def test_what_an_interrupt_can_come_into_is_told(
         ("if (Ready) { Sum += Words[Head]; Head++; if (Head == 8) { Head = 0; Ready = 0; } }",
          "DINT; Head = 0; Ready = 1; EINT;"),
         ("Count++; if (Ready) Waiting++;", "Count = 0; Waiting = 0; Ready = 1;"),
+        # An index that the routine steps only while the flag is 0, and that it may set back at any time.
+        ("if (Ready) Head = 0; else { Words[Head & 7] = Count; Head++; if (Head == 8) Ready = 1; }",
+         "if (Ready && ++Sum > 5) { Sum = 0; Head = 0; Ready = 0; }"),
         # Looked at while interrupts are on, changed while they are off.
         ("Waiting++;", "while (Waiting == 0) ; DINT; Waiting--; EINT;"),
         # The routine comes only when it is asked for: what was read before is read.
