@@ -112,9 +112,10 @@ class Cell:
             self.reads = self.writes = None
             self.read, self.write, self.modify = self._read_first, self._write_first, self._modify_first
 
-    def _read_first(self) -> Any:  # a vector holds a function
+    def _read_first(self) -> Any:
         self._choose()
-        return self.read()
+        read: Callable[[], Any] = self.read  # a vector holds a function
+        return read()
 
     def _write_first(self, word: Any, lanes: int = ALL) -> None:
         self._choose()

@@ -37,7 +37,8 @@ class Tapped(Hook):
 
     def __init__(self, register: Cell, taps: Mapping[Seen, bool]) -> None:
         self._register = register
-        self._read, self._write, self._modify = register.read, register.write, register.modify
+        self._read: Callable[[], Any] = register.read
+        self._write, self._modify = register.write, register.modify
         self._reads, self._writes = register.reads, register.writes
         self._told = list(taps)
         self._told_reads = [seen for seen, reads in taps.items() if reads]
@@ -59,7 +60,7 @@ class Tapped(Hook):
 
     def modify(self, keep: int, bits: int, lanes: int) -> None:
         """A read-modify-write in one step."""
-        word = self._read() & keep | bits  # no effect, or `modify` would be in two steps
+        word: int = self._read() & keep | bits  # no effect, or `modify` would be in two steps
         for seen in self._told:
             seen(self._register, "write", word, lanes & ~keep)
         self._modify(keep, bits, lanes)
