@@ -81,8 +81,8 @@ class Findings:
     """The findings of one board, in order of first occurrence."""
 
     __slots__ = (
-        "_by_key", "beginnings", "cause", "clock", "found", "generation", "muted", "occurrences", "places", "position",
-        "sources",
+        "_by_key", "beginnings", "cause", "clock", "found", "generation", "interrupts", "muted", "occurrences",
+        "places", "position", "sources",
     )  # fmt: skip
 
     def __init__(self, clock: Clock) -> None:
@@ -94,6 +94,8 @@ class Findings:
         self.sources: dict[str, str] = {}
         #: Where each function of the firmware begins; filled by the linker.
         self.beginnings: dict[Callable[..., Any], Place] = {}
+        #: There, of functions of C: whether it is declared `interrupt`, and so returns with IRET; filled by the linker.
+        self.interrupts: dict[Place, bool] = {}
         #: The cause of the event that runs now: findings belong to it, not to the task that happens to have the CPU.
         self.cause: Cause | None = None
         #: Reports are not recorded now, because they are consequences of an earlier finding.

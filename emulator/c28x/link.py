@@ -281,9 +281,10 @@ class Linked:
         self._paths[defined] = path
         function, where = compiled.function, compiled.function.where
         self.runtime.signatures[defined] = function.ctype
-        self.runtime.findings.beginnings[defined] = Place(
-            where.file, where.line, function.name, function.c_file, where.column
-        )  # fmt: skip
+        begins = Place(where.file, where.line, function.name, function.c_file, where.column)
+        self.runtime.findings.beginnings[defined] = begins
+        if function.interrupt is not None:
+            self.runtime.findings.interrupts[begins] = function.interrupt
         self.runtime.findings.sources[compiled.file] = compiled.function.c_file
 
     def _bind(self, compiled: CompiledFunction) -> None:

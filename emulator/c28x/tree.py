@@ -155,8 +155,8 @@ class Function:
     extern: bool = False
     #: A variadic function of the firmware: the pointer to its extra arguments.
     given: Variable | None = field(default=None, kw_only=True, repr=False, compare=False)
-    #: Declared `interrupt`.
-    interrupt: bool = False
+    #: Declared `interrupt`; None: in Python, which has no word for it.
+    interrupt: bool | None = None
     #: Declared `static`: visible only in its own file.
     static: bool = False
     #: The place of its body; of an extern in C, of its first use.

@@ -2,8 +2,8 @@
 
 Modelled: an entry runs when its interrupt is taken, nested on the interrupted stack; EALLOW (by the register core).  An
 entry that the kernel took belongs to the kernel until firmware writes over it, as on silicon.
-Not modelled: what a routine without the keyword `interrupt` does to the registers of the interrupted code (CHOICE: any
-function in the table counts as an interrupt routine).
+A C function without the keyword `interrupt` is told when it returns (`isr-keyword`).
+Not modelled: what such a function does to the registers of the interrupted code (CHOICE: it returns like a routine).
 Time: none of its own; the core accounts for entry and return, the routine for itself.
 Sources: TRM PIE; HDR F2837xS_pievect.h.
 """
@@ -15,6 +15,7 @@ from functools import partial
 from typing import Any
 
 from emulator.c28x.memory import NULL
+from emulator.c28x.sites import Place
 from emulator.cpu import Cpu
 from emulator.peripherals.pie import Pie, vector_id
 from emulator.registers.core import ALL
@@ -30,6 +31,8 @@ class VectorTable:
     def __init__(self, cpu: Cpu, pie: Pie, regs: PieVectTable) -> None:
         self._cpu, self._pie = cpu, pie
         self._routines: dict[int, Routine] = {}
+        #: Where the routine of an entry begins, if it does not return as from an interrupt, until that was told.
+        self._returning: dict[int, Place] = {}
         self._ids = {name: entry.id for name, entry in regs.layout.items() if isinstance(entry, Vector)}
         self._names = {number: name for name, number in self._ids.items()}
         self._around: Callable[[Routine], Routine] = lambda routine: routine
@@ -73,7 +76,11 @@ class VectorTable:
             return
         self._routines[number] = routine
         run = partial(self._run, self._around(routine), routine.__name__, number)
-        self._pie.set_vector(number, run, self._cpu.findings.beginnings.get(routine))
+        begins = self._cpu.findings.beginnings.get(routine)
+        self._returning.pop(number, None)
+        if begins is not None and self._cpu.findings.interrupts.get(begins) is False:
+            self._returning[number] = begins
+        self._pie.set_vector(number, run, begins)
 
     def _run(self, routine: Routine, name: str, number: int) -> None:
         cpu = self._cpu
@@ -88,3 +95,9 @@ class VectorTable:
                 listener(number, name)
             cpu.isr = outer
             cpu.position.who = who
+        begins = self._returning.pop(number, None)
+        if begins is not None:
+            cpu.findings.report_at(
+                begins, "isr-keyword", f"{name} has returned to what it interrupted, and is not declared `interrupt`",
+                how="dynamic", object=name, task=f"Isr:{name}",
+            )  # fmt: skip

@@ -612,6 +612,28 @@ happens to hold.
         "TRM PIE: vector table",
     ),
     _rule(
+        "isr-keyword",
+        Severity.ERROR,
+        "A function returns in another way than its caller expects: `interrupt` is missing, or too much.",
+        """
+The program dies at the first interrupt, or a little later with registers that nobody has written.
+
+The CPU calls a routine of the vector table: it must save the registers that it uses, and end with `IRET`. The compiler
+does both only for a function that is declared `interrupt` (or `__interrupt`, or named by `#pragma INTERRUPT`). Another
+function ends with `LRETR`, takes the wrong words from the stack, and leaves INTM set. It is told when it returns; a
+routine that never returns, like the default ones of TI's libraries, is right.
+
+The function of a SYS/BIOS Hwi is called by the kernel's dispatcher. There the word is wrong: `IRET` takes words from
+the stack that the dispatcher has not put there.
+
+The run goes on as if the function were declared as it should be. A Python driver has no word for it, and is not told.
+
+**Fix:** write `__interrupt` before the routine that is written to `PieVectTable` or given to `Interrupt_register`;
+leave it out before the function of a Hwi.
+""",
+        "SPRU514, the interrupt keyword; TRM PIE: vector table; SYS/BIOS Hwi",
+    ),
+    _rule(
         "interrupt-storm",
         Severity.ERROR,
         "Interrupts follow each other without a gap, and nothing else runs.",

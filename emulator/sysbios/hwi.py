@@ -172,9 +172,14 @@ class HwiModule:
         hwi = Hwi(name, number, fitted(self.core, function, 1, "Hwi function"), arg, ack)
         self.table[number] = hwi
         handler = partial(self._dispatch, hwi)
+        beginnings = self.core.findings.beginnings
+        begins = beginnings.get(function) or beginnings.get(unwrap(function))
+        if begins is not None and self.core.findings.interrupts.get(begins):
+            self.core.findings.report_at(
+                begins, "isr-keyword", f"{begins.function} is declared `interrupt`, and the Hwi {name} calls it",
+                how="dynamic", object=begins.function,
+            )  # fmt: skip
         if hwi.group or number in DIRECT:
-            beginnings = self.core.findings.beginnings
-            begins = beginnings.get(function) or beginnings.get(unwrap(function))
             if begins is not None:
                 self.core.cpu.dispatched.add(begins)
             self._set_vector(number, handler, begins)

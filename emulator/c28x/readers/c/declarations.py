@@ -257,12 +257,14 @@ class CDeclarationReader:
             if _unspecified(known.ctype) and not _unspecified(prototype):
                 known.ctype = FunctionType(name, prototype.result, prototype.parameters, prototype.variadic)
                 known.parameters = self.parameters(name, prototype, where)
+            known.interrupt = known.interrupt or "interrupt" in node.funcspec
             return known
         if "static" in node.storage:
             self.linkage.static.add(name)
         function = Function(
             name, self.module.short, FunctionType(name, prototype.result, prototype.parameters, prototype.variadic),
             self.parameters(name, prototype, where), where.line, self.module.c_file, extern=True,
+            interrupt="interrupt" in node.funcspec,
         )  # fmt: skip
         self.module.symbols[name] = function
         self.linkage.declared[name] = where
@@ -302,7 +304,6 @@ class CDeclarationReader:
             raise SourceError.at(where, f"{name} is defined twice")
         function.extern = False
         function.line, function.where = where.line, Where(where.file, where.line, where.column)
-        function.interrupt = "interrupt" in declaration.funcspec
         function.ctype = FunctionType(name, prototype.result, prototype.parameters, prototype.variadic)
         function.parameters = self.parameters(name, prototype, where)
         if prototype.variadic:

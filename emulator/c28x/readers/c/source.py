@@ -119,6 +119,7 @@ class CFiles:
                 reader.read(tree)
             except RecursionError:
                 raise SourceError(file, 1, "a declaration nests too deeply to be translated") from None
+        _mark_interrupts(module, unit)
         return module
 
     def find(self, name: str) -> Function | None:
@@ -266,6 +267,15 @@ def _hinted(error: SourceError) -> SourceError:
     found = _NO_TYPE.search(str(error))
     hint = headers.hint(found[1]) if found is not None else None
     return error if hint is None else SourceError(error.file, error.line, hint, error.column)
+
+
+def _mark_interrupts(module: Module, unit: Unit) -> None:
+    """`#pragma INTERRUPT(function)` is another way to write `interrupt` (SPRU514, "The INTERRUPT Pragma")."""
+    for pragma in unit.pragmas:
+        word, _, arguments = pragma.text.partition("(")
+        function = module.symbols.get(arguments.partition(")")[0].partition(",")[0].strip())
+        if word.strip() == "INTERRUPT" and isinstance(function, Function):
+            function.interrupt = True
 
 
 def _remark_preprocessing(module: Module, unit: Unit) -> None:
