@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 
 from tests.bad_day.figure import REPOSITORY, short
@@ -51,6 +52,13 @@ def _cpu_s(pid: int) -> float:
     return own + sum(_cpu_s(int(child)) for child in children)
 
 
+def _as_a_shell_starts(alone: bool) -> None:
+    """Set what a shell's child does at a signal, whatever those do who run the tests (nohup ignores SIGHUP)."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    if alone:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
 def case(seed: int) -> str:
     """A command and a moment."""
     rng = random.Random(f"signals {seed}")
@@ -68,7 +76,7 @@ def case(seed: int) -> str:
         process = subprocess.Popen(
             [sys.executable, "-c", START, str(told), *command], pass_fds=(told,), stdin=subprocess.DEVNULL,
             stdout=out, stderr=errors, env={**os.environ, "PYTHONPATH": str(REPOSITORY)}, start_new_session=alone,
-            preexec_fn=(lambda: signal.signal(signal.SIGINT, signal.SIG_IGN) and None) if alone else None,
+            preexec_fn=partial(_as_a_shell_starts, alone),
         )  # fmt: skip
         os.close(told)
         os.close(out)
