@@ -188,12 +188,12 @@ class Reach:
         """The callbacks of scheduled events, except those that end calls."""
         for callback in self._board.clock.waiting():
             function = getattr(callback, "func", callback)
-            if getattr(function, "__module__", "") != "hil.testing.guard":
+            if _module(function) != "hil.testing.guard":
                 yield function
 
     def has_foreign_event(self) -> bool:
         """Whether an event is scheduled that does not belong to the chip; it may do anything."""
-        return any(not str(getattr(c, "__module__", "")).startswith("emulator.") for c in self.waiting())
+        return any(not _module(callback).startswith("emulator.") for callback in self.waiting())
 
 
 class _Routine:
@@ -272,13 +272,16 @@ def _to_register(part: Any) -> bool:
 
 def _owner(callback: Callable[..., Any]) -> type[Any] | None:
     """The class to which the event of a callback belongs; None: the event changes no register."""
-    if getattr(callback, "__module__", "") == "emulator.peripherals.pie":
+    if _module(callback) == "emulator.peripherals.pie":
         return None  # looks whether an acknowledge is missing
     return type(getattr(callback, "__self__", callback))
 
 
 def _outside(listener: Any) -> bool:
     """Whether a listener belongs neither to the chip nor to the parts of this project."""
-    function = getattr(listener, "func", listener)
-    module = str(getattr(function, "__module__", "") or type(getattr(function, "__self__", None)).__module__)
-    return not module.startswith(("emulator.", "hil."))
+    return not _module(getattr(listener, "func", listener)).startswith(("emulator.", "hil."))
+
+
+def _module(function: Callable[..., Any]) -> str:
+    """The module of a function.  A compiled method does not know it, but its object's class does."""
+    return str(getattr(function, "__module__", "") or type(getattr(function, "__self__", None)).__module__)
