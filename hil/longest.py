@@ -1,8 +1,8 @@
-"""The longest virtual time: no order, fault, feed or run reaches further."""
+"""The furthest virtual time that an order, a fault or a feed can name."""
 
 from __future__ import annotations
 
 from typing import Final
 
-#: A year.
+#: A little more than a year.
 LONGEST_S: Final = 3.2e7

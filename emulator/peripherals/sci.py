@@ -88,9 +88,9 @@ class Sci:
         self._format_key: tuple[int, int, int] | None = None
         self._format: Format
         self.receiver = SciReceiver(clock, cpu, regs, rx, rx_interrupt, self.format, break_bits, on_blocked)
-        #: Without FIFO: whether SCITXBUF holds a character that waits for the shifter.
         #: The statement that wrote the latest character.  Findings about its frame are reported there.
         self._cause: Cause | None = None
+        #: Without FIFO: whether SCITXBUF holds a character that waits for the shifter.
         self._waiting = False
         #: The event at the end of the frame that is being shifted, and this frame.
         self._shift: ClockEvent | None = None

@@ -22,6 +22,30 @@ from emulator.device_h import *
 '''
 
 
+#: How a program of this chip begins.
+START_UP = """    InitSysCtrl();
+    DINT;
+    InitPieCtrl();
+    IER = 0x0000;
+    IFR = 0x0000;
+    InitPieVectTable();
+"""
+
+
+def with_ticks(period_us: int) -> str:
+    """How `main` begins if the routine `Tick` runs each `period_us`, by CPU timer 0."""
+    return START_UP + f"""    EALLOW;
+    PieVectTable.TIMER0_INT = &Tick;
+    EDIS;
+    InitCpuTimers();
+    ConfigCpuTimer(&CpuTimer0, 200, {period_us});
+    PieCtrlRegs.PIEIER1.bit.INTx7 = 1;
+    IER |= M_INT1;
+    EINT;
+    StartCpuTimer0();
+"""
+
+
 class Driver:
     """A linked piece of source on a board whose parts are ideal; its functions are attributes."""
 
@@ -66,13 +90,7 @@ C_HEADER = """#include "F28x_Project.h"
 
 static void start(void)
 {
-    InitSysCtrl();
-    DINT;
-    InitPieCtrl();
-    IER = 0x0000;
-    IFR = 0x0000;
-    InitPieVectTable();
-}
+""" + START_UP + """}
 """
 
 

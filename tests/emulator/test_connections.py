@@ -12,15 +12,7 @@ from emulator.clock import CYCLES_PER_MS
 from hil.board import Board, load
 from hil.drivers.check import DriverFiles, check_files
 from tests.corpus.corpus import chosen, measured
-
-#: How each of these programs begins.
-START_UP = """    InitSysCtrl();
-    DINT;
-    InitPieCtrl();
-    IER = 0x0000;
-    IFR = 0x0000;
-    InitPieVectTable();
-"""
+from tests.emulator.drivers import START_UP
 
 #: ePWM1 triggers a conversion and interrupts, ePWM2 drives a pin, a pin interrupts, timer 0 and eQEP1 tick.
 RIGHT = """#include "F28x_Project.h"

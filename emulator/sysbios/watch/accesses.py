@@ -9,7 +9,8 @@ excludes them (threads.py), and no semaphore, post or plain hand-over word order
 read.  Whether its reader has finished by then is a question of time, and the order of events does not answer it.
 
 A Swi or handler also keeps itself off: it uses a buffer only while a flag has a certain value, and the flag has another
-one now (`gates`).  Who gave it that value does not matter, but the thread of the lower level must know of it.
+one now (`LatestAccess.flags`).  Who gave it that value does not matter, but the thread of the lower level must know of
+it.
 """
 
 from __future__ import annotations
@@ -32,14 +33,14 @@ class ReadyFlag(NamedTuple):
 class LatestAccess:
     """The latest access with one thread, one direction (read or write) and one protection."""
 
-    __slots__ = ("clock", "gates", "protection", "statement", "thread", "time", "vector", "write")
+    __slots__ = ("clock", "flags", "protection", "statement", "thread", "time", "vector", "write")
 
     def __init__(
         self, thread: Thread, write: bool, protection: Protection, clock: int, statement: StatementNumber, time: int
     ) -> None:
         #: The words that its run had read before it, with their values: only those that were the same each time.  And
         #: the level of the thread that has given them these values.
-        self.gates: dict[SharedCell, tuple[Any, int]] = dict(thread.seen)
+        self.flags: dict[SharedCell, tuple[Any, int]] = dict(thread.seen)
         #: The vector clock of its thread at that time.
         self.vector = thread.vector
         self.thread = thread
@@ -55,7 +56,7 @@ class LatestAccess:
         if self.thread.level < level:
             return []
         return [
-            cell.flag for cell, (was, by) in self.gates.items()
+            cell.flag for cell, (was, by) in self.flags.items()
             if cell.flag is not None and by <= level and cell.closed(was, thread)
         ]  # fmt: skip
 
@@ -127,7 +128,7 @@ class SharedCell:
         last = max((each.clock for each in self.writes if each.thread is thread), default=1)
         return reader.followed(thread, last) and not any(
             reader.thread in flag.writers and len(flag.writers) > 1
-            for each in self.writes if each.thread is thread for flag in each.gates
+            for each in self.writes if each.thread is thread for flag in each.flags
         )  # fmt: skip
 
     def hand_over(self, thread: Thread, statement: StatementNumber, time: int) -> None:
@@ -180,13 +181,13 @@ class SharedCell:
                 if write:
                     self.writes.append(known)
             self.last = known
-        if known.gates:
-            for cell, (was, by) in list(known.gates.items()):
+        if known.flags:
+            for cell, (was, by) in list(known.flags.items()):
                 value, last = thread.seen.get(cell, (None, by))
                 if value != was:
-                    del known.gates[cell]
+                    del known.flags[cell]
                 elif last > by:
-                    known.gates[cell] = was, last
+                    known.flags[cell] = was, last
         # In `v[n++] = x` the step of the index and the access are one statement: their order is the compiler's.
         known.clock = thread.clock - (thread.stepped == (statement, time) and not self.hands_over)
         known.statement, known.time, known.vector = statement, time, thread.vector

@@ -3,17 +3,19 @@
 - A routine writes an object only while a flag has a certain value.  While it has another one, the object is `main`'s.
 - `main` reads an object in a loop that reads it again if a routine has been there: a counter of its versions is not
   the same before and after.
+- A routine uses one part of an array (a double buffer), and `main` another one, until the routine turns to it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, TypeAlias
 
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     AddressOf,
     Assign,
+    Binary,
     Break,
     Call,
     Compare,
@@ -23,6 +25,7 @@ from emulator.c28x.tree import (
     Expr,
     Function,
     If,
+    Index,
     Load,
     Logic,
     LValue,
@@ -58,7 +61,7 @@ def opposite(condition: ScalarCondition) -> ScalarCondition:
 
 
 #: The path of an object, and the offset of a word in it.
-_Place = tuple[str, int]
+Word: TypeAlias = tuple[str, int]
 _NOTHING: Final[frozenset[ScalarCondition]] = frozenset()
 #: Of a local: what is true if it is true, and what is if it is not.
 _Told = tuple[frozenset[ScalarCondition], frozenset[ScalarCondition]]
@@ -98,14 +101,14 @@ def failed(test: Expr, locals_: Mapping[Variable, _Told] = _NO_LOCALS) -> list[S
     return [opposite(condition) for condition in conditions(test, locals_)]
 
 
-class Text:
-    """What the routines' text says: under which conditions each one uses an object."""
+class UseConditions:
+    """Under which conditions each routine uses an object, as its source says."""
 
     def __init__(self, modules: Iterable[Module]) -> None:
         own = {function.path: function for module in modules for function in module.functions}
         found: dict[tuple[str, str, bool], frozenset[ScalarCondition]] = {}
         steps: dict[tuple[str, str], frozenset[ScalarCondition]] = {}
-        given: dict[_Place, set[Any]] = {}
+        given: dict[Word, set[Any]] = {}
         self._elsewhere: set[tuple[str, str, int]] = set()
         for routine, reached in interrupt_routines(own):
             for path, write, now in _uses(routine, own):
@@ -128,7 +131,7 @@ class Text:
         """As `writing`, for other writes than those of a constant."""
         return self._steps.get((routine, path), frozenset())
 
-    def denies(self, routine: str, path: str, write: bool, flag: _Place) -> bool:
+    def denies(self, routine: str, path: str, write: bool, flag: Word) -> bool:
         """Whether a flag keeps the routine from no use of the object, though it reads the flag: it reads it in tests
         only, and none of them decides on the use.
         """
@@ -138,7 +141,7 @@ class Text:
         return all((condition.path, condition.word) != flag for condition in uses)
 
 
-def _given(function: Function) -> Iterator[tuple[_Place, Any]]:
+def _given(function: Function) -> Iterator[tuple[Word, Any]]:
     """The scalars at file scope that a function can change, each with the constant that it gets, or None."""
     for statement in statements(function.body):
         match statement:
@@ -150,7 +153,7 @@ def _given(function: Function) -> Iterator[tuple[_Place, Any]]:
             yield place, None
 
 
-def _only_main_opens(now: Iterable[ScalarCondition], given: dict[_Place, set[Any]]) -> Iterator[ScalarCondition]:
+def _only_main_opens(now: Iterable[ScalarCondition], given: dict[Word, set[Any]]) -> Iterator[ScalarCondition]:
     """Those conditions that no interrupt routine makes true."""
     for condition in now:
         values = given.get((condition.path, condition.word), set())
@@ -258,7 +261,7 @@ def _forget(known: dict[Variable, _Told], body: list[Stmt]) -> None:
         known.pop(variable, None)
 
 
-def _read_elsewhere(function: Function) -> Iterator[_Place]:
+def _read_elsewhere(function: Function) -> Iterator[Word]:
     """The scalars at file scope that a function reads outside of the tests that `conditions` understands."""
     known: dict[Variable, _Told] = {}
     for statement, _ in _under(function.body, _NOTHING, known):
@@ -277,12 +280,87 @@ def _read_elsewhere(function: Function) -> Iterator[_Place]:
                     yield place
 
 
-def _scalar(lvalue: LValue) -> _Place | None:
+def _scalar(lvalue: LValue) -> Word | None:
     """The path and word of a scalar at file scope that an lvalue names."""
     match lvalue:
         case LValue(root=Variable(kind="global") as root, indices=[], words=words, ctype=ctype) if ctype.leaves == 1:
             return root.declaration.path, words
     return None
+
+
+def alternating(modules: Iterable[Module]) -> dict[str, set[str]]:
+    """Arrays whose parts a routine uses in turn (double buffers), by their paths: what selects the part.
+
+    Such an object is the first of several subscripts, a pointer to the array, or what a test of two arrays asks.  The
+    routine toggles it, or changes it only when something is complete.
+    """
+    own = {function.path: function for module in modules for function in module.functions}
+    chosen: dict[str, set[str]] = {}
+    for _, reached in interrupt_routines(own):
+        turned = set().union(*map(_turned_now_and_then, reached))
+        for function in reached if turned else ():
+            for path, selector in _selected(function.body):
+                if selector in turned:
+                    chosen.setdefault(path, set()).add(selector)
+    pointed = {selector for selectors in chosen.values() for selector in selectors}
+    for function in own.values() if pointed else ():
+        for statement in statements(function.body):
+            pointer = object_path(statement.target) if isinstance(statement, Assign) else None
+            if isinstance(statement, Assign) and pointer is not None and pointer in pointed:
+                for part in parts(statement.value):
+                    if isinstance(part, AddressOf) and (array := object_path(part.lvalue)) is not None:
+                        chosen.setdefault(array, set()).add(pointer)
+    return chosen
+
+
+def _turned_now_and_then(function: Function) -> set[str]:
+    """The plain objects that a function toggles, or sets only in branches."""
+    assigns = [statement for statement in statements(function.body) if isinstance(statement, Assign)]
+    always = [statement for statement in function.body if isinstance(statement, Assign) and not _toggles(statement)]
+    return written_objects([each for each in assigns if each.target.ctype.leaves == 1]) - written_objects(always)
+
+
+def _toggles(statement: Assign) -> bool:
+    """Whether a statement sets an object to the other one of two values: `x ^= 1`, `x = 1 - x`, `x = !x`."""
+    value = bare(statement.value)
+    match value:
+        case Binary(op="^"):
+            return True
+        case Binary(op="-", left=left):
+            return isinstance(bare(left), Const)
+    return isinstance(value, Not)
+
+
+def _selected(body: list[Stmt]) -> Iterator[tuple[str, str]]:
+    """(path of an array, or of a pointer that statements go through; path of what selects it)."""
+    for statement in statements(body):
+        named = [statement.target] if isinstance(statement, Assign) else []
+        named += [part.lvalue for root in roots(statement) for part in parts(root) if isinstance(part, Load)]
+        for lvalue in named:
+            match lvalue:
+                case LValue(root=Variable(kind="global") as root, indices=[Index(expr=first), _, *_]):
+                    if isinstance(row := bare(first), Load) and (selector := object_path(row.lvalue)) is not None:
+                        yield root.declaration.path, selector
+                case LValue(root=Load(lvalue=pointed)) if (pointer := object_path(pointed)) is not None:
+                    yield pointer, pointer
+        if isinstance(statement, If):
+            loads = (part for part in parts(statement.test) if isinstance(part, Load))
+            asked = {path for load in loads if (path := object_path(load.lvalue)) is not None}
+            if len(asked) == 1:
+                for path in written_objects(statement.then) ^ written_objects(statement.otherwise):
+                    yield path, min(asked)
+
+
+def written_objects(body: Iterable[Stmt]) -> set[str]:
+    """The objects at file scope that statements assign."""
+    targets = [statement.target for statement in statements(body) if isinstance(statement, Assign | CopyStruct)]
+    return {path for target in targets if (path := object_path(target)) is not None}
+
+
+def object_path(lvalue: Any) -> str | None:
+    """The path of the object at file scope that an lvalue names a part of."""
+    root = lvalue.root if isinstance(lvalue, LValue) else None
+    return root.declaration.path if isinstance(root, Variable) and root.kind == "global" else None
 
 
 def rereading_lines(modules: Iterable[Module]) -> frozenset[tuple[str, int]]:
@@ -297,7 +375,7 @@ def rereading_lines(modules: Iterable[Module]) -> frozenset[tuple[str, int]]:
 
 def rereads(loop: While) -> bool:
     """Whether a loop ends only when a shared object still has the value that the loop has copied from it."""
-    copies: dict[Variable, set[_Place]] = {}
+    copies: dict[Variable, set[Word]] = {}
     for statement in statements(loop.body):
         given: tuple[Variable, Expr] | None = None
         match statement:
@@ -317,11 +395,11 @@ def rereads(loop: While) -> bool:
     return any(_again(part, copies) for test in tests for part in parts(test) if isinstance(part, Compare))
 
 
-def _again(test: Compare, copies: dict[Variable, set[_Place]]) -> bool:
+def _again(test: Compare, copies: dict[Variable, set[Word]]) -> bool:
     """Whether a test compares an object with a copy of it, or two copies of it."""
     if test.op not in ("==", "!="):
         return False
-    sides: list[set[_Place]] = []
+    sides: list[set[Word]] = []
     for side in (bare(test.left), bare(test.right)):
         lvalue = side.lvalue if isinstance(side, Load) else None
         root = lvalue.root if lvalue is not None else None

@@ -1,4 +1,4 @@
-"""Words that must be read or written together, found in the source of a program without the kernel; double buffers.
+"""Words that must be read or written together, found in the source of a program without the kernel.
 
 The source shows them even where a run does not: a carry from minutes to hours is rare.  There are five forms:
 
@@ -40,13 +40,11 @@ from emulator.c28x.tree import (
     While,
 )
 from emulator.c28x.tree_queries import assigned_variables, bare, blocks, leaves, parts, roots, statements, within
-from emulator.sysbios.watch.kept_off import rereads
+from emulator.sysbios.watch.kept_off import Word, object_path, rereads, written_objects
 from emulator.sysbios.watch.ways import Ways, below, free_ways, interrupt_routines
 
 #: Operators that combine the values of both operands.
 _COMBINE: Final = ("+", "-", "*", "/", "%")
-#: The path of an object, and the offset of a word in it.
-_Word = tuple[str, int]
 
 
 class Pair(NamedTuple):
@@ -69,7 +67,7 @@ class HandOver(NamedTuple):
 def pairs(modules: Iterable[Module]) -> dict[str, list[Pair]]:
     """The pairs of each object, by its path."""
     own = {function.path: function for module in modules for function in module.functions}
-    written: dict[_Word, set[str]] = {}
+    written: dict[Word, set[str]] = {}
     inside: set[str] = set()
     for routine, reached in interrupt_routines(own):
         for function in reached:
@@ -103,7 +101,7 @@ def _add_copied(own: dict[str, Function], found: dict[str, list[Pair]]) -> None:
     for routine, reached in interrupt_routines(own):
         for function in reached:
             inside.add(function.path)
-            telling |= _written(function.body) | _read_addresses(function)
+            telling |= written_objects(function.body) | _read_addresses(function)
             for block in _blocks(function.body):
                 for path, words in _set_together(block).items():
                     together.setdefault(path, []).append((routine.name, words))
@@ -120,7 +118,7 @@ def _add_copied(own: dict[str, Function], found: dict[str, list[Pair]]) -> None:
 def _read_addresses(function: Function) -> set[str]:
     """The objects at file scope whose address a function takes."""
     addresses = (part.lvalue for part in within(function.body) if isinstance(part, AddressOf))
-    return {path for lvalue in addresses if (path := _path(lvalue)) is not None}
+    return {path for lvalue in addresses if (path := object_path(lvalue)) is not None}
 
 
 def _set_together(block: list[Stmt]) -> dict[str, frozenset[int]]:
@@ -265,7 +263,7 @@ def handed_over(modules: Iterable[Module]) -> dict[str, set[HandOver]]:
             inside.add(function.path)
             for flag, raised, body in _branches(function.body):
                 if (flag, not raised) in {_flag(statement) for statement in statements(body)}:
-                    used = (_read if raised else _written)(body)
+                    used = (_read if raised else written_objects)(body)
                     awaited.setdefault((flag, raised), {}).setdefault(routine.name, set()).update(used - {flag})
     found: dict[str, set[HandOver]] = {}
     for function in own.values() if awaited else ():
@@ -277,71 +275,11 @@ def handed_over(modules: Iterable[Module]) -> dict[str, set[HandOver]]:
                 behind = block[number + 1 :]
                 for called in {part.function.path for part in within(behind) if isinstance(part, Call)}:
                     behind = [*behind, *(statement for other in below(called, own) for statement in other.body)]
-                late = (_written if key[1] else _read)(behind)
+                late = (written_objects if key[1] else _read)(behind)
                 for routine_name, used in awaited[key].items():
                     for path in used & late:
                         found.setdefault(path, set()).add(HandOver(key[0], routine_name))
     return found
-
-
-def alternating(modules: Iterable[Module]) -> dict[str, set[str]]:
-    """Arrays whose parts a routine uses in turn (double buffers), by their paths: what selects the part.
-
-    Such an object is the first of several subscripts, a pointer to the array, or what a test of two arrays asks.  The
-    routine toggles it, or changes it only when something is complete.
-    """
-    own = {f.path: f for module in modules for f in module.functions}
-    chosen: dict[str, set[str]] = {}
-    for _, reached in interrupt_routines(own):
-        turned = set().union(*map(_turned_now_and_then, reached))
-        for f in reached if turned else ():
-            for path, selector in _selected(f.body):
-                if selector in turned:
-                    chosen.setdefault(path, set()).add(selector)
-    pointed = {selector for selectors in chosen.values() for selector in selectors}
-    for f in own.values() if pointed else ():
-        for s in statements(f.body):
-            if isinstance(s, Assign) and (pointer := _path(s.target)) is not None and pointer in pointed:
-                for p in parts(s.value):
-                    if isinstance(p, AddressOf) and (array := _path(p.lvalue)) is not None:
-                        chosen.setdefault(array, set()).add(pointer)
-    return chosen
-
-
-def _turned_now_and_then(f: Function) -> set[str]:
-    """The plain objects that a function toggles, or sets only in branches."""
-    always = [s for s in f.body if isinstance(s, Assign) and not _toggles(s)]
-    plain = [s for s in statements(f.body) if isinstance(s, Assign) and s.target.ctype.leaves == 1]
-    return _written(plain) - _written(always)
-
-
-def _toggles(s: Assign) -> bool:
-    """Whether a statement sets an object to the other one of two values: `x ^= 1`, `x = 1 - x`, `x = !x`."""
-    value = bare(s.value)
-    match value:
-        case Binary(op="^"):
-            return True
-        case Binary(op="-", left=left):
-            return isinstance(bare(left), Const)
-    return isinstance(value, Not)
-
-
-def _selected(body: list[Stmt]) -> Iterator[tuple[str, str]]:
-    """(path of an array, or of a pointer that statements go through; path of what selects it)."""
-    for s in statements(body):
-        targets = [s.target] if isinstance(s, Assign) else []
-        for lvalue in [*targets, *(p.lvalue for root in roots(s) for p in parts(root) if isinstance(p, Load))]:
-            match lvalue:
-                case LValue(root=Variable(kind="global") as root, indices=[Index(expr=first), _, *_]):
-                    if isinstance(row := bare(first), Load) and (selector := _path(row.lvalue)) is not None:
-                        yield root.declaration.path, selector
-                case LValue(root=Load(lvalue=pointed)) if (pointer := _path(pointed)) is not None:
-                    yield pointer, pointer
-        if isinstance(s, If):
-            asked = {path for p in parts(s.test) if isinstance(p, Load) and (path := _path(p.lvalue)) is not None}
-            if len(asked) == 1:
-                for path in _written(s.then) ^ _written(s.otherwise):
-                    yield path, min(asked)
 
 
 def _branches(body: list[Stmt]) -> Iterator[tuple[str, bool, list[Stmt]]]:
@@ -390,22 +328,11 @@ def _blocks(body: list[Stmt]) -> Iterator[list[Stmt]]:
             yield from _blocks(block)
 
 
-def _written(body: Iterable[Stmt]) -> set[str]:
-    """The objects at file scope that statements assign."""
-    targets = [statement.target for statement in statements(body) if isinstance(statement, Assign | CopyStruct)]
-    return {path for target in targets if (path := _path(target)) is not None}
-
-
 def _read(body: Iterable[Stmt]) -> set[str]:
     """The objects at file scope whose values or addresses statements use."""
-    found = {_path(statement.source) for statement in statements(body) if isinstance(statement, CopyStruct)}
-    found |= {_path(part.lvalue) for part in within(body) if isinstance(part, Load | AddressOf)}
+    found = {object_path(statement.source) for statement in statements(body) if isinstance(statement, CopyStruct)}
+    found |= {object_path(part.lvalue) for part in within(body) if isinstance(part, Load | AddressOf)}
     return {path for path in found if path is not None}
-
-
-def _path(lvalue: Any) -> str | None:
-    root = lvalue.root if isinstance(lvalue, LValue) else None
-    return root.declaration.path if isinstance(root, Variable) and root.kind == "global" else None
 
 
 def _turns(function: Function) -> Iterator[str]:
@@ -442,7 +369,7 @@ def _used(function: Function) -> Iterator[str]:
                 yield root.declaration.path
 
 
-def _word(expression: Any) -> _Word | None:
+def _word(expression: Any) -> Word | None:
     """The word of a file-scope object that an expression reads, or that an lvalue names; None for any other."""
     lvalue = expression.lvalue if isinstance(expression, Load) else expression
     match lvalue:
@@ -451,18 +378,18 @@ def _word(expression: Any) -> _Word | None:
     return None
 
 
-def _writes(function: Function) -> Iterator[_Word]:
+def _writes(function: Function) -> Iterator[Word]:
     for statement in statements(function.body):
         if isinstance(statement, Assign) and (word := _word(statement.target)) is not None:
             yield word
 
 
-def _combined(function: Function, shared: set[str]) -> Iterator[frozenset[_Word]]:
+def _combined(function: Function, shared: set[str]) -> Iterator[frozenset[Word]]:
     """The words that each operation of a function combines.
 
     The body of a loop is left out if its test reads a shared object again: the loop checks what it has read.
     """
-    given: dict[Variable, list[_Word | None]] = {}
+    given: dict[Variable, list[Word | None]] = {}
     for loop in statements(function.body):
         if isinstance(loop, While) and rereads(loop):
             for variable in assigned_variables(loop.body):
@@ -483,7 +410,7 @@ def _combined(function: Function, shared: set[str]) -> Iterator[frozenset[_Word]
                     yield frozenset(_leaves(expression, copies))
 
 
-def _leaves(expression: Any, copies: dict[Variable, _Word]) -> Iterator[_Word]:
+def _leaves(expression: Any, copies: dict[Variable, Word]) -> Iterator[Word]:
     for part in parts(expression):
         if isinstance(part, Load):
             word = _word(part)

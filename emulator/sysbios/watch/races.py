@@ -24,12 +24,11 @@ from emulator.c28x.memory import Memory, Object
 from emulator.c28x.symbols import Module
 from emulator.clock import us
 from emulator.sysbios.watch.accesses import NONE, LatestAccess, ReadyFlag, SharedCell
-from emulator.sysbios.watch.kept_off import ScalarCondition, Text, rereading_lines
+from emulator.sysbios.watch.kept_off import ScalarCondition, UseConditions, alternating, rereading_lines
 from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.pairs import (
     HandOver,
     Pair,
-    alternating,
     arrays_of_flags,
     continued,
     handed_over,
@@ -117,7 +116,7 @@ class Races:
         #: Early hand-over -> the words that `main` still uses while the routine may use them too.
         self._late: dict[HandOver, set[tuple[Object, int]]] = {}
         #: What keeps `main` and a routine apart without a mask: see kept_off.py.
-        self._text = Text(())
+        self._conditions = UseConditions(())
         self._rereading: frozenset[tuple[str, int]] = frozenset()
         self._of_path: dict[str, SharedObject] = {}
         #: Arrays of flags, from the source; None: not read yet.
@@ -223,7 +222,8 @@ class Races:
         path, what = shared.object.declaration.path, other.thread.what
         routine = what.name if isinstance(what, Routine) else ""
         return any(
-            not self._text.denies(routine, path, other.write, (flag.path, flag.word)) for flag in other.held_off(thread)
+            not self._conditions.denies(routine, path, other.write, (flag.path, flag.word))
+            for flag in other.held_off(thread)
         )
 
     def _reread(self, *accesses: LatestAccess) -> bool:
@@ -273,7 +273,8 @@ class Races:
                     continue
                 read = shared.apart.setdefault((routine, pair), set())
                 apart = excluded(threads.main, threads.protection(), routine, routine.protection)
-                if apart or self._kept_off(self._text.writing(routine.what.name, shared.object.declaration.path)):
+                conditions = self._conditions.writing(routine.what.name, shared.object.declaration.path)
+                if apart or self._kept_off(conditions):
                     read.clear()
                 elif read or not self._told_before(shared, routine, routine.what.name):
                     read.add(offset)
@@ -298,7 +299,7 @@ class Races:
 
         Then only time keeps the two apart.  If that fails, a conflict shows it.
         """
-        conditions = self._text.writing(routine, shared.object.declaration.path)
+        conditions = self._conditions.writing(routine, shared.object.declaration.path)
         known = shared.wrote.get(thread, thread.run[0])
         return self._threads.main.knows(thread, known) and not any(condition.answered for condition in conditions)
 
@@ -322,7 +323,7 @@ class Races:
                 self._pairs, self._continued = pairs(self._modules), continued(self._modules)
                 self._turned, self._handed = turned_by_both(self._modules), handed_over(self._modules)
                 self._alternating = alternating(self._modules)
-                self._text, self._rereading = Text(self._modules), rereading_lines(self._modules)
+                self._conditions, self._rereading = UseConditions(self._modules), rereading_lines(self._modules)
             shared.pairs = self._pairs.get(obj.declaration.path)
         if not obj.declaration.function:
             self._objects[obj] = self._of_path[obj.declaration.path] = shared
@@ -408,7 +409,7 @@ class Races:
         _, function = self._locator.function(lower.statement)
         path = shared.object.declaration.path
         return (what.name, function) in self._continued.get(path, ()) and not self._kept_off(
-            self._text.stepping(what.name, path)
+            self._conditions.stepping(what.name, path)
         )
 
     def _early(self, shared: SharedObject, offset: int, lower: LatestAccess, higher: LatestAccess) -> str:

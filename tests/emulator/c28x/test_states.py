@@ -8,6 +8,7 @@ import pytest
 
 from hil.board import load
 from hil.drivers.check import DriverFiles, check_files
+from tests.emulator.drivers import with_ticks
 
 PROGRAM = """#include "F28x_Project.h"
 enum DOOR {{ SHUT, OPENING, WIDE }};
@@ -22,21 +23,7 @@ interrupt void Tick(void)
 }}
 void main(void)
 {{
-    InitSysCtrl();
-    InitPieCtrl();
-    IER = 0;
-    IFR = 0;
-    InitPieVectTable();
-    EALLOW;
-    PieVectTable.TIMER0_INT = &Tick;
-    EDIS;
-    InitCpuTimers();
-    ConfigCpuTimer(&CpuTimer0, 200, 100);
-    PieCtrlRegs.PIEIER1.bit.INTx7 = 1;
-    IER |= M_INT1;
-    EINT;
-    StartCpuTimer0();
-    {start}
+""" + with_ticks(100) + """    {start}
     for (;;) {{
         {turn}
         DELAY_US(50);

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from hil.drivers.check import DriverFiles, check_files
+from tests.emulator.drivers import with_ticks
 
 HEAD = """#include "F28x_Project.h"
 #include <string.h>
@@ -20,21 +21,7 @@ Uint16 Halves[2][4], Half; volatile Uint16 Full[2] = {1, 1}; Uint16 * volatile F
 MAIN = """
 void main(void)
 {
-    InitSysCtrl();
-    InitPieCtrl();
-    IER = 0;
-    IFR = 0;
-    InitPieVectTable();
-    EALLOW;
-    PieVectTable.TIMER0_INT = &Tick;
-    EDIS;
-    InitCpuTimers();
-    ConfigCpuTimer(&CpuTimer0, 200, 50);
-    PieCtrlRegs.PIEIER1.bit.INTx7 = 1;
-    IER |= M_INT1;
-    EINT;
-    StartCpuTimer0();
-    for (;;) {
+""" + with_ticks(50) + """    for (;;) {
         DELAY_US(30);
         Turn();
     }

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from hil.drivers.check import DriverFiles, check_files
+from tests.emulator.drivers import with_ticks
 
 BARE = """#include "F28x_Project.h"
 volatile Uint16 Count;
@@ -18,21 +19,7 @@ BEFORE void Tick(void)
 }
 void main(void)
 {
-    InitSysCtrl();
-    InitPieCtrl();
-    IER = 0;
-    IFR = 0;
-    InitPieVectTable();
-    EALLOW;
-    PieVectTable.TIMER0_INT = &Tick;
-    EDIS;
-    InitCpuTimers();
-    ConfigCpuTimer(&CpuTimer0, 200, 100);
-    PieCtrlRegs.PIEIER1.bit.INTx7 = 1;
-    IER |= M_INT1;
-    EINT;
-    StartCpuTimer0();
-    for (;;) { }
+""" + with_ticks(100) + """    for (;;) { }
 }
 """
 
