@@ -110,7 +110,8 @@ class Connections:
         if self._done:
             return
         self._done = True
-        self._source = source = RegisterWrites(self._linked.program.modules.values())
+        blocks = (*self._chip.blocks.values(), self._chip.vectors.registers)
+        self._source = source = RegisterWrites(self._linked.program.modules.values(), blocks)
         if not source.whole:
             return
         self._adc_triggers()

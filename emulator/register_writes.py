@@ -13,12 +13,13 @@ from itertools import product
 from typing import Final
 
 from emulator.c28x.sites import Place
-from emulator.c28x.symbols import Module
+from emulator.c28x.symbols import Module, library_headers
 from emulator.c28x.tree import (
     AddressOf,
     Assign,
     Binary,
     Call,
+    Compare,
     Conditional,
     Const,
     CopyStruct,
@@ -34,23 +35,28 @@ from emulator.c28x.tree import (
     RegisterRef,
     Return,
     Stmt,
+    Unary,
     Variable,
     Where,
 )
 from emulator.c28x.tree_queries import assigned, bare, blocks, last_loop, parts, roots, statements, within
 from emulator.chip import ECAP_INPUT, XINT_INPUT
 from emulator.peripherals.dma import CHANNELS, CHINTE, CONTINUOUS, ONESHOT, PERINTE, RUN
+from emulator.registers.core import Block
+from emulator.registers_by_address import Access, ByAddress, Known, Values
 
 #: Bits of TCR.
 TSS: Final = 1 << 4
 TIE: Final = 1 << 14
-#: The values that an expression can have; None: unknown.
-Values = frozenset[int] | None
 #: An expression with more possible values than these counts as unknown.
 _MOST: Final = 64
+#: Offsets of registers in their blocks are smaller; the addresses of the blocks are not.
+_OFFSETS: Final = 0x400
 _OPERATORS: Final[dict[str, Callable[[int, int], int]]] = {
     "+": lambda a, b: a + b, "-": lambda a, b: a - b, "*": lambda a, b: a * b, "|": lambda a, b: a | b,
     "&": lambda a, b: a & b, "^": lambda a, b: a ^ b, "<<": lambda a, b: a << min(b, 64), ">>": lambda a, b: a >> b,
+    "==": lambda a, b: a == b, "!=": lambda a, b: a != b, "<": lambda a, b: a < b, ">": lambda a, b: a > b,
+    "<=": lambda a, b: a <= b, ">=": lambda a, b: a >= b, "/": lambda a, b: a // b, "%": lambda a, b: a % b,
 }  # fmt: skip
 
 
@@ -93,15 +99,26 @@ class Write:
     values: Values
     place: Place
 
+    def moved(self, bits: int) -> Write:
+        """The same write to a register in which its words stand `bits` further up."""
+        if not bits:
+            return self
+        values = None if self.values is None else frozenset(_shifted(value, bits) for value in self.values)
+        return Write(_shifted(self.mask, bits), values, self.place)
+
 
 class RegisterWrites:
     """The assignments to registers and the calls in a program."""
 
-    def __init__(self, modules: Iterable[Module]) -> None:
+    def __init__(self, modules: Iterable[Module], register_blocks: Iterable[Block]) -> None:
         #: (block, register) -> its assignments in the order of the source; the CPU's IER and IFR are of block "CPU".
         self.writes: dict[tuple[str, str], list[Write]] = {}
         #: Register -> its assignments through a pointer to a block, if the source does not show which block.
         self.pointed: dict[str, list[Write]] = {}
+        #: Assignments by a number of which the source shows only the block.
+        self.within: dict[str, list[Write]] = {}
+        #: Assignments by a number of which the source shows nothing.
+        self.anywhere: list[Write] = []
         #: (block, register) -> where the source reads it; the fields that it reads ("": the whole register).
         self.reads: dict[tuple[str, str], list[Place]] = {}
         self.read_fields: set[tuple[str, str, str]] = set()
@@ -111,8 +128,11 @@ class RegisterWrites:
         own = {f.path: f for module in modules for f in module.functions}
         self.whole = any(f.name == "main" and f.body for f in own.values())
         reached = self._reached(modules, own)
+        library = _of_libraries(modules)
         #: The statements that every start-up runs and that cannot run after it.
         self._over = self._of_start_up(own) - self._behind_start_up(modules, own)
+        #: Functions that others call.
+        self._called: set[str] = set()
         self._given: dict[Variable, list[Expr]] = {}
         self._free: set[Variable] = set()
         #: What locals are set to.  Objects at file scope that the program stores to, or takes the address of.
@@ -125,7 +145,9 @@ class RegisterWrites:
         for f in reached:
             self._read_calls(f)
         for f in reached:
-            self._read_accesses(f)
+            self._read_accesses(f, f.path in library)
+        entries = [f for f in reached if f.path not in self._called or f.name == "main"]
+        self._read_by_address(ByAddress(own, library, self).accesses(entries), register_blocks)
         for name, fields in _FUNCTIONS.items():
             for place, arguments in self.calls.get(name, ()):
                 for (block, register, mask), what in fields:
@@ -219,11 +241,13 @@ class RegisterWrites:
                     self._free |= set(part.function.parameters)
                 elif isinstance(part, Call):
                     where = part.where if part.where.line else s.where
+                    if part.function is not f:
+                        self._called.add(part.function.path)
                     self.calls.setdefault(part.function.name, []).append((_place(f, where), part.arguments))
                     for parameter, value in zip(part.function.parameters, part.arguments, strict=False):
                         self._given.setdefault(parameter, []).append(value)
 
-    def _read_accesses(self, f: Function) -> None:
+    def _read_accesses(self, f: Function, of_library: bool) -> None:
         for s in statements(f.body):
             for part in (part for root in roots(s) for part in parts(root)):
                 if isinstance(part, RegisterLoad):
@@ -234,19 +258,14 @@ class RegisterWrites:
                         self.read_fields.add((block, name, register.field.name if register.field else ""))
             if not isinstance(s, Assign) or not isinstance(s.target, RegisterAt | RegisterRef):
                 continue
-            target, place = s.target, _place(f, s.where)
-            if target.field is None:
-                mask, values = self._bits(s.value)
-            else:
-                shift = (target.field.mask & -target.field.mask).bit_length() - 1
-                mask, values = target.field.mask, self.values(s.value)
-                if values is not None:
-                    values = frozenset(value << shift & mask for value in values)
-            name, named = (target.register if isinstance(target, RegisterRef) else target.name), self._blocks(target)
-            for block in named or ():
-                self.writes.setdefault((block, name), []).append(Write(mask, values, place))
-            if named is None:
-                self.pointed.setdefault(name, []).append(Write(mask, values, place))
+            target, write = s.target, Write(*self.bits(s, {}), _place(f, s.where))
+            if isinstance(target, RegisterAt):
+                for block in (named := self._blocks(target)) or ():
+                    self.writes.setdefault((block, target.name), []).append(write)
+                if named is None:
+                    self.pointed.setdefault(target.name, []).append(write)
+            elif not of_library:
+                self.writes.setdefault((target.block, target.register), []).append(write)
 
     def _blocks(self, register: RegisterRef | RegisterAt) -> list[str] | None:
         """The blocks whose register an access can mean; None if a pointer can point to any."""
@@ -276,40 +295,122 @@ class RegisterWrites:
             found += [block for block in named if block not in found]
         return found or None
 
-    def _bits(self, value: Expr) -> tuple[int, Values]:
-        """The mask of the bits that an assignment to a whole register sets, and their values.
+    def _read_by_address(self, accesses: Iterable[Access], register_blocks: Iterable[Block]) -> None:
+        #: Word address -> block, register, and by how many bits the word is shifted in it.
+        at: dict[int, tuple[str, str, int]] = {}
+        spans: dict[str, range] = {}
+        for block in register_blocks:
+            for cell in block:
+                words = 1 if block.byte_peripheral else cell.bits // 16
+                at |= {cell.address + n: (block.name, cell.name, 16 * n) for n in range(words)}
+            spans[block.name] = range(block.base, max(cell.address + cell.bits // 16 for cell in block))
+        for access in accesses:
+            ones = (1 << 16 * access.words) - 1
+            values = None if access.values is None else frozenset(value & ones for value in access.values)
+            write = Write(access.mask & ones, values, access.place)
+            if access.register is not None:
+                self.writes.setdefault(access.register, []).append(Write(access.mask, access.values, access.place))
+                continue
+            if access.exact:
+                for n in range(access.words):
+                    self._read_word(access, n, write, at)
+                continue
+            if not access.write:
+                continue
+            block_name = next((name for name, span in spans.items() if access.address in span), "")
+            if block_name:
+                self.within.setdefault(block_name, []).append(write)
+            elif 0 < access.address < _OFFSETS:
+                for address, (block_name, name, shift) in at.items():
+                    if address - spans[block_name].start == access.address:
+                        self.pointed.setdefault(name, []).append(write.moved(shift))
+            else:
+                self.anywhere.append(write)
 
-        `|=` and `&=` with a constant set only some bits; any other assignment sets all of them.
+    def _read_word(self, access: Access, n: int, write: Write, at: dict[int, tuple[str, str, int]]) -> None:
+        """Word `n` of an access to an address that is known."""
+        if access.address + n not in at:
+            return
+        block, name, shift = at[access.address + n]
+        if not access.write:
+            self.reads.setdefault((block, name), []).append(access.place)
+            self.read_fields.add((block, name, ""))
+        elif n == 0 or shift == 0:  # the access begins at this word, or the register does
+            self.writes.setdefault((block, name), []).append(write.moved(shift - 16 * n))
+
+    def bits(self, s: Assign, known: Known) -> tuple[int, Values]:
+        """The mask of the bits of a register that an assignment sets, and their values.
+
+        `|=` and `&=` with a constant set only some bits, and so does `(register & ~mask) | value`, in which the value
+        is taken to fit; any other assignment to a whole register sets all of them.
         """
-        value = bare(value)
-        if isinstance(value, Binary) and value.op in ("|", "&"):
-            for old, other in ((value.left, value.right), (value.right, value.left)):
-                words = self.values(other)
-                if isinstance(bare(old), RegisterLoad) and words is not None and len(words) == 1:
-                    (word,) = words
-                    return (word, words) if value.op == "|" else (~word, frozenset((0,)))
-        return -1, self.values(value)
+        target, value = s.target, bare(s.value)
+        if isinstance(target, LValue):
+            changed = self._changed_bits(value, lambda e: isinstance(e, Load) and e.lvalue == target, known)
+        elif target.field is None:
+            changed = self._changed_bits(value, lambda e: isinstance(e, RegisterLoad), known)
+        else:
+            mask, values = target.field.mask, self.values(value, known)
+            shift = (mask & -mask).bit_length() - 1
+            return mask, None if values is None else frozenset(each << shift & mask for each in values)
+        return (-1, self.values(value, known)) if changed is None else changed
 
-    def values(self, e: Expr, deep: int = 4) -> Values:
-        """The values that an expression can have."""
+    def _changed_bits(self, value: Expr, old: Callable[[Expr], bool], known: Known) -> tuple[int, Values] | None:
+        """As `bits`; None for a value that is not made from the register."""
+        if old(value):
+            return 0, frozenset((0,))
+        if not isinstance(value, Binary) or value.op not in ("|", "&"):
+            return None
+        for this, other in ((value.left, value.right), (value.right, value.left)):
+            changed = self._changed_bits(bare(this), old, known)
+            if changed is None:
+                continue
+            (mask, values), words = changed, self.values(other, known)
+            if value.op == "&":
+                if words is None or len(words) != 1:
+                    return -1, None
+                (word,) = words
+                return mask | ~word, None if values is None else frozenset(each & word for each in values)
+            if words is None or values is None or len(words) * len(values) > _MOST:
+                return mask or -1, None
+            for word in words:
+                mask |= word
+            return mask, frozenset(each | word for each in values for word in words)
+        return None
+
+    def place(self, function: Function, where: Where) -> Place:
+        """The place of a position in a function."""
+        return _place(function, where)
+
+    def values(self, e: Expr, known: Known | None = None, deep: int = 4) -> Values:
+        """The values that an expression can have.  `known`: those of locals and parameters in the present call."""
+        known = known or {}
         e = bare(e)
         match e:
             case Const(value=int() as value):
                 return frozenset((value,))
-            case Binary(op=op, left=left, right=right) if op in _OPERATORS:
-                one, other = self.values(left, deep), self.values(right, deep)
-                if one is None or other is None or len(one) * len(other) > _MOST or (op[0] in "<>" and min(other) < 0):
+            case Unary(op="~", operand=operand):
+                one = self.values(operand, known, deep)
+                return None if one is None else frozenset(~value for value in one)
+            case Binary(op=op, left=left, right=right) | Compare(op=op, left=left, right=right) if op in _OPERATORS:
+                one, other = self.values(left, known, deep), self.values(right, known, deep)
+                if one is None or other is None or len(one) * len(other) > _MOST:
                     return None
-                return frozenset(_OPERATORS[op](a, b) for a, b in product(one, other))
+                if (op in ("<<", ">>") and min(other) < 0) or (op in "/%" and (min(one) < 0 or min(other) <= 0)):
+                    return None
+                return frozenset(int(_OPERATORS[op](a, b)) for a, b in product(one, other))
             case Conditional(then=then, otherwise=otherwise):
-                one, other = self.values(then, deep), self.values(otherwise, deep)
+                one, other = self.values(then, known, deep), self.values(otherwise, known, deep)
                 return None if one is None or other is None else one | other
+            case Load(lvalue=LValue(root=Variable() as variable, indices=[], leaf=0, bits=None)) if variable in known:
+                if variable.ctype == e.ctype and not variable.in_memory:
+                    return known[variable]
             case Load(lvalue=LValue(root=Variable(kind="parameter") as variable, indices=[])) if deep:
                 if variable in self._free or variable.in_memory or variable.ctype != e.ctype:
                     return None
                 found: set[int] = set()
                 for given in self._given.get(variable, ()):
-                    values = self.values(given, deep - 1)
+                    values = self.values(given, deep=deep - 1)
                     if values is None or len(found) > _MOST:
                         return None
                     found |= values
@@ -330,9 +431,10 @@ class RegisterWrites:
         `again`: the start-up is over, so its assignments do not count.
         """
         pointed = (write for write in self.pointed.get(register, ()) if write.mask & mask)
+        writes = (*self.of(block, register, mask), *pointed, *self.within.get(block, ()), *self.anywhere)
         return any(
             write.values is None or any(right(field_of(value, mask)) for value in write.values)
-            for write in (*self.of(block, register, mask), *pointed) if not again or write.place not in self._over
+            for write in writes if not again or write.place not in self._over
         )
 
     def giving(self, block: str, register: str, mask: int, word: int) -> Place | None:
@@ -364,6 +466,14 @@ def _leaves(lvalue: LValue, count: int) -> list[int]:
     return found
 
 
+def _of_libraries(modules: list[Module]) -> set[str]:
+    """The paths of the functions of files that are read because others need them, and of the headers beside these."""
+    headers = library_headers(modules)
+    return {
+        f.path for module in modules for f in module.functions if module.brought or f.where.file in headers
+    }  # fmt: skip
+
+
 def _place(f: Function, where: Where) -> Place:
     return Place(where.file, where.line, f.name, f.c_file, where.column)
 
@@ -372,6 +482,10 @@ def _places(f: Function, s: Stmt) -> set[Place]:
     """The places of a statement and of the calls in it, without its inner blocks."""
     nodes = [part for root in roots(s) for part in parts(root)]
     return {_place(f, s.where)} | {_place(f, p.where) for p in nodes if isinstance(p, Call) and p.where.line}
+
+
+def _shifted(word: int, bits: int) -> int:
+    return word << bits if bits > 0 else word >> -bits
 
 
 def field_of(word: int, mask: int) -> int:

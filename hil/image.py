@@ -21,7 +21,7 @@ from emulator.c28x.findings import Finding
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.c28x.memory import Pointer
 from emulator.c28x.program import Program
-from emulator.c28x.symbols import Module
+from emulator.c28x.symbols import Module, library_headers
 from emulator.c28x.tree import Declaration, Function
 from emulator.image import Firmware, bind, runtime_of
 from hil.board import Board, made
@@ -102,8 +102,8 @@ class Build:
 
     @property
     def others(self) -> frozenset[str]:
-        """The files of the modules that the named ones bring with them."""
-        return frozenset(module.file for module in self.modules) - self.files
+        """The files of the modules that the named ones bring with them, and the headers of libraries among these."""
+        return (frozenset(module.file for module in self.modules) | library_headers(self.modules)) - self.files
 
     @property
     def modules(self) -> list[Module]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from difflib import get_close_matches
@@ -169,3 +170,12 @@ class Module:
     def short(self) -> str:
         """The last part of the dotted name; the C file has the same name."""
         return self.name.rsplit(".", 1)[-1]
+
+
+def library_headers(modules: Iterable[Module]) -> frozenset[str]:
+    """The headers with functions that stand beside files which were only brought: headers of libraries."""
+    modules = list(modules)
+    folders = {os.path.dirname(module.file) for module in modules if module.brought}
+    folders -= {os.path.dirname(module.file) for module in modules if not module.brought}
+    files = {f.where.file for module in modules for f in module.functions} - {module.file for module in modules}
+    return frozenset(file for file in files if os.path.dirname(file) in folders)

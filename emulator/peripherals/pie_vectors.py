@@ -30,6 +30,7 @@ class VectorTable:
 
     def __init__(self, cpu: Cpu, pie: Pie, regs: PieVectTable) -> None:
         self._cpu, self._pie = cpu, pie
+        self.registers = regs
         self._routines: dict[int, Routine] = {}
         #: Where the routine of an entry begins, if it does not return as from an interrupt, until that was told.
         self._returning: dict[int, Place] = {}

@@ -1,0 +1,296 @@
+"""The registers that a program accesses by a number: `HWREGH(base + ADC_O_CTL1) |= 0x80U`, the way of TI's driverlib.
+
+Which register that is follows from what the calls pass.  So each function is followed for the arguments that it gets,
+beginning with those functions that nobody in the program calls: `main`, interrupt routines, tasks.  The place of an
+access is the statement that decides which register is meant: a call in the user's source, not a line of the library.
+What a library does to registers by their names is told here, too, as it has the same place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Set
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Final, Protocol
+
+from emulator.c28x.ctypes import IntType, PointerType
+from emulator.c28x.sites import Place
+from emulator.c28x.tree import (
+    Assign,
+    Binary,
+    Break,
+    Call,
+    Continue,
+    Declare,
+    Expr,
+    For,
+    Function,
+    If,
+    Load,
+    LValue,
+    PointerAdd,
+    RegisterRef,
+    Return,
+    Stmt,
+    Switch,
+    Variable,
+    Where,
+    While,
+)
+from emulator.c28x.tree_queries import assigned_variables, bare, blocks, leaves, parts, roots, variables
+
+#: The values that an expression can have; None: unknown.
+Values = frozenset[int] | None
+#: What is known of the parameters and locals of one call.
+Known = dict[Variable, Values]
+#: So many calls within calls are followed, and so many different calls of one function.
+_DEEPEST: Final = 8
+_MOST: Final = 400
+
+
+@dataclass(frozen=True, slots=True)
+class Access:
+    """An access to `words` words at `address`.  A write has a mask and values, as `Write` has.
+
+    If not `exact`, something unknown is added to the address, which may be that of a block, an offset, or 0.
+    `register`: the block and the name of the register, if a library names it; there is no address then.
+    """
+
+    write: bool
+    address: int
+    words: int
+    place: Place
+    exact: bool = True
+    mask: int = -1
+    values: Values = None
+    register: tuple[str, str] | None = None
+
+
+#: Accesses of a function, each with the numbers of the parameters that its address depends on.
+Accesses = list[tuple[Access, frozenset[int]]]
+#: What is known of an address: the sums that it can be, and whether that is all of it.
+Sums = tuple[frozenset[int], bool]
+
+
+class Evaluation(Protocol):
+    """How expressions of the program are evaluated."""
+
+    def values(self, e: Expr, known: Known) -> Values:
+        """The values that an expression can have."""
+
+    def bits(self, s: Assign, known: Known) -> tuple[int, Values]:
+        """The mask of the bits of a register that an assignment sets, and their values."""
+
+    def place(self, function: Function, where: Where) -> Place:
+        """The place of a position in a function."""
+
+
+class ByAddress:
+    """Follows the functions of a program.  `library`: paths of the functions that belong to libraries."""
+
+    def __init__(self, functions: dict[str, Function], library: Set[str], evaluation: Evaluation) -> None:
+        self._functions = functions
+        self._library = library
+        self._evaluation = evaluation
+        #: Function -> arguments -> its accesses.
+        self._followed: dict[str, dict[tuple[Values, ...], Accesses]] = {}
+
+    def accesses(self, entries: Iterable[Function]) -> list[Access]:
+        """The accesses of these functions and of all that they call, in the order of the statements."""
+        found = (self._follow(f, (None,) * len(f.parameters), 0) for f in entries)
+        return list(dict.fromkeys(access for accesses in found for access, _ in accesses))
+
+    def _follow(self, f: Function, arguments: tuple[Values, ...], depth: int) -> Accesses:
+        followed = self._followed.setdefault(f.path, {})
+        if len(followed) >= _MOST or depth > _DEEPEST:
+            arguments = (None,) * len(f.parameters)
+        if arguments not in followed:
+            followed[arguments] = []  # for a call of itself
+            call = _Call(
+                f, arguments, self._evaluation, lambda f, given: self._called(f, given, depth + 1), self._library
+            )  # fmt: skip
+            followed[arguments] = call.accesses
+        return followed[arguments]
+
+    def _called(self, f: Function, arguments: tuple[Values, ...], depth: int) -> Accesses:
+        """The accesses of a function that the program calls; none if it is not one of its own."""
+        own = self._functions.get(f.path)
+        return [] if own is None else self._follow(own, arguments[: len(own.parameters)], depth)
+
+
+class _Call:
+    """One function, followed with certain arguments.  `follow` gives the accesses of what it calls."""
+
+    def __init__(
+        self, f: Function, arguments: tuple[Values, ...], evaluation: Evaluation,
+        follow: Callable[[Function, tuple[Values, ...]], Accesses], library: Set[str],
+    ) -> None:  # fmt: skip
+        self._f = f
+        self._library = library
+        self._evaluation = evaluation
+        self._follow = follow
+        self._known: Known = dict(zip(f.parameters, arguments, strict=False))
+        #: Variable -> the numbers of the parameters that its value depends on.
+        self._from = {parameter: frozenset((n,)) for n, parameter in enumerate(f.parameters)}
+        #: Pointers that a number was converted to.
+        self._numbers: set[Variable] = set()
+        self._sum_of: dict[Variable, Sums] = {}
+        self.accesses: Accesses = []
+        self._walk(f.body)
+
+    def _values(self, e: Expr) -> Values:
+        return self._evaluation.values(e, self._known)
+
+    def _depends(self, nodes: Iterable[object]) -> frozenset[int]:
+        return frozenset[int]().union(*(self._from.get(variable, ()) for variable in variables(nodes)))
+
+    def _walk(self, body: list[Stmt]) -> None:
+        for s in body:
+            self._expressions(s)
+            match s:
+                case Declare(variable=variable, value=Expr() as value):
+                    self._set(variable, value)
+                case Assign(target=LValue(root=Variable(kind="local" | "parameter") as variable, indices=[]) as target):
+                    if target.leaf == 0 and target.bits is None:
+                        self._set(variable, s.value)
+                case If(test=test, then=then, otherwise=otherwise):
+                    taken = zip((then, otherwise), self._taken(test), strict=True)
+                    branches = [block for block, can in taken if can]
+                    self._branch(branches)
+                    if all(map(leaves, branches)):
+                        return
+                case Switch(subject=subject, cases=cases):
+                    self._branch(self._cases(self._values(subject), cases))
+                case While() | For():
+                    for variable in assigned_variables([s]):
+                        self._known[variable] = None
+                    if isinstance(s, For) and isinstance(s.variable.root, Variable):
+                        self._known[s.variable.root] = self._turns(s)
+                    for block in blocks(s):
+                        self._walk(block)
+                case Return() | Break() | Continue():
+                    return
+
+    def _set(self, variable: Variable, value: Expr) -> None:
+        sums = self._sums(value)
+        self._known[variable] = sums[0] if sums[1] and not variable.in_memory else None
+        self._sum_of[variable] = sums
+        self._from[variable] = self._depends(parts(value))
+        if isinstance(variable.ctype, PointerType) and self._is_number(value):
+            self._numbers.add(variable)
+
+    def _branch(self, branches: list[list[Stmt]]) -> None:
+        """Follow the alternatives, of which one is taken."""
+        before, after = dict(self._known), list[Known]()
+        for branch in branches:
+            self._known = dict(before)
+            self._walk(branch)
+            if not leaves(branch):
+                after.append(self._known)
+        known = after or [before]
+        self._known = {variable: _either(each.get(variable) for each in known) for variable in known[0]}
+
+    def _taken(self, test: Expr) -> tuple[bool, bool]:
+        """Whether a test can be true, and whether it can be false."""
+        values = self._values(test)
+        return values is None or any(values), values is None or 0 in values
+
+    def _cases(self, values: Values, cases: list[tuple[list[int] | None, list[Stmt]]]) -> list[list[Stmt]]:
+        """The blocks of a switch that can run."""
+        named = {value for labels, _ in cases for value in labels or ()}
+        found: list[list[Stmt]] = []
+        falls = False
+        for labels, block in cases:
+            wanted = values is None or (
+                any(value not in named for value in values) if labels is None else not values.isdisjoint(labels)
+            )
+            if wanted or falls:
+                found.append(block)
+                falls = not leaves(block)
+        # Unless a value has its own case, or there is a default, none of the blocks may run.
+        return found if values is not None and values <= named else [*found, []]
+
+    def _turns(self, loop: For) -> Values:
+        """The values of the variable of a loop."""
+        start, stop = self._values(loop.start), self._values(loop.stop)
+        if start is None or stop is None or len(start) != 1 or len(stop) != 1:
+            return None
+        turns = range(min(start), min(stop), loop.step)
+        return frozenset(turns) if 0 < len(turns) <= _MOST else None
+
+    def _expressions(self, s: Stmt) -> None:
+        """The reads, calls and writes of one statement."""
+        for part in [part for root in roots(s) for part in parts(root)]:
+            if isinstance(part, Load):
+                self._access(part.lvalue, s.where)
+            elif isinstance(part, Call):
+                self._call(part, part.where if part.where.line else s.where)
+        match s:
+            case Assign(target=LValue(root=Expr()) as target):
+                self._access(target, s.where, s)
+            case Assign(target=RegisterRef() as target) if self._f.path in self._library:
+                place, named = self._evaluation.place(self._f, s.where), (target.block, target.register)
+                access = Access(True, 0, 1, place, True, *self._evaluation.bits(s, self._known), named)
+                self.accesses.append((access, frozenset()))
+
+    def _call(self, call: Call, where: Where) -> None:
+        place = self._evaluation.place(self._f, where)
+        for access, given in self._follow(call.function, tuple(self._values(value) for value in call.arguments)):
+            depends = self._depends(part for n in given for part in parts(call.arguments[n]))
+            if given or call.function.path in self._library:
+                access = replace(access, place=place)
+            self.accesses.append((access, depends))
+
+    def _access(self, lvalue: LValue, where: Where, s: Assign | None = None) -> None:
+        """An access through a pointer that a number was converted to."""
+        if not isinstance(lvalue.root, Expr) or not self._is_number(lvalue.root):
+            return
+        address = self._sums(lvalue.root)
+        for index in lvalue.indices:
+            address = _sum(address, self._sums(index.expr), index.words)
+        depends = self._depends([lvalue, *parts(lvalue)])
+        place, written = self._evaluation.place(self._f, where), self._evaluation.bits(s, self._known) if s else ()
+        for number in sorted(address[0]):
+            access = Access(
+                s is not None, number + lvalue.words, lvalue.ctype.words, place, address[1], *written
+            )  # fmt: skip
+            self.accesses.append((access, depends))
+
+    def _is_number(self, pointer: Expr) -> bool:
+        """Whether the value of a pointer was computed as an integer."""
+        match bare(pointer):
+            case PointerAdd(pointer=inner):
+                return self._is_number(inner)
+            case Load(lvalue=LValue(root=Variable() as variable, indices=[])) if variable in self._numbers:
+                return True
+            case e:
+                return isinstance(e.ctype, IntType)
+
+    def _sums(self, e: Expr) -> Sums:
+        """The values of an address, or of that part of the sum that is known."""
+        e = bare(e)
+        values = self._values(e)
+        if values is not None:
+            return values, True
+        match e:
+            case Binary(op="+", left=left, right=right):
+                return _sum(self._sums(left), self._sums(right), 1)
+            case PointerAdd(pointer=pointer, index=index, negative=False):
+                assert isinstance(e.ctype, PointerType)
+                return _sum(self._sums(pointer), self._sums(index), e.ctype.target.words)
+            case Load(lvalue=LValue(root=Variable() as variable, indices=[])) if variable in self._sum_of:
+                return self._sum_of[variable][0], False
+        return frozenset((0,)), False
+
+
+def _sum(one: Sums, other: Sums, times: int) -> Sums:
+    return frozenset(a + b * times for a, b in product(one[0], other[0])), one[1] and other[1]
+
+
+def _either(alternatives: Iterable[Values]) -> Values:
+    found: set[int] = set()
+    for values in alternatives:
+        if values is None:
+            return None
+        found |= values
+    return frozenset(found)
