@@ -76,6 +76,8 @@ ADC_PINS: Final = (*range(6), 14, 15)
 FIFO_DEPTH: Final = 16
 #: Value of CTRIPHSEL and CTRIPLSEL: the output of the digital filter.
 FILTERED: Final = 2
+#: Trip zones that are inputs of the chip: TZ1 to TZ3 are INPUT1 to INPUT3 of the X-BAR.
+TRIP_INPUTS: Final = (1, 2, 3)
 #: Nothing is reported for fewer edges, messages or frames than these.
 MIN_EDGES: Final = 8
 #: Value of TZA and TZB: a trip does not change the output.
@@ -407,7 +409,7 @@ class Connections:
         pie, chip = self._chip.pie, self._chip
         for group in range(1, 13):
             register = f"PieCtrlRegs.PIEIER{group}"
-            if self._writes(f"PieCtrlRegs.PIEIFR{group}"):
+            if self._could(f"PieCtrlRegs.PIEIFR{group}", bool, ""):
                 continue  # the firmware asks for interrupts itself
             for n in range(1, 17):
                 field = f"INTx{n}"
@@ -463,7 +465,7 @@ class Connections:
         pie, vectors = self._chip.pie, self._chip.vectors
         for group in range(1, 13):
             register, flags = f"PieCtrlRegs.PIEIER{group}", f"PIEIFR{group}"
-            if self._writes(f"PieCtrlRegs.{flags}") or ("PieCtrlRegs", flags) in self._source.reads:
+            if self._could(f"PieCtrlRegs.{flags}", bool, "") or ("PieCtrlRegs", flags) in self._source.reads:
                 continue  # the firmware asks for interrupts itself
             told = any(f.object.startswith(f"{register}.") for f in self._chip.findings.of("not-connected"))
             for n in range(1, 17) if not told else ():
@@ -602,16 +604,16 @@ class Connections:
             return None
         if self._stuck(mode, "PERINTE", bool):
             return MissingLink(f"{mode}.PERINTE = 0: it listens to no trigger", mode, "PERINTE")
-        source = self._value(f"DmaClaSrcSelRegs.{select}", f"CH{n}")
+        source = self._value(listens := f"DmaClaSrcSelRegs.{select}", f"CH{n}")
         for letter, first in DMA_ADC.items():
             if first <= source < first + 4:
                 missing = self._no_conversion(letter, source - first + 1)
                 why = f"it listens to ADC{letter}INT{source - first + 1}"
-                return MissingLink(f"{why}: {missing.why}", mode) if missing else None
+                return MissingLink(f"{why}: {missing.why}", listens, f"CH{n}") if missing else None
         for trigsel, number in DMA_TRIGSEL.items():
             if number == source:
                 trigger, missing = self._no_trigger(trigsel)
-                return MissingLink(f"it listens to {trigger}: {missing.why}", mode) if missing else None
+                return MissingLink(f"it listens to {trigger}: {missing.why}", listens, f"CH{n}") if missing else None
         return None
 
     def _waits_for_ever(self) -> bool:
@@ -780,6 +782,8 @@ class Connections:
         enabled = f"{name}.QEINT"
         if self._stuck(enabled, "", bool):
             return MissingLink(f"{enabled} = 0", enabled)
+        if self._stuck(f"{name}.QEPCTL", "QPEN", bool):
+            return MissingLink(f"{name}.QEPCTL.QPEN = 0: the module is held in reset", f"{name}.QEPCTL", "QPEN")
         only_units = not self._could(enabled, lambda word: bool(word & ~QEINT.UTO.mask), "")
         if not only_units or self._value(enabled, "") != QEINT.UTO.mask:
             return None
@@ -848,6 +852,26 @@ class Connections:
                         )  # fmt: skip
             for event in ("DCAEVT1", "DCAEVT2", "DCBEVT1", "DCBEVT2"):
                 self._trip_event(name, event)
+            for number in TRIP_INPUTS:
+                self._trip_input(name, number)
+
+    def _trip_input(self, name: str, number: int) -> None:
+        """Report a trip zone TZ1 to TZ3 whose input is still GPIO0, which this chip drives itself."""
+        select, signal = f"InputXbarRegs.INPUT{number}SELECT", self._chip.signal_of(0)
+        enabled = [field for field in (f"OSHT{number}", f"CBC{number}") if self._value(f"{name}.TZSEL", field)]
+        if not enabled or self._value(select, "") or self._writes(select) or not signal.startswith("EPWM"):
+            return
+        why, register = f"{select} was never set, so its input is GPIO0, the output of {signal}", f"{name}.TZSEL"
+        for other in TRIP_INPUTS:
+            instead = f"InputXbarRegs.INPUT{other}SELECT"
+            users = (f"EPwm{n}Regs.TZSEL" for n in range(1, EPWM_COUNT + 1))
+            if self._writes(instead) and not any(self._value(user, f"OSHT{other}") or self._value(user, f"CBC{other}")
+                                                 for user in users):  # fmt: skip
+                why, register = f"{why}; {instead} was set, and no trip zone uses that input", instead
+        self._report(
+            self._wanting(f"{name}.TZSEL", enabled[0]), f"TZ{number} trips {name} at what it does itself",
+            MissingLink(why, register), f"{name}.TZSEL.{enabled[0]}",
+        )  # fmt: skip
 
     def _no_trip_input(self, number: int) -> MissingLink | None:
         """Why a TRIP of the ePWM X-BAR is never high; None if it can be."""
@@ -1284,11 +1308,13 @@ class Connections:
         at, calls, task = beyond.cause
         path = findings.path(at, calls)
         writes = (*self._source.writes.get(_split(register), ()), *self._source.pointed.get(compare, ()))
-        if any(write.values is None and write.place[:2] == path[0][:2] for write in writes):
+        computed = {write.place[:2] for write in writes if write.values is None}
+        at_call = next((n for n, place in enumerate(path) if place[:2] in computed), None)
+        if at_call is not None:
             findings.report_at(
-                path[0], "compare-above-period",
+                path[at_call], "compare-above-period",
                 f"{register} = {beyond.value}: TBPRD is {beyond.period}, so the output does not change at it",
-                object=register, how="dynamic", value=beyond.value, call_path=path, task=task,
+                object=register, how="dynamic", value=beyond.value, call_path=path[at_call:], task=task,
             )  # fmt: skip
 
 

@@ -7,11 +7,14 @@ calls name, if it is a parameter, or those that it is set to, as a local or in a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import reduce
 from itertools import product
+from operator import or_
 from typing import Final
 
+from emulator.c28x.ctypes import CType, IntType
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module, library_headers
 from emulator.c28x.tree import (
@@ -22,6 +25,7 @@ from emulator.c28x.tree import (
     Compare,
     Conditional,
     Const,
+    Convert,
     CopyStruct,
     Declare,
     Expr,
@@ -42,6 +46,7 @@ from emulator.c28x.tree import (
 from emulator.c28x.tree_queries import assigned, bare, blocks, last_loop, parts, roots, statements, within
 from emulator.chip import ECAP_INPUT, XINT_INPUT
 from emulator.peripherals.dma import CHANNELS, CHINTE, CONTINUOUS, ONESHOT, PERINTE, RUN
+from emulator.registers.cell import Cell
 from emulator.registers.core import Block
 from emulator.registers_by_address import Access, ByAddress, Known, Values
 
@@ -99,12 +104,10 @@ class Write:
     values: Values
     place: Place
 
-    def moved(self, bits: int) -> Write:
-        """The same write to a register in which its words stand `bits` further up."""
-        if not bits:
-            return self
-        values = None if self.values is None else frozenset(_shifted(value, bits) for value in self.values)
-        return Write(_shifted(self.mask, bits), values, self.place)
+    def moved(self, bits: int, width: int) -> Write:
+        """The same write to a register of `width` bits in which its word 0 stands `bits` further up."""
+        values = None if self.values is None else frozenset(_shifted(value, bits, width) for value in self.values)
+        return Write(_shifted(self.mask, bits, width), values, self.place)
 
 
 class RegisterWrites:
@@ -115,8 +118,9 @@ class RegisterWrites:
         self.writes: dict[tuple[str, str], list[Write]] = {}
         #: Register -> its assignments through a pointer to a block, if the source does not show which block.
         self.pointed: dict[str, list[Write]] = {}
-        #: Assignments by a number of which the source shows only the block.
-        self.within: dict[str, list[Write]] = {}
+        #: As `writes`, of assignments by a number that the source shows only in part: an address in the block, to
+        #: which something is added.
+        self.from_here_on: dict[tuple[str, str], list[Write]] = {}
         #: Assignments by a number of which the source shows nothing.
         self.anywhere: list[Write] = []
         #: (block, register) -> where the source reads it; the fields that it reads ("": the whole register).
@@ -296,47 +300,45 @@ class RegisterWrites:
         return found or None
 
     def _read_by_address(self, accesses: Iterable[Access], register_blocks: Iterable[Block]) -> None:
-        #: Word address -> block, register, and by how many bits the word is shifted in it.
-        at: dict[int, tuple[str, str, int]] = {}
-        spans: dict[str, range] = {}
+        #: Word address -> the register there, and by how many bits the word stands up in it.
+        at: dict[int, tuple[Cell, int]] = {}
+        spans: dict[Block, range] = {}
         for block in register_blocks:
             for cell in block:
                 words = 1 if block.byte_peripheral else cell.bits // 16
-                at |= {cell.address + n: (block.name, cell.name, 16 * n) for n in range(words)}
-            spans[block.name] = range(block.base, max(cell.address + cell.bits // 16 for cell in block))
+                at |= {cell.address + n: (cell, 16 * n) for n in range(words)}
+            spans[block] = range(block.base, max(cell.address + cell.bits // 16 for cell in block))
         for access in accesses:
-            ones = (1 << 16 * access.words) - 1
-            values = None if access.values is None else frozenset(value & ones for value in access.values)
-            write = Write(access.mask & ones, values, access.place)
+            write = Write(access.mask, access.values, access.place)
+            unknown = Write(-1, None, access.place)
             if access.register is not None:
-                self.writes.setdefault(access.register, []).append(Write(access.mask, access.values, access.place))
-                continue
-            if access.exact:
-                for n in range(access.words):
-                    self._read_word(access, n, write, at)
-                continue
-            if not access.write:
-                continue
-            block_name = next((name for name, span in spans.items() if access.address in span), "")
-            if block_name:
-                self.within.setdefault(block_name, []).append(write)
-            elif 0 < access.address < _OFFSETS:
-                for address, (block_name, name, shift) in at.items():
-                    if address - spans[block_name].start == access.address:
-                        self.pointed.setdefault(name, []).append(write.moved(shift))
-            else:
-                self.anywhere.append(write)
+                self.writes.setdefault(access.register, []).append(write)
+            elif access.exact:
+                for cell, up in self._words(access, 0, at):
+                    if access.write:
+                        self.writes.setdefault((cell.block.name, cell.name), []).append(write.moved(up, cell.bits))
+                    else:
+                        self.reads.setdefault((cell.block.name, cell.name), []).append(access.place)
+                        self.read_fields.add((cell.block.name, cell.name, ""))
+            elif access.write and (reached := next((b for b, span in spans.items() if access.address in span), None)):
+                for cell in reached:
+                    if cell.address + cell.bits // 16 > access.address:
+                        self.from_here_on.setdefault((reached.name, cell.name), []).append(unknown)
+            elif access.write and 0 < access.address < _OFFSETS:
+                for span in spans.values():
+                    for cell, up in self._words(access, span.start, at):
+                        self.pointed.setdefault(cell.name, []).append(write.moved(up, cell.bits))
+            elif access.write:
+                self.anywhere.append(unknown)
 
-    def _read_word(self, access: Access, n: int, write: Write, at: dict[int, tuple[str, str, int]]) -> None:
-        """Word `n` of an access to an address that is known."""
-        if access.address + n not in at:
-            return
-        block, name, shift = at[access.address + n]
-        if not access.write:
-            self.reads.setdefault((block, name), []).append(access.place)
-            self.read_fields.add((block, name, ""))
-        elif n == 0 or shift == 0:  # the access begins at this word, or the register does
-            self.writes.setdefault((block, name), []).append(write.moved(shift - 16 * n))
+    def _words(
+        self, access: Access, base: int, at: dict[int, tuple[Cell, int]]
+    ) -> Iterator[tuple[Cell, int]]:  # fmt: skip
+        """The registers that an access reaches if its address is one from `base`, and where its word 0 is in each."""
+        for n in range(access.words):
+            cell, up = at.get(base + access.address + n, (None, 0))
+            if cell is not None and (n == 0 or up == 0):   # the access begins at this word, or the register does
+                yield cell, up - 16 * n
 
     def bits(self, s: Assign, known: Known) -> tuple[int, Values]:
         """The mask of the bits of a register that an assignment sets, and their values.
@@ -373,9 +375,10 @@ class RegisterWrites:
                 return mask | ~word, None if values is None else frozenset(each & word for each in values)
             if words is None or values is None or len(words) * len(values) > _MOST:
                 return mask or -1, None
-            for word in words:
-                mask |= word
-            return mask, frozenset(each | word for each in values for word in words)
+            bits = reduce(or_, words)
+            if len(words) > 1 and bits & ~mask:
+                return mask | bits, None   # what one of the words leaves as it is depends on what was there
+            return mask | bits, frozenset(each | word for each in values for word in words)
         return None
 
     def place(self, function: Function, where: Where) -> Place:
@@ -385,20 +388,21 @@ class RegisterWrites:
     def values(self, e: Expr, known: Known | None = None, deep: int = 4) -> Values:
         """The values that an expression can have.  `known`: those of locals and parameters in the present call."""
         known = known or {}
-        e = bare(e)
         match e:
             case Const(value=int() as value):
                 return frozenset((value,))
+            case Convert(operand=operand):
+                return _of_type(e.ctype, self.values(operand, known, deep))
             case Unary(op="~", operand=operand):
                 one = self.values(operand, known, deep)
-                return None if one is None else frozenset(~value for value in one)
+                return None if one is None else _of_type(e.ctype, frozenset(~value for value in one))
             case Binary(op=op, left=left, right=right) | Compare(op=op, left=left, right=right) if op in _OPERATORS:
                 one, other = self.values(left, known, deep), self.values(right, known, deep)
                 if one is None or other is None or len(one) * len(other) > _MOST:
                     return None
                 if (op in ("<<", ">>") and min(other) < 0) or (op in "/%" and (min(one) < 0 or min(other) <= 0)):
                     return None
-                return frozenset(int(_OPERATORS[op](a, b)) for a, b in product(one, other))
+                return _of_type(e.ctype, frozenset(int(_OPERATORS[op](a, b)) for a, b in product(one, other)))
             case Conditional(then=then, otherwise=otherwise):
                 one, other = self.values(then, known, deep), self.values(otherwise, known, deep)
                 return None if one is None or other is None else one | other
@@ -431,10 +435,11 @@ class RegisterWrites:
         `again`: the start-up is over, so its assignments do not count.
         """
         pointed = (write for write in self.pointed.get(register, ()) if write.mask & mask)
-        writes = (*self.of(block, register, mask), *pointed, *self.within.get(block, ()), *self.anywhere)
+        above = self.from_here_on.get((block, register), ())
         return any(
             write.values is None or any(right(field_of(value, mask)) for value in write.values)
-            for write in writes if not again or write.place not in self._over
+            for write in (*self.of(block, register, mask), *pointed, *above, *self.anywhere)
+            if not again or write.place not in self._over
         )
 
     def giving(self, block: str, register: str, mask: int, word: int) -> Place | None:
@@ -450,12 +455,16 @@ class RegisterWrites:
         return places[-1] if places else None
 
     def last(self, block: str, register: str = "") -> Place | None:
-        """The last assignment to a register, or without `register` to any of the block.  Not one of TI's functions."""
+        """The last assignment to a register, or without `register` to any of the block.
+
+        One of the start-up, where there is one: that is where a module is set up.  Not one of TI's functions.
+        """
         places = [
             write.place for (its_block, name), writes in self.writes.items() for write in writes
             if its_block == block and name == (register or name) and not write.place.file.startswith("<")
         ]  # fmt: skip
-        return max(places, key=lambda place: (place.file, place.line)) if places else None
+        at_start = [place for place in places if place in self._over]
+        return max(at_start or places, key=lambda place: (place.file, place.line), default=None)
 
 
 def _leaves(lvalue: LValue, count: int) -> list[int]:
@@ -484,8 +493,16 @@ def _places(f: Function, s: Stmt) -> set[Place]:
     return {_place(f, s.where)} | {_place(f, p.where) for p in nodes if isinstance(p, Call) and p.where.line}
 
 
-def _shifted(word: int, bits: int) -> int:
-    return word << bits if bits > 0 else word >> -bits
+def _of_type(ctype: CType, values: Values) -> Values:
+    """Integers as their type holds them: the upper bits are lost."""
+    if values is None or not isinstance(ctype, IntType):
+        return values
+    signed = 1 << ctype.bits - 1 if ctype.signed else 0
+    return frozenset((value + signed & (1 << ctype.bits) - 1) - signed for value in values)
+
+
+def _shifted(word: int, bits: int, width: int) -> int:
+    return (word << bits if bits > 0 else word >> -bits) & (1 << width) - 1
 
 
 def field_of(word: int, mask: int) -> int:

@@ -23,6 +23,7 @@ from emulator.c28x.tree import (
     Continue,
     Declare,
     Expr,
+    FallThrough,
     For,
     Function,
     If,
@@ -37,7 +38,17 @@ from emulator.c28x.tree import (
     Where,
     While,
 )
-from emulator.c28x.tree_queries import assigned_variables, bare, blocks, leaves, parts, roots, variables
+from emulator.c28x.tree_queries import (
+    assigned,
+    assigned_variables,
+    bare,
+    blocks,
+    leaves,
+    parts,
+    roots,
+    statements,
+    variables,
+)
 
 #: The values that an expression can have; None: unknown.
 Values = frozenset[int] | None
@@ -46,13 +57,16 @@ Known = dict[Variable, Values]
 #: So many calls within calls are followed, and so many different calls of one function.
 _DEEPEST: Final = 8
 _MOST: Final = 400
+#: A loop with more turns is followed once.
+_TURNS: Final = 16
 
 
 @dataclass(frozen=True, slots=True)
 class Access:
     """An access to `words` words at `address`.  A write has a mask and values, as `Write` has.
 
-    If not `exact`, something unknown is added to the address, which may be that of a block, an offset, or 0.
+    If not `exact`, something unknown is added to the address, which may be one in a block, an offset, or 0.  A sum that
+    begins in a block is taken to end in it, further up.
     `register`: the block and the name of the register, if a library names it; there is no address then.
     """
 
@@ -68,8 +82,10 @@ class Access:
 
 #: Accesses of a function, each with the numbers of the parameters that its address depends on.
 Accesses = list[tuple[Access, frozenset[int]]]
-#: What is known of an address: the sums that it can be, and whether that is all of it.
+#: What is known of an address: the sums that it can be, and whether that is all of it.  A local that a loop changes can
+#: be any address; an argument or a member that is not known is taken to be that of a block.
 Sums = tuple[frozenset[int], bool]
+NOTHING: Final[Sums] = (frozenset(), False)
 
 
 class Evaluation(Protocol):
@@ -134,6 +150,7 @@ class _Call:
         self._from = {parameter: frozenset((n,)) for n, parameter in enumerate(f.parameters)}
         #: Pointers that a number was converted to.
         self._numbers: set[Variable] = set()
+        #: What was last assigned to a local, as far as it is known.
         self._sum_of: dict[Variable, Sums] = {}
         self.accesses: Accesses = []
         self._walk(f.body)
@@ -162,12 +179,7 @@ class _Call:
                 case Switch(subject=subject, cases=cases):
                     self._branch(self._cases(self._values(subject), cases))
                 case While() | For():
-                    for variable in assigned_variables([s]):
-                        self._known[variable] = None
-                    if isinstance(s, For) and isinstance(s.variable.root, Variable):
-                        self._known[s.variable.root] = self._turns(s)
-                    for block in blocks(s):
-                        self._walk(block)
+                    self._loop(s)
                 case Return() | Break() | Continue():
                     return
 
@@ -181,14 +193,36 @@ class _Call:
 
     def _branch(self, branches: list[list[Stmt]]) -> None:
         """Follow the alternatives, of which one is taken."""
-        before, after = dict(self._known), list[Known]()
+        before = self._known, self._sum_of
+        after: list[tuple[Known, dict[Variable, Sums]]] = []
         for branch in branches:
-            self._known = dict(before)
+            self._known, self._sum_of = dict(before[0]), dict(before[1])
             self._walk(branch)
             if not leaves(branch):
-                after.append(self._known)
-        known = after or [before]
-        self._known = {variable: _either(each.get(variable) for each in known) for variable in known[0]}
+                after.append((self._known, self._sum_of))
+        (known, sums), *others = after or [before]
+        self._known = {v: _either([known[v], *(other.get(v) for other, _ in others)]) for v in known}
+        self._sum_of = {v: sums[v] for v in sums if all(other.get(v) == sums[v] for _, other in others)}
+
+    def _loop(self, s: While | For) -> None:
+        """Follow a loop turn by turn, if there are few; else once, with what it changes unknown."""
+        changed = assigned_variables([s])
+        unknown: Known = dict.fromkeys(changed)
+        sums = {v: known for v, known in self._sum_of.items() if v not in changed or _only_stepped(v, s)}
+        counter, turns = self._turns(s)
+        if counter is not None and len(turns) <= _TURNS:
+            for n in turns:
+                self._known[counter] = frozenset((n,))
+                for block in blocks(s):
+                    self._walk(block)
+        else:
+            self._known, self._sum_of = self._known | unknown, dict(sums)
+            if counter is not None:
+                self._known[counter] = frozenset(turns)
+            for block in blocks(s):
+                self._walk(block)
+        # A `break` may have left it in any turn.
+        self._known, self._sum_of = self._known | unknown, sums
 
     def _taken(self, test: Expr) -> tuple[bool, bool]:
         """Whether a test can be true, and whether it can be false."""
@@ -196,27 +230,28 @@ class _Call:
         return values is None or any(values), values is None or 0 in values
 
     def _cases(self, values: Values, cases: list[tuple[list[int] | None, list[Stmt]]]) -> list[list[Stmt]]:
-        """The blocks of a switch that can run."""
+        """What can run of a switch: from each case that can be chosen to the first that does not fall through."""
         named = {value for labels, _ in cases for value in labels or ()}
         found: list[list[Stmt]] = []
-        falls = False
-        for labels, block in cases:
-            wanted = values is None or (
-                any(value not in named for value in values) if labels is None else not values.isdisjoint(labels)
-            )
-            if wanted or falls:
-                found.append(block)
-                falls = not leaves(block)
-        # Unless a value has its own case, or there is a default, none of the blocks may run.
+        for n, (labels, _) in enumerate(cases):
+            if values is None or (not values <= named if labels is None else not values.isdisjoint(labels)):
+                found.append([])
+                for _, block in cases[n:]:
+                    found[-1] += block
+                    if not block or not isinstance(block[-1], FallThrough):
+                        break
+        # Unless a value has its own case, none of them may run.
         return found if values is not None and values <= named else [*found, []]
 
-    def _turns(self, loop: For) -> Values:
-        """The values of the variable of a loop."""
-        start, stop = self._values(loop.start), self._values(loop.stop)
-        if start is None or stop is None or len(start) != 1 or len(stop) != 1:
-            return None
-        turns = range(min(start), min(stop), loop.step)
-        return frozenset(turns) if 0 < len(turns) <= _MOST else None
+    def _turns(self, loop: Stmt) -> tuple[Variable | None, range]:
+        """The variable that counts the turns of a loop, and its values; None if they are not known."""
+        match loop:
+            case For(variable=LValue(root=Variable() as counter)):
+                start, stop = self._values(loop.start), self._values(loop.stop)
+                if start is not None and stop is not None and len(start) == len(stop) == 1:
+                    turns = range(min(start), min(stop), loop.step)
+                    return (counter, turns) if len(turns) <= _MOST else (None, turns)
+        return None, range(0)
 
     def _expressions(self, s: Stmt) -> None:
         """The reads, calls and writes of one statement."""
@@ -250,11 +285,11 @@ class _Call:
             address = _sum(address, self._sums(index.expr), index.words)
         depends = self._depends([lvalue, *parts(lvalue)])
         place, written = self._evaluation.place(self._f, where), self._evaluation.bits(s, self._known) if s else ()
-        for number in sorted(address[0]):
-            access = Access(
-                s is not None, number + lvalue.words, lvalue.ctype.words, place, address[1], *written
-            )  # fmt: skip
-            self.accesses.append((access, depends))
+        words = lvalue.ctype.words
+        for number in sorted(address[0]) or [0]:
+            # An access to 32 bits ignores bit 0 of its address (SPRU430).
+            first = (number + lvalue.words) & (~1 if words > 1 else -1)
+            self.accesses.append((Access(s is not None, first, words, place, address[1], *written), depends))
 
     def _is_number(self, pointer: Expr) -> bool:
         """Whether the value of a pointer was computed as an integer."""
@@ -278,9 +313,20 @@ class _Call:
             case PointerAdd(pointer=pointer, index=index, negative=False):
                 assert isinstance(e.ctype, PointerType)
                 return _sum(self._sums(pointer), self._sums(index), e.ctype.target.words)
-            case Load(lvalue=LValue(root=Variable() as variable, indices=[])) if variable in self._sum_of:
-                return self._sum_of[variable][0], False
+            case Load(lvalue=LValue(root=Variable(kind="local") as variable, indices=[])):
+                return self._sum_of.get(variable, NOTHING)[0], False
         return frozenset((0,)), False
+
+
+def _only_stepped(variable: Variable, loop: Stmt) -> bool:
+    """Whether a loop changes a variable only by adding to it: an address stays in its block."""
+    values = [s.value for s in statements([loop]) if isinstance(s, Assign) and assigned(s) is variable]
+    return all(
+        isinstance(value := bare(given), Binary | PointerAdd) and getattr(value, "op", "+") == "+"
+        and isinstance(first := bare(value.left if isinstance(value, Binary) else value.pointer), Load)
+        and first.lvalue.root is variable
+        for given in values
+    )  # fmt: skip
 
 
 def _sum(one: Sums, other: Sums, times: int) -> Sums:

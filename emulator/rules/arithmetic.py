@@ -97,7 +97,8 @@ In `b + (a - b) / 2` with `a < b` the difference is near 65536, and half of it i
 true when the value has gone *down* by one. Addition and subtraction alone give the right result modulo 65536. A
 division, a shift to the right or a comparison by order does not. These wraps are reported:
 
-* a result that is then divided, shifted down or compared by order;
+* a result that is then divided, shifted down or compared by order; a product that is shifted down, unless a large odd
+  factor shows that it is a hash;
 * a sum of samples that is divided later (at the addition that wraps);
 * the step of a loop whose test compares the object (a count that goes down by two misses 0);
 * the step of an object that is limited above (below 0 it wraps and becomes the limit);

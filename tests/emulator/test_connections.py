@@ -123,6 +123,7 @@ def told(tmp_path: Path, text: str, rule: str = "not-connected", seconds: float 
     ("EQep1Regs.QUPRD = 200000;", "", "QEPCTL.bit.UTE", "EQep1Regs.QUPRD = 0"),
     ("EQep1Regs.QEPCTL.bit.UTE = 1;", "", "QEPCTL.bit.QPEN", "EQep1Regs.QEPCTL.UTE = 0"),
     ("EQep1Regs.QEINT.bit.UTO = 1;", "", "QEPCTL.bit.QPEN", "EQep1Regs.QEINT = 0"),
+    ("EQep1Regs.QEPCTL.bit.QPEN = 1;", "", "QEPCTL.bit.UTE", "EQep1Regs.QEPCTL.QPEN = 0"),
     (" | M_INT5", "", "PIEIER5.bit.INTx1", "M_INT5"),
     ("    EINT;\n", "", "IER |= M_INT1", "no statement executes EINT: "),
     ("    EINT;\n", "    DINT;\n", "IER |= M_INT1", "converted and edge and tick and period and unit never run, "),
@@ -385,6 +386,8 @@ void main(void)
 @pytest.mark.parametrize(("was", "now", "rule", "at", "why"), [
     ("GpioCtrlRegs.GPAMUX1.bit.GPIO7 = 1;", "", "not-connected", "OUT_MODE", "EPWM4B has no pin"),
     ("EPwm4Regs.TZCTL.bit.TZA = TZ_FORCE_LO;", "", "trip-open", "TZSEL", "TZA: 0 is high impedance"),
+    (" = &tripped;", " = &tripped; GpioCtrlRegs.GPAMUX1.bit.GPIO0 = 1; InputXbarRegs.INPUT2SELECT = 40;\n//",
+     "not-connected", "INPUT2SELECT", "INPUT1SELECT was never set, so its input is GPIO0, the output of EPWM1A"),
     ("EPwm4Regs.TZCLR.bit.OST = 1;", "", "flag-not-cleared", "TZCLR.bit.INT = 1", "TZFLG.OST is still set"),
     ("EPwm4Regs.TZCLR.bit.INT = 1;", "", "flag-not-cleared", "interrupt void tripped", "TZFLG.INT is still set"),
 ])  # fmt: skip
@@ -392,6 +395,9 @@ def test_a_trip_that_is_not_set_up_whole(tmp_path: Path, was: str, now: str, rul
     assert TRIPPED.count(was) == 1
     text = TRIPPED.replace(was, now)
     lines = text.splitlines()
+    if "INPUT2" in now:
+        text = text.replace("    InputXbarRegs.INPUT1SELECT = 40;\n", "")
+        lines = text.splitlines()
     (finding,) = told(tmp_path, text, rule, seconds=0.06)
     assert finding.place is not None
     assert at in lines[finding.place.line - 1]
@@ -400,6 +406,9 @@ def test_a_trip_that_is_not_set_up_whole(tmp_path: Path, was: str, now: str, rul
 
 @pytest.mark.parametrize(("was", "now"), [
     ("", ""),
+    # A trip zone of its own pin, and one whose input is GPIO0, a pin that stays an input.
+    ("InputXbarRegs.INPUT1SELECT = 40;", "InputXbarRegs.INPUT1SELECT = 0;"),
+    ("InputXbarRegs.INPUT1SELECT = 40;", "InputXbarRegs.INPUT2SELECT = 40;"),
     # High impedance is chosen.
     ("EPwm4Regs.TZCTL.bit.TZA = TZ_FORCE_LO;", "EPwm4Regs.TZCTL.bit.TZA = TZ_HIZ;"),
     # Only one output is delayed: no pair.

@@ -112,6 +112,8 @@ from emulator.c28x.tree_queries import (
 
 #: Factors that scale a ratio: per cent, per mille, milli.
 SCALES: Final = (10, 100, 1000, 10000)
+#: CHOICE: an odd factor above this one spreads the bits of a hash or of a random number; 4095 is the last of an ADC.
+_HASH: Final = 4095
 CHARACTERS: Final = (CHAR.name, SCHAR.name, UCHAR.name)
 #: Fields that hold a quantity, a level or a number: nobody intends a value that does not fit.  Fields for a phase (it
 #: is cyclic), an octet (the lower part of a word) or a flag (a truth value) are not among them.
@@ -514,7 +516,8 @@ class Guards:
         """Decide for the left operand: a value that wraps before a division or a right shift is not intended."""
         power = isinstance(e.right, Const) and e.right.value > 0 and not int(e.right.value) & (int(e.right.value) - 1)
         divided = e.op == "/" or (e.op == "%" and not power)
-        if divided or (e.op == ">>" and isinstance(e.left, Binary) and e.left.op == "-"):
+        shifted = e.op == ">>" and isinstance(e.left, Binary) and (e.left.op == "-" or _scales(e.left))
+        if divided or shifted:
             rule = "unsigned-wrap-index" if id(e) in self.indexing else "unsigned-wrap"
             self.unwrapped(e.left, rule, "is shifted" if e.op == ">>" else "is divided")
         else:
@@ -907,6 +910,15 @@ def _shifted_out(e: Expr) -> bool:
     """Whether a constant in `e` shifts by the width of its type or more: C does not define that, whatever the value."""
     shifts = (p for p in parts(e) if isinstance(p, Binary) and p.op == "<<")
     return any(isinstance(p.ctype, IntType) and bounds_of(p.right)[0] >= p.ctype.bits for p in shifts)
+
+
+def _scales(e: Binary) -> bool:
+    """Whether a product is that of a fixed-point number, and not the hash of one: hashes have large odd factors."""
+    return e.op == "*" and not any(
+        isinstance(side, Convert | Const) and isinstance(factor := bare(side), Const)
+        and int(factor.value) % 2 and factor.value > _HASH
+        for side in (e.left, e.right)
+    )  # fmt: skip
 
 
 def _computed(e: Expr) -> bool:

@@ -65,6 +65,10 @@ static inline void Pwm_trigger(unsigned long base, unsigned int event)
     WORD(base + 0xA6) = (WORD(base + 0xA6) & ~0x0300u) | 1u << 8;
 }
 
+static inline void Pwm_compare(unsigned long base, unsigned int value) { WORD(base + 0x6B) = value; }
+
+static inline void Pwm_switch(unsigned long base, unsigned int actions) { WORD(base + 0x40) = actions; }
+
 static inline void Pwm_enableTrigger(unsigned long base) { WORD(base + 0xA4) |= 0x0800u; }
 
 static inline void Timer_start(unsigned long base, unsigned long period)
@@ -226,6 +230,14 @@ def test_a_loop_over_the_instances_sets_up_each_of_them(tmp_path: Path) -> None:
     (tmp_path / "again").mkdir()
     told = found(tmp_path / "again", program.replace("Pwm_enableTrigger(EPWM_1);", ""))
     assert sorted(f.object for f in told) == [f"AdcaRegs.ADCSOC{n}CTL.TRIGSEL" for n in range(3)]
+
+
+def test_a_compare_value_beyond_the_period_is_told_at_the_call(tmp_path: Path) -> None:
+    program = PROGRAM.replace("    Pwm_start(", "    Pwm_switch(EPWM_1, 0x12u);\n    Pwm_start(")
+    program = program.replace("TURN", "Pwm_compare(EPWM_1, (unsigned int)(5 - (int)(Ticks & 7u)));")
+    (finding,) = found(tmp_path, program)
+    assert finding.place is not None
+    assert (finding.rule, finding.place.line) == ("compare-above-period", line_of(program, "Pwm_compare("))
 
 
 def test_what_happens_in_a_header_of_a_library_is_told_at_the_call(tmp_path: Path) -> None:

@@ -167,6 +167,23 @@ def Middle(a: uint16, b: uint16) -> uint16:
     ),
     Pair(
         "unsigned-wrap",
+        "a scaled reading: a product in 16 bits, shifted down; a hash is meant so",
+        (("Millivolts", (3000,)),),
+        """
+Slot: uint16 = 0
+def Millivolts(raw: uint16) -> uint16:
+    Slot = raw * 40503 >> 8
+    return raw * 20000 >> 12  # <-
+""",
+        """
+Slot: uint16 = 0
+def Millivolts(raw: uint16) -> uint16:
+    Slot = raw * 40503 >> 8
+    return uint16(uint32(raw) * 20000 >> 12)
+""",
+    ),
+    Pair(
+        "unsigned-wrap",
         "how far a reading has moved",
         (("Moved", (500, 510)),),
         """
