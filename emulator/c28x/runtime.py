@@ -51,6 +51,8 @@ _STAMPS: Final = 64
 WRONG_PULSES: Final = 3
 #: CHOICE: a number from -1 down to this one counts as a small negative one (`sign_lost`).
 SMALL: Final = -4096
+#: CHOICE: what an integer quotient of this size loses is less than a hundredth, and its author may not need that.
+_FINE: Final = 100
 #: CHOICE: a float passed for an integer parameter that never reaches this value was not meant as an integer.
 _FEW: Final = 10
 FILLS: Final = ("zero", "ones", "nan", "random:SEED", "stack", "trap")
@@ -1029,7 +1031,7 @@ class Runtime:
         """An integer quotient that is converted to float, or scaled, only after its remainder was lost."""
         site = self.sites[number]
         result = self.divide_ints(a, b, number)
-        if b and a % b:
+        if b and a % b and abs(result) < _FINE:
             then = "is scaled" if site.widened == "scaled" else "is converted to float"
             message = f"{site.name}: {a} / {b} is {result} in integers, and {then} only afterwards"
             self.hit(site, "remainder-lost", message, a)

@@ -25,6 +25,23 @@ def Ratio(a: int16, b: int16) -> float32:
 """,
     ),
     Pair(
+        "remainder-lost",
+        "a rate in coarse units; in fine ones nothing is missed",
+        (("Rate", (30011,)),),
+        """
+def Rate(counts: int16) -> float32:
+    r: float32
+    r = counts / 7000  # <-
+    return r
+""",
+        """
+def Rate(counts: int16) -> float32:
+    r: float32
+    r = counts / 70
+    return r
+""",
+    ),
+    Pair(
         "float-to-int",
         "a temperature beyond the range of int",
         (("Scale", (900.0,)),),
