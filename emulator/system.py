@@ -21,7 +21,7 @@ from emulator.registers.i2c import I2CMDR
 from emulator.seed import check_seed
 from emulator.sysbios.heap_mem import HEAP_WORDS
 from emulator.sysbios.kernel import Kernel
-from emulator.sysbios.watch import KernelWatch
+from emulator.sysbios.watch.kernel_watch import KernelWatch
 
 #: The kernel's tick takes 5 us on the robot (TFG 3.4.2, figure 39); see `emulator/sysbios/costs.py`.
 KERNEL_COST_SCALE: Final = 2.4

@@ -52,6 +52,7 @@ PATTERNS: Final = (
     "emulator/c28x/position.py",
     "emulator/c28x/runtime.py",
     "emulator/c28x/varargs.py",
+    "emulator/c28x/watcher.py",
     "emulator/peripherals/*.py",
     "emulator/devices/*.py",
     "emulator/sysbios/*.py",

@@ -57,6 +57,7 @@ from emulator.c28x.tree import (
     Where,
 )  # fmt: skip
 from emulator.c28x.typed_text import attribute, identity, methods, register_name
+from emulator.c28x.watcher import Watcher
 from emulator.clock import NEVER
 
 __all__ = ["LinkError", "Linked", "to_c"]
@@ -134,10 +135,10 @@ class Linked:
         """The `module.name` of a function of the program, as the kernel keeps it; "" for another one."""
         return self._paths.get(unwrap(function), "")
 
-    def watch_with(self, watcher: Callable[[Object, int, bool], None]) -> None:
-        """From now on, call `watcher(object, word, write)` at every access.  Needs an image linked with `watch`."""
-        self.namespace["_c_touch"] = watcher  # generated code calls it directly
-        self.runtime.watch_with(watcher)
+    def watch_with(self, watcher: Watcher) -> None:
+        """From now on, tell `watcher` of every access.  Needs an image linked with `watch`."""
+        self.namespace["_c_touch"] = watcher.touch  # generated code calls it directly
+        self.runtime.watcher = watcher
 
     def allow_loops(self, cycles: int) -> None:
         """Set how long a loop may compute without a call, in cycles."""
@@ -159,6 +160,7 @@ class Linked:
         obj = memory.place(variable.declaration) if at is None else memory.name_address(variable.declaration, at)
         self.objects[variable.declaration.path] = obj
         name = object_name(variable)
+        self.namespace[f"_o_{name}"] = obj
         self.namespace[f"_g_{name}"] = obj.data
         self.namespace[f"_p_{name}"] = Pointer(self.runtime.memory, obj, 0, pointed(variable.ctype))
 

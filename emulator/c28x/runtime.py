@@ -40,6 +40,7 @@ from emulator.c28x.memory import ROM, Memory, Object, Pointer, from_words, zero_
 from emulator.c28x.sites import Site
 from emulator.c28x.tree import NOWHERE, Declaration, Where
 from emulator.c28x.varargs import ArgumentBlock
+from emulator.c28x.watcher import Watcher
 from emulator.clock import CYCLES_PER_US, Clock
 from emulator.seed import parse_seed
 
@@ -200,7 +201,7 @@ class Runtime:
         #: How long a loop may compute without a call, in cycles.
         self.loop_limit = int(LOOP_LIMIT_S * 1_000_000 * CYCLES_PER_US)
         self.poll_limit = int(poll_limit_s * 1_000_000 * CYCLES_PER_US)
-        self._watcher: Callable[[Object, int, bool], None] | None = None
+        self.watcher: Watcher | None = None
         self.sites = RuntimeSites(self)
         #: Tests, by the path of an object: the value of a never-written object; values of cells outside of an array.
         self.initials: dict[str, dict[str, Any]] = {}
@@ -657,7 +658,7 @@ class Runtime:
         """The scalars of `*p`, a structure.  Scalars that were never written stay so."""
         if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + ctype.words > p.obj.words:
             self.examine(p, 0, self.sites[number], "read")
-        if self._watcher is not None:
+        if self.watcher is not None:
             self.touch_block(p, ctype.words, False)
         copy = Object(Declaration("copy", ctype, "", "", 0), 0)
         self.memory.copy(Pointer(self.memory, copy, 0, ctype), p, ctype.words)
@@ -668,7 +669,7 @@ class Runtime:
         ctype = p.target
         if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + ctype.words > p.obj.words:
             self.examine(p, 0, self.sites[number], "written")
-        if self._watcher is not None:
+        if self.watcher is not None:
             self.touch_block(p, ctype.words, True)
         source = Object(Declaration("copy", ctype, "", "", 0), 0, values)
         self.memory.copy(p, Pointer(self.memory, source, 0, ctype), ctype.words)
@@ -804,26 +805,22 @@ class Runtime:
 
     # Accesses for a watcher (only in images linked with `watch`)
 
-    def watch_with(self, watcher: Callable[[Object, int, bool], None]) -> None:
-        """From now on, call `watcher(object, word, write)` at every access; `word` is the word within the object."""
-        self._watcher = watcher
-
     def touch(self, obj: Object, offset_words: int, write: bool) -> None:
         """The running function is about to read or write the scalar at word `offset_words` of `obj`.
 
         `obj` is a file-scope object, or a local whose address was taken.
         """
-        if self._watcher is not None:
-            self._watcher(obj, offset_words, write)
+        if self.watcher is not None:
+            self.watcher.touch(obj, offset_words, write)
 
     def touch_block(self, p: Pointer, words: int, write: bool) -> None:
         """`touch` for every scalar that begins in the `words` words at `p` (a structure, `memcpy`)."""
-        obj = p.obj
-        if obj is None or self._watcher is None:
+        obj, watcher = p.obj, self.watcher
+        if obj is None or watcher is None:
             return
         for offset in range(max(p.offset, 0), min(p.offset + words, obj.words)):
             if obj.leaf(offset) is not None:
-                self._watcher(obj, offset, write)
+                watcher.touch(obj, offset, write)
 
     def watched_load(self, p: Pointer, words: int, number: int) -> Any:
         """`load`, with a call of the watcher."""

@@ -25,7 +25,9 @@ from emulator.c28x.runtime import Runtime
 
 #: The class of a program.
 CLASS: Final = "Program"
+#: The writer has `_c_touch(...) or value`: the call gives None.
 _HEADER: Final = f'''"""A program's functions, written by `hil build`."""
+# mypy: disable-error-code="func-returns-value"
 from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, cast
@@ -57,8 +59,8 @@ _TYPES: Final = {
 }  # fmt: skip
 #: Names of the language -> the methods of `Runtime` that the linker binds to them.
 _METHODS: Final = {f"_c_{name}": name for name, value in vars(Runtime).items() if callable(value) and name[0] != "_"}
-#: Those that it binds otherwise where accesses are watched.
-_WATCHED: Final = ("_c_load", "_c_store", "_c_touch")
+#: The same where accesses are watched.
+_WATCHED: Final = {**_METHODS, "_c_load": "watched_load", "_c_store": "watched_store"}
 _ACCESSES: Final = {
     "cleared": "Cell", "read": "Callable[[], int]", "write": "Callable[[int, int], None]",
     "modify": "Callable[[int, int, int], None]", "steady": "bool",
@@ -76,8 +78,11 @@ _NUMBERS: Final = ("int", "float")
 
 
 def identity(compiled: Compiled, first: int) -> str:
-    """What tells a program apart: its functions with text and types, its objects, the number of its first place."""
-    known = sha256(str(first).encode())
+    """What tells a program apart: its functions with text and types, its objects, the number of its first place.
+
+    Whether it is watched, too: the same text then calls other methods of `Runtime`.
+    """
+    known = sha256(repr((first, compiled.options.watch)).encode())
     for function in compiled.functions:
         f = function.function
         types = [(local_name(variable), str(variable.ctype)) for variable in (*f.parameters, *f.locals)]
@@ -115,7 +120,7 @@ def typed_text(compiled: Compiled, first: int) -> str:
     program = _Names(
         {each.path: name for each, name in named},
         {f"_g_{object_name(variable)}": _element(variable.ctype) for variable, _ in compiled.objects},
-        {name: _METHODS[name] for name in _METHODS if not compiled.options.watch or name not in _WATCHED},
+        _WATCHED if compiled.options.watch else _METHODS,
     )
     written = []
     for each, name in named:

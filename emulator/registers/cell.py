@@ -19,7 +19,7 @@ from emulator.registers.taps import lay
 
 if TYPE_CHECKING:
     from emulator.registers.fields import F
-    from emulator.registers.taps import Seen
+    from emulator.registers.taps import Seen, Tap
 
 
 class Owner(Protocol):
@@ -79,7 +79,7 @@ class Cell:
         self.read_hook: Hook | None = None
         self.write_hook: Hook | None = None
         self._followers: list[tuple[dict[str, Any], str, str]] = []
-        self._taps: dict[Seen, bool] = {}
+        self._taps: dict[Tap | Seen, bool] = {}
         #: Whether the access functions are those of the present state; else the first access chooses them.
         self._chosen = False
         #: Whether `read` only gives `value`.
@@ -156,12 +156,12 @@ class Cell:
         """Whether a function of a linked program reads it by its name."""
         return any(access in ("read", "source") for _, _, access in self._followers)
 
-    def tap(self, seen: Seen, *, reads: bool = False) -> None:
+    def tap(self, seen: Tap | Seen, *, reads: bool = False) -> None:
         """Have `seen` told of each write, with `reads` of each read too, right before it happens: `taps.Seen`."""
         self._taps[seen] = reads
         self.bind()
 
-    def untap(self, seen: Seen) -> None:
+    def untap(self, seen: Tap | Seen) -> None:
         """Tell `seen` nothing more.  Raises KeyError if it was told nothing."""
         del self._taps[seen]
         self.bind()
@@ -193,16 +193,24 @@ class Cell:
             self.read, self.reads = self.on_read, self.read_hook
         else:
             self.read = self._read_plain if self.looked_at else self._read_masked
-        write = self._storing() if self.on_write is None else self.on_write
-        if self.unmodelled_mask:
-            write = watching(self, write)
+        hook = self.write_hook
+        if self.on_write is not None:
+            bare = self.on_write
+        elif self.clears:
+            hook = Clearing(self.cleared)
+            bare = hook.write
+            if not self.eallow:
+                self.gate = OPEN
+        else:
+            bare = self._storing()
+        write = watching(self, bare) if self.unmodelled_mask else bare
         self.write = protecting(self, write) if self.eallow else write
         # A field assignment leaves reserved bits as they are: only whole words are looked at.
         self.modify = self._modifying()
         if self.reserved_mask:
             self.write = refusing_reserved(self, self.write)
-        if self.write == self.on_write:
-            self.writes = self.write_hook
+        if self.write == bare:
+            self.writes = hook
 
     def _modify(self, keep: int, bits: int, lanes: int) -> None:
         self.write(self.read() & keep | bits, lanes)
@@ -254,15 +262,6 @@ class Cell:
         if self.w1c_mask or self.w1s_mask or self.bits == 32:
             return self.store
         register, writable = self, self.rw_mask
-        if self.clears:
-            cleared = self.cleared
-
-            def write_clear(word: int, lanes: int = ALL) -> None:
-                cleared.value &= ~word
-
-            if not self.eallow:
-                self.gate = OPEN
-            return write_clear
         if writable == self.read_mask:
 
             def write_whole(word: int, lanes: int = ALL) -> None:
@@ -327,6 +326,19 @@ def put(register: Cell, word: int, lanes: int) -> None:
         register.write(word, lanes)
     else:
         hook.write(word, lanes)
+
+
+class Clearing(Hook):
+    """The write of a register that clears bits of another."""
+
+    __slots__ = ("_cleared",)
+
+    def __init__(self, cleared: Cell) -> None:
+        self._cleared = cleared
+
+    def write(self, word: int, lanes: int = ALL) -> None:
+        """A one clears the bit."""
+        self._cleared.value &= ~word
 
 
 class Source:

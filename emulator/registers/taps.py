@@ -21,7 +21,29 @@ if TYPE_CHECKING:
 Seen = Callable[["Cell", str, int, int], None]
 
 
-def lay(register: Cell, taps: Mapping[Seen, bool]) -> None:
+class Tap:
+    """A tap as an object, for registers that are accessed most: a compiled one is told in C."""
+
+    __slots__ = ()
+
+    def told(self, register: Cell, access: str, word: Any, mask: int) -> None:
+        """An access, as `Seen` gets it; a vector's word is a function."""
+        raise NotImplementedError
+
+
+class _Calling(Tap):
+    """Calls a function."""
+
+    __slots__ = ("_seen",)
+
+    def __init__(self, seen: Seen) -> None:
+        self._seen = seen
+
+    def told(self, register: Cell, access: str, word: Any, mask: int) -> None:
+        self._seen(register, access, word, mask)
+
+
+def lay(register: Cell, taps: Mapping[Tap | Seen, bool]) -> None:
     """Lay `taps` (each with whether it wants reads too) over the ways of access that `Cell.bind` has chosen."""
     tapped = Tapped(register, taps)
     if any(taps.values()):
@@ -35,24 +57,25 @@ class Tapped(Hook):
 
     __slots__ = ("_modify", "_read", "_reads", "_register", "_told", "_told_reads", "_write", "_writes")
 
-    def __init__(self, register: Cell, taps: Mapping[Seen, bool]) -> None:
+    def __init__(self, register: Cell, taps: Mapping[Tap | Seen, bool]) -> None:
+        told = [(tap if isinstance(tap, Tap) else _Calling(tap), reads) for tap, reads in taps.items()]
         self._register = register
         self._read: Callable[[], Any] = register.read
         self._write, self._modify = register.write, register.modify
         self._reads, self._writes = register.reads, register.writes
-        self._told = list(taps)
-        self._told_reads = [seen for seen, reads in taps.items() if reads]
+        self._told = [tap for tap, _ in told]
+        self._told_reads = [tap for tap, reads in told if reads]
 
     def read(self) -> Any:
         """The CPU's read: of a word, or of the function that a vector holds."""
-        for seen in self._told_reads:
-            seen(self._register, "read", 0, 0)
+        for tap in self._told_reads:
+            tap.told(self._register, "read", 0, 0)
         return self._read() if self._reads is None else self._reads.read()
 
     def write(self, word: Any, lanes: int = ALL) -> None:
         """The CPU's write: of a word, or of the function that a vector holds."""
-        for seen in self._told:
-            seen(self._register, "write", word, lanes)
+        for tap in self._told:
+            tap.told(self._register, "write", word, lanes)
         if self._writes is None:
             self._write(word, lanes)
         else:
@@ -61,13 +84,13 @@ class Tapped(Hook):
     def modify(self, keep: int, bits: int, lanes: int) -> None:
         """A read-modify-write in one step."""
         word: int = self._read() & keep | bits  # no effect, or `modify` would be in two steps
-        for seen in self._told:
-            seen(self._register, "write", word, lanes & ~keep)
+        for tap in self._told:
+            tap.told(self._register, "write", word, lanes & ~keep)
         self._modify(keep, bits, lanes)
 
     def modify_in_two_steps(self, keep: int, bits: int, lanes: int) -> None:
         """A read-modify-write whose read is a read of the CPU."""
         word = self._register.read() & keep | bits
-        for seen in self._told:
-            seen(self._register, "write", word, lanes & ~keep)
+        for tap in self._told:
+            tap.told(self._register, "write", word, lanes & ~keep)
         self._write(word, lanes)

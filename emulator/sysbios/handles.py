@@ -91,6 +91,8 @@ class Handles:
         self._memory = memory
         self.classes = classes
         self.finders = finders
+        #: C function -> its handles: which argument, and the class of its object (None: the class is not enough).
+        self._passed: dict[str, list[tuple[int, type[KernelObject] | None]]] = {}
 
     def guarded(self, name: str, function: Function) -> Function:
         """A C function that checks its handles before it does anything else."""
@@ -133,9 +135,21 @@ class Handles:
 
         Raises KernelError, after a finding, for a handle without a living object of its kind.
         """
+        passed = self._passed.get(name)
+        if passed is None:
+            handles = prototypes()[name].handles if name in prototypes() else ()
+            passed = self._passed[name] = [(i, self.classes.get(kind)) for i, kind, _ in handles]
+        for i, wanted in passed:
+            value = arguments[i]
+            if not isinstance(value, KernelObject) or type(value) is not wanted or value.deleted:
+                return self._found(name, arguments)
+        return arguments
+
+    def _found(self, name: str, arguments: tuple[Any, ...]) -> tuple[Any, ...]:
+        """As `checked`, for arguments that are not all living objects."""
         if name in _NOT_BEFORE_TASKS and not self._in_task():
             return arguments
-        for i, kind, behind in prototypes().get(name, HandlePrototype(0, ())).handles:
+        for i, kind, behind in prototypes()[name].handles:
             value = arguments[i]
             if value.__class__ is self.classes.get(kind) and not value.deleted:
                 continue

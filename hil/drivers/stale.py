@@ -66,6 +66,7 @@ from emulator.c28x.tree_queries import (
     variables,
     within,
 )
+from emulator.c28x.watcher import CallingWatcher
 from emulator.can_bus import CanPart
 from emulator.clock import CYCLES_PER_MS
 from emulator.registers.cell import Cell
@@ -379,7 +380,7 @@ class AgeWatch:
         self.followed: dict[tuple[Place, Place, str], SourceTracking] = {}
         #: When the sources were cut off.
         self._cut = 0
-        image.linked.watch_with(self._touch)
+        image.linked.watch_with(CallingWatcher(self._touch))
         image.board.kernel.mailboxes.taken.connect(self._taken)
         for name in inputs - {"Mailbox"}:
             block, register = name.split(".", 1)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from emulator.c28x.ctypes import part_name, scalars
 from emulator.c28x.memory import RAM, Object
+from emulator.c28x.watcher import CallingWatcher
 from hil.faults.effect import Effect, MountedFault
 from hil.faults.kinds import FaultKind, FaultParameter
 
@@ -46,11 +47,11 @@ class BitFlip(Effect):
             self.repeat(rate_hz, self._flip)
         self._flip()
         linked = self.machine.firmware.linked
-        touch = linked.namespace.get("_c_touch")
-        if linked.options.watch and callable(touch):
-            self._reported = touch
-            linked.watch_with(self._touched)
-            self.on_end(lambda: linked.watch_with(touch))
+        watcher = linked.runtime.watcher
+        if watcher is not None:
+            self._reported = watcher.touch
+            linked.watch_with(CallingWatcher(self._touched))
+            self.on_end(lambda: linked.watch_with(watcher))
 
     def _flip(self) -> None:
         memory = self.machine.firmware.linked.runtime.memory

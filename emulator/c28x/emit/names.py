@@ -5,9 +5,9 @@ begins with `_` in C, is a keyword of Python, or begins with `z_` itself.  A mid
 name: it is valid in Python names but not in C names, so two different compositions never give the same name.  TI's
 compiler allows `$` in names: it is written as its code between two middle dots.
 
-`_g_x` is the data of a file-scope object, `_p_x` a pointer to an object, `_f_x` a firmware function, `_x_x` an extern,
-`_r_block_register_access` register, `_tN`, `_kN`, `_strN` types, numbers and strings of a function, `_h_...` its
-counters, `_c_...` runtime, `_k` clock, `_p` position.
+`_g_x` is the data of a file-scope object, `_o_x` the object itself, `_p_x` a pointer to an object, `_f_x` a firmware
+function, `_x_x` an extern, `_r_block_register_access` register, `_tN`, `_kN`, `_strN` types, numbers and strings of a
+function, `_h_...` its counters, `_c_...` runtime, `_k` clock, `_p` position.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def local_name(variable: Variable) -> str:
 
 
 def object_name(variable: Variable) -> str:
-    """The name of a file-scope object after `_g_` and `_p_`."""
+    """The name of a file-scope object after `_g_`, `_o_` and `_p_`."""
     d = variable.declaration
     text = "·".join(part for part in (of_file(d.module), d.function, d.name) if part)
     return text.replace("$", "·24·") if "$" in text else text

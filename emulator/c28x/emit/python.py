@@ -1053,7 +1053,9 @@ class PythonWriter:
 
     def touch(self, variable: Variable, words: str, *, write: bool) -> str:
         """The call that tells the watcher; its value is None."""
-        return f"_c_touch({self.pointer_name(variable)}.obj, {words}, {write})"
+        known = variable.kind == "global"
+        obj = f"_o_{object_name(variable)}" if known else f"{self.pointer_name(variable)}.obj"
+        return f"_c_touch({obj}, {words}, {write})"
 
     def load(self, lvalue: LValue) -> str:
         root = lvalue.root

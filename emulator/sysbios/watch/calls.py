@@ -51,13 +51,13 @@ class Calls:
     ) -> Callable[..., Any]:  # fmt: skip
         kernel = self._kernel
         # Listeners never get a wrong handle.  The function checks handles itself, but only after the listeners.
-        checked = kernel.handles.checked if before else None
+        handles = kernel.handles if before else None
 
         def call(*arguments: Any) -> Any:
             if not kernel.active:
                 return function(*arguments)
-            if checked is not None:
-                arguments = checked(name, arguments)
+            if handles is not None:
+                arguments = handles.checked(name, arguments)
             for callback in before:
                 callback(*arguments)
             result = function(*arguments)

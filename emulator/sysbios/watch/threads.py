@@ -12,10 +12,10 @@ takes it over.  What one thread did before it released is ordered before what th
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import zip_longest
-from typing import Any, Final, NamedTuple, Protocol
+from typing import Any, Final, NamedTuple
 
 from emulator.cpu import INTERRUPT_ENTRY_CYCLES, INTERRUPT_EXIT_CYCLES
+from emulator.registers.cell import Cell
 from emulator.sysbios.clock import ClockObject
 from emulator.sysbios.gate_mutex import GateMutex
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
@@ -37,27 +37,46 @@ Gate = GateMutexPri | GateMutex
 _NO_GATES: Final[frozenset[Gate]] = frozenset()
 
 
-class ReadableRegister(Protocol):
-    """A register whose `value` is the word that it holds."""
-
-    value: int
-
-
 #: A register, and the mask of a bit in it.
-Enable = tuple[ReadableRegister, int]
+Enable = tuple[Cell, int]
 #: The bits that let an interrupt through: its PIEIER bit must be set, and one of the enables at the peripheral.
 Enables = tuple[Enable, tuple[Enable, ...]]
 
 
-class Protection(NamedTuple):
-    """What protects an access: the gates held, the highest level that cannot pre-empt, the interrupts held off."""
+class Protection:
+    """What protects an access: the gates held, the highest level that cannot pre-empt, the interrupts held off.
 
-    gates: frozenset[Gate]
-    ceiling: int
-    #: CPU lines masked by INTM or IER, bit 0 is line 1.
-    lines: int
-    #: Interrupts that are disabled one by one.
-    disabled: frozenset[int]
+    `ThreadWatch.protected` makes them: equal ones are one object.
+    """
+
+    __slots__ = ("ceiling", "disabled", "gates", "lines")
+
+    def __init__(self, gates: frozenset[Gate], ceiling: int, lines: int, disabled: int) -> None:
+        self.gates = gates
+        self.ceiling = ceiling
+        #: CPU lines masked by INTM or IER, bit 0 is line 1.
+        self.lines = lines
+        #: Interrupts that are disabled one by one: their bits (`ThreadWatch.bit`).
+        self.disabled = disabled
+
+
+class _Gated:
+    """An interrupt with a handler, that a driver can hold off by the enables of its peripheral."""
+
+    __slots__ = ("_bit", "_line", "_mask", "_sources")
+
+    def __init__(self, bit: int, line: Enable, sources: tuple[Enable, ...]) -> None:
+        self._bit = bit
+        self._line, self._mask = line
+        self._sources = sources
+
+    def held_off(self) -> int:
+        """Its bit while it cannot come through, else 0."""
+        if self._line.value & self._mask:
+            for register, mask in self._sources:
+                if register.value & mask:
+                    return 0
+        return self._bit
 
 
 class Routine(NamedTuple):
@@ -76,13 +95,13 @@ class Thread:
     """A task, Swi, Hwi, Clock object or routine (`what`), or `main`."""
 
     __slots__ = (
-        "clock", "cpu", "entered", "index", "is_task", "left", "level", "name", "protection", "run", "seen", "stepped",
-        "taken", "vector", "what",
+        "bit", "clock", "cpu", "entered", "index", "is_task", "left", "level", "name", "protection", "run", "seen",
+        "stepped", "taken", "vector", "what",
     )  # fmt: skip
 
     def __init__(
         self, name: str, what: Task | Swi | Hwi | ClockObject | Routine | None, level: int, index: int,
-        vector: VectorClock,
+        vector: VectorClock, protection: Protection, bit: int = 0,
     ) -> None:  # fmt: skip
         self.name = name
         self.what = what
@@ -100,7 +119,9 @@ class Thread:
         #: The statement that has last told others something through a plain word, and when it did.
         self.stepped: tuple[int, int] = (0, 0)
         #: What protected it at the last call of `ThreadWatch.protection`.
-        self.protection = Protection(_NO_GATES, level, ALL_LINES, frozenset())
+        self.protection = protection
+        #: The bit of its interrupt (`ThreadWatch.bit`); 0 if it has none.
+        self.bit = bit
         #: The clock that it has taken over last from each object.
         self.taken: dict[Any, VectorClock] = {}
         #: CPU cycles so far.
@@ -144,7 +165,9 @@ def at_clock(vector: VectorClock, index: int, clock: int) -> VectorClock:
 
 def joined(one: VectorClock, other: VectorClock) -> VectorClock:
     """The maximum of two vector clocks, component by component."""
-    return tuple(map(max, one, other) if len(one) == len(other) else map(max, zip_longest(one, other, fillvalue=0)))
+    if len(one) < len(other):
+        one, other = other, one
+    return (*[max(one[i], other[i]) for i in range(len(other))], *one[len(other) :])
 
 
 class ThreadWatch:
@@ -154,7 +177,8 @@ class ThreadWatch:
         self.kernel = kernel
         self._clock = kernel.core.clock
         self._cpu = kernel.core.cpu
-        self.main = Thread("main", None, -1, 0, ())
+        self._protections: dict[tuple[frozenset[Gate], int, int, int], Protection] = {}
+        self.main = Thread("main", None, -1, 0, (), self._unprotected(-1))
         self.current = self.main
         self.all = [self.main]
         self._of: dict[Any, Thread] = {}
@@ -163,10 +187,12 @@ class ThreadWatch:
         self._since = 0
         #: The clock that a semaphore, Swi, Hwi or Clock object carries.
         self._carried: dict[Any, VectorClock] = {}
-        #: Interrupts that Hwi_disableInterrupt holds off; interrupt -> the enables by which a driver can hold it off.
-        self.disabled: frozenset[int] = frozenset()
+        self._bits: dict[int, int] = {}
+        #: Interrupts that Hwi_disableInterrupt holds off: their bits.
+        self._disabled = 0
+        #: Interrupt -> the enables by which a driver can hold it off; those with a handler.
         self.enables: dict[int, Enables] = {}
-        self._gated: tuple[tuple[int, ReadableRegister, int, tuple[Enable, ...]], ...] = ()
+        self._gated: list[_Gated] = []
         self._handlers = 0
         #: Returns PIEIER and the bit of a PIE interrupt.
         self.line: Callable[[int], Enable] | None = None
@@ -293,7 +319,8 @@ class ThreadWatch:
                 name, level = f"Clock:{what.name}", SWI_LEVEL + self.kernel.clocks.swi.priority
             else:
                 name, level = f"{'Isr' if isinstance(what, Routine) else 'Hwi'}:{what.name}", HWI_LEVEL
-            thread = Thread(name, what, level, len(self.all), creator.known())
+            bit = self.bit(what.number) if isinstance(what, Hwi | Routine) else 0
+            thread = Thread(name, what, level, len(self.all), creator.known(), self._unprotected(level), bit)
             self.all.append(thread)
             self._of[what] = thread
             if isinstance(what, Task):
@@ -331,6 +358,30 @@ class ThreadWatch:
 
     # Exclusion
 
+    def bit(self, number: int) -> int:
+        """The bit that stands for interrupt `number` in a protection."""
+        return self._bits.setdefault(number, 1 << len(self._bits))
+
+    def disable(self, number: int) -> None:
+        """Hwi_disableInterrupt holds an interrupt off."""
+        self._disabled |= self.bit(number)
+
+    def enable(self, number: int) -> None:
+        """It does so no more."""
+        self._disabled &= ~self.bit(number)
+
+    def protected(self, gates: frozenset[Gate], ceiling: int, lines: int, disabled: int) -> Protection:
+        """The protection with these properties."""
+        key = (gates, ceiling, lines, disabled)
+        protection = self._protections.get(key)
+        if protection is None:
+            protection = self._protections[key] = Protection(gates, ceiling, lines, disabled)
+        return protection
+
+    def _unprotected(self, level: int) -> Protection:
+        """That of a thread of this level which has not run yet."""
+        return self.protected(_NO_GATES, level, ALL_LINES, 0)
+
     def protection(self) -> Protection:
         """What protects the running thread now."""
         thread, kernel, cpu = self.current, self.kernel, self._cpu
@@ -343,30 +394,22 @@ class ThreadWatch:
                 ceiling = SWI_LEVEL - 1
         lines = ALL_LINES if cpu.intm else ~cpu.ier & ALL_LINES
         # Interrupts with a handler that are disabled one by one, by the kernel's call or at the peripheral.
-        off = self.disabled
+        off = self._disabled
         if len(kernel.hwis.table) != self._handlers:
             self._update_handlers()
-        for number, gate, mask, sources in self._gated:
-            if gate.value & mask:
-                for register, bit in sources:
-                    if register.value & bit:
-                        break
-                else:
-                    off |= {number}
-            else:
-                off |= {number}
-        gates = self.gates(thread) if thread.entered else _NO_GATES
+        for gated in self._gated:
+            off |= gated.held_off()
+        gates = self.gates(thread)
         last = thread.protection
-        if last[2] == lines and last[1] == ceiling and last[0] == gates and last[3] == off:
-            return last  # The usual case.  The same object again makes comparing two protections fast.
-        thread.protection = now = Protection(gates, ceiling, lines, off)
+        if last.lines == lines and last.ceiling == ceiling and last.gates == gates and last.disabled == off:
+            return last  # the usual case
+        thread.protection = now = self.protected(gates, ceiling, lines, off)
         return now
 
     def _update_handlers(self) -> None:
         handlers = [*self.kernel.hwis.table, *self.routines]
         self._handlers = len(self.kernel.hwis.table)
-        gated = [(number, self.enables[number]) for number in handlers if number in self.enables]
-        self._gated = tuple((number, *gate, sources) for number, (gate, sources) in gated)
+        self._gated = [_Gated(self.bit(number), *self.enables[number]) for number in handlers if number in self.enables]
 
     @staticmethod
     def gates(thread: Thread) -> frozenset[Gate]:
@@ -419,6 +462,6 @@ def excluded(first: Thread, first_protection: Protection, second: Thread, second
         first, first_protection, second, second_protection = second, second_protection, first, first_protection
     if not isinstance(second.what, Hwi | Routine):
         return first_protection.ceiling >= second.level
-    if not first_protection.lines & second.what.ier_bit and second.what.number not in first_protection.disabled:
+    if not first_protection.lines & second.what.ier_bit and not first_protection.disabled & second.bit:
         return False
     return not isinstance(first.what, Hwi | Routine) or bool(second_protection.lines & first.what.ier_bit)

@@ -17,6 +17,8 @@ from typing import Any, Protocol
 
 from emulator.c28x.findings import Finding, Findings
 from emulator.clock import us
+from emulator.registers.cell import Cell
+from emulator.registers.taps import Tap
 from emulator.signal import Signal
 from emulator.sysbios.watch.accesses import LatestAccess, SharedCell
 from emulator.sysbios.watch.names import HandleNames
@@ -65,8 +67,7 @@ class Transactions:
         self._clock = findings.clock
         self._cells: dict[str, SharedCell] = {}
         self._open: dict[str, OpenTransaction] = {}
-        #: Per register: word -> the thread that alone has used all parts of this word.  Such a write needs no check.
-        self._quiet: list[dict[int, Thread]] = []
+        self._occupying: list[_Occupying] = []
         self._found: dict[tuple[str, frozenset[Thread]], Finding] = {}
 
     def listen(self, trace: Trace) -> None:
@@ -81,13 +82,17 @@ class Transactions:
     def begin(self, block: str, part: str, *, opens: bool) -> None:
         """The running thread occupies a part of a peripheral.  `opens`: the transaction stays open until it ends."""
         thread = self._threads.current
-        cell = self._cells.get(part)
-        if thread is self._threads.main or (cell is not None and cell.owner is thread):
+        if thread is self._threads.main or self.owner(part) is thread:
             return
         statement = self._locator.here()
         self._use(block, part, thread, statement, self._threads.protection())
         if opens:
             self._open[part] = OpenTransaction(block, thread, statement, self._clock.now)
+
+    def owner(self, part: str) -> Thread | None:
+        """The only thread that has used a part so far."""
+        cell = self._cells.get(part)
+        return None if cell is None else cell.owner
 
     def _use(self, block: str, part: str, thread: Thread, statement: StatementNumber, protection: Protection) -> None:
         """A thread has used a part, and `protection` held for the whole time."""
@@ -98,8 +103,8 @@ class Transactions:
             return
         if cell.owner is not None:
             cell.owner = None
-            for words in self._quiet:
-                words.clear()
+            for occupying in self._occupying:
+                occupying.quiet.clear()
         conflicts = cell.conflicts(thread, protection)
         if conflicts:
             self._cut(block, part, thread, conflicts[0])
@@ -168,13 +173,12 @@ class Transactions:
 
         chip_select.changed.connect(changed)
 
-    @staticmethod
-    def _throughout(opened: OpenTransaction, begun: Protection, now: Protection) -> Protection:
+    def _throughout(self, opened: OpenTransaction, begun: Protection, now: Protection) -> Protection:
         """The protection that held from begin to end.  A gate that was left meanwhile does not count."""
         left = opened.thread.left
         gates = frozenset(gate for gate in begun.gates & now.gates if left.get(gate, -1) < opened.time)
         ceiling = min(begun.ceiling, now.ceiling)
-        return Protection(gates, ceiling, begun.lines & now.lines, begun.disabled & now.disabled)
+        return self._threads.protected(gates, ceiling, begun.lines & now.lines, begun.disabled & now.disabled)
 
     def watch_sci(self, regs: WatchedBlock, sent: Callable[[], None]) -> None:
         """Watch the characters that tasks write.  `sent()` is called for every character, whoever writes it."""
@@ -188,35 +192,55 @@ class Transactions:
 
     def _on_read(self, regs: WatchedBlock, name: str, part: str) -> None:
         """A read of the register ends the transaction on a part."""
-        opened = self._open
-
-        def seen(_register: object, access: str, _word: int, _mask: int) -> None:
-            if opened and access == "read":
-                opened.pop(part, None)
-
-        regs.registers[name].tap(seen, reads=True)
+        regs.registers[name].tap(_Ending(self._open, part), reads=True)
 
     def _on_bits(self, regs: WatchedBlock, name: str, parts: list[str], *, opens: bool, tasks_only: bool) -> None:
         """A write to the register occupies the parts whose bits are set in the word."""
-        threads, cells = self._threads, self._cells
-        quiet: dict[int, Thread] = {}
-        self._quiet.append(quiet)
-
-        def seen(_register: object, _access: str, word: int, _mask: int) -> None:
-            thread = threads.current
-            if quiet.get(word) is thread or (tasks_only and not thread.is_task):
-                return
-            set_bits = _bits(parts, word)
-            for part in set_bits:
-                self.begin(regs.name, part, opens=opens)
-            if all(part in cells and cells[part].owner is thread for part in set_bits):
-                quiet[word] = thread
-
-        regs.registers[name].tap(seen)
+        occupying = _Occupying(self, self._threads, regs.name, parts, opens=opens, tasks_only=tasks_only)
+        self._occupying.append(occupying)
+        regs.registers[name].tap(occupying)
 
     @staticmethod
     def _on_write(regs: WatchedBlock, name: str, callback: Callable[[int], None]) -> None:
         regs.registers[name].tap(lambda _register, _access, word, _mask: callback(word))
+
+
+class _Ending(Tap):
+    """Hears of the reads that end the transaction on a part."""
+
+    __slots__ = ("_open", "_part")
+
+    def __init__(self, opened: dict[str, OpenTransaction], part: str) -> None:
+        self._open, self._part = opened, part
+
+    def told(self, register: Cell, access: str, word: Any, mask: int) -> None:
+        if self._open and access == "read":
+            self._open.pop(self._part, None)
+
+
+class _Occupying(Tap):
+    """Hears of the writes that occupy the parts whose bits are set in the word."""
+
+    __slots__ = ("_block", "_opens", "_parts", "_tasks_only", "_threads", "_transactions", "quiet")
+
+    def __init__(
+        self, transactions: Transactions, threads: ThreadWatch, block: str, parts: list[str], *, opens: bool,
+        tasks_only: bool,
+    ) -> None:  # fmt: skip
+        self._transactions, self._threads = transactions, threads
+        self._block, self._parts, self._opens, self._tasks_only = block, parts, opens, tasks_only
+        #: Word -> the thread that alone has used all parts of this word.  Such a write needs no check.
+        self.quiet: dict[int, Thread] = {}
+
+    def told(self, register: Cell, access: str, word: Any, mask: int) -> None:
+        thread = self._threads.current
+        if self.quiet.get(word) is thread or (self._tasks_only and not thread.is_task):
+            return
+        parts = _bits(self._parts, word)
+        for part in parts:
+            self._transactions.begin(self._block, part, opens=self._opens)
+        if all(self._transactions.owner(part) is thread for part in parts):
+            self.quiet[word] = thread
 
 
 def _bits(parts: list[str], word: int) -> list[str]:

@@ -11,7 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from emulator.c28x.memory import Object
 from emulator.c28x.typed_text import identity, methods, typed_text
+from emulator.c28x.watcher import CallingWatcher
 from tests.emulator.c28x import linking
 from tests.emulator.c28x.as_methods import AsMethods
 from tests.emulator.c28x.workshop import Workshop
@@ -126,6 +128,43 @@ def test_a_program_is_known_by_the_types_of_its_variables_too(other: str) -> Non
     one, another = (Workshop(source.replace("T", t)).linked for t in ("int16", other))
     assert one.sources == another.sources
     assert one.identity != another.identity
+
+
+#: Accesses to a global, to an element, and through a pointer.
+THROUGH = """
+n: int16 = 3
+a: array[int16, 4] = (1, 2, 3, 4)
+
+def first(t: ptr[int16]) -> int16:
+    t[1] = 5
+    return t[0]
+
+def each() -> int16:
+    a[n] = first(a)
+    return a[n]
+"""
+
+
+def test_methods_tell_a_watcher_of_the_same_accesses() -> None:
+    told: list[list[tuple[str, int, bool]]] = []
+    for workshop in both(THROUGH, watch=True):
+        heard: list[tuple[str, int, bool]] = []
+
+        def hear(obj: Object, word: int, write: bool, heard: list[tuple[str, int, bool]] = heard) -> None:
+            heard.append((obj.declaration.name, word, write))
+
+        workshop.linked.watch_with(CallingWatcher(hear))
+        assert workshop.each() == 1
+        told.append(heard)
+    assert told[0] == told[1]
+    assert set(told[0]) == {("n", 0, False), ("a", 0, False), ("a", 1, True), ("a", 3, True), ("a", 3, False)}
+
+
+def test_a_program_is_known_by_whether_it_is_watched() -> None:
+    source = "def first(t: ptr[int16]) -> int16:\n    return t[0]\n"
+    plain, watched = (Workshop(source, watch=watch).linked for watch in (False, True))
+    assert plain.sources == watched.sources
+    assert plain.identity != watched.identity
 
 
 def test_variables_of_c_have_types_and_what_may_be_unwritten_has_none() -> None:

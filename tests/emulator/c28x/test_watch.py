@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from emulator.c28x.watcher import CallingWatcher
 from tests.emulator.c28x.workshop import Workshop
 
 SOURCE = """
@@ -75,8 +76,8 @@ class Watched(Workshop):
     def __init__(self, source: str = SOURCE, *, watch: bool = True) -> None:
         super().__init__(source, watch=watch)
         self.touched: list[Touch] = []
-        self.runtime.watch_with(
-            lambda obj, offset, write: self.touched.append((obj.declaration.name, offset, "w" if write else "r"))
+        self.linked.watch_with(
+            CallingWatcher(lambda obj, offset, write: self.touched.append((obj.declaration.name, offset, "rw"[write])))
         )
 
 

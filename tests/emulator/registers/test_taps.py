@@ -77,6 +77,19 @@ def test_two_taps_of_a_register_are_both_told_and_each_goes_alone() -> None:
     assert [access for access, *_ in second] == ["write", "write", "read"]
 
 
+def test_a_register_that_clears_another_does_so_with_a_tap_too() -> None:
+    board = System()
+    board.cpu.eallow = True
+    board.register("CpuSysRegs", "PCLKCR13").bit.ADC_A = 1
+    flags = board.register("AdcaRegs", "ADCINTFLG")
+    flags.value = 0b1011
+    register, log = tapped(board, "AdcaRegs", "ADCINTFLGCLR")
+    register.bit.ADCINT1 = 1
+    register.write(0b1000, ALL)
+    assert [word for _, word, _, _ in log] == [1, 0b1000]
+    assert flags.value == 0b0010
+
+
 def test_a_tap_outlives_the_clock_gate_and_hides_no_finding() -> None:
     board = System()
     register, log = tapped(board, "SpiaRegs", "SPIBRR")

@@ -9,7 +9,7 @@ from emulator.c28x.memory import Memory, Pointer
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
 from emulator.sysbios.core import KernelError
-from emulator.sysbios.watch import KernelWatch
+from emulator.sysbios.watch.kernel_watch import KernelWatch
 from tests.emulator.c28x.linking import link
 from tests.emulator.c28x.readers.c.workshop import NAME, read
 from tests.emulator.sysbios.bench import Bench

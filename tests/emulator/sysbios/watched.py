@@ -14,7 +14,7 @@ from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
 from emulator.chip import delay_us
 from emulator.rules.kernel import RULES
-from emulator.sysbios.watch import KernelWatch
+from emulator.sysbios.watch.kernel_watch import KernelWatch
 from hil.robot.board import RobotBoard
 from tests.emulator.c28x.linking import link
 from tests.emulator.sysbios.bench import MS, Bench
