@@ -7,7 +7,7 @@ functions enter and leave the gate as partners, on purpose.  Nothing is reported
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Final, NamedTuple
 
 from emulator.c28x.tree import (
@@ -24,7 +24,7 @@ from emulator.c28x.tree import (
     Where,
     While,
 )
-from emulator.sysbios.watch.names import calls, first_arguments
+from emulator.sysbios.watch.names import HandleNames, calls, first_argument
 
 #: The calls that enter a gate, and (`LEAVE`) those that leave it.
 ENTER: Final = ("GateMutexPri_enter", "GateMutex_enter")
@@ -42,22 +42,16 @@ class GateExit(NamedTuple):
     entered: Where
 
 
-def exits(functions: Iterable[Function]) -> Iterator[tuple[Function, GateExit]]:
-    """Every `return` of these functions, and every `continue`, that does not leave a gate."""
-    functions = list(functions)
-    entered = {function.path: _paths(function.body, ENTER) for function in functions}
-    left = {function.path: _paths(function.body, LEAVE) for function in functions}
-    shared = {path for function in functions for path in left[function.path] - entered[function.path]}
-    for function in functions:
-        own = (entered[function.path] & left[function.path]) - shared
+def exits(names: HandleNames) -> Iterator[tuple[Function, GateExit]]:
+    """Every `return` of the image's functions, and every `continue`, that does not leave a gate."""
+    entered, left = names.passed_by(*ENTER), names.passed_by(*LEAVE)
+    shared = {path for function, passed in left.items() for path in passed - entered.get(function, set())}
+    for function in names.functions:
+        own = (entered.get(function.path, set()) & left.get(function.path, set())) - shared
         if function.name != "main" and own and None not in shared:
             found: list[GateExit] = []
             _walk(function.body, {}, {}, found)
             yield from ((function, exit) for exit in found if exit.path in own)
-
-
-def _paths(body: list[Stmt], functions: tuple[str, ...]) -> set[str | None]:
-    return {path for function in functions for path in first_arguments(body, function)}
 
 
 def _walk(body: list[Stmt], held: Held, outside: Held, found: list[GateExit]) -> Held | None:
@@ -99,10 +93,12 @@ def _calls(statement: Stmt, held: Held) -> None:
     """Update `held` with the gates that a statement without inner blocks enters and leaves."""
     for call in calls([statement]):
         name = call.function.name
-        for path in first_arguments([statement], name) if name in ENTER + LEAVE else ():
-            if path is None:
-                held.clear()
-            elif name in ENTER:
-                held[path] = statement.where
-            else:
-                held.pop(path, None)
+        if name not in ENTER + LEAVE:
+            continue
+        path = first_argument(call)
+        if path is None:
+            held.clear()
+        elif name in ENTER:
+            held[path] = statement.where
+        else:
+            held.pop(path, None)

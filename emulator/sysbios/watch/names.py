@@ -2,15 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from emulator.c28x.link import Linked
+from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Call, Const, Convert, Evaluate, Function, FunctionRef, Load, LValue, Stmt, Variable
 from emulator.c28x.tree_queries import bare, different, parts, statements, within
 
 #: Paths of file-scope objects.  None stands for objects that the source does not name.
 Paths = set[str | None]
+
+
+class _Mentions:
+    """The calls of functions and the pointers to them in the source of an image.  It is read once for all questions."""
+
+    __slots__ = ("all", "calls", "pointed")
+
+    def __init__(self, modules: Iterable[Module], functions: Iterable[Function]) -> None:
+        #: Path of a function -> the calls of it and pointers to it.
+        self.all: dict[str, list[Call | FunctionRef]] = {}
+        #: Name of a function -> its calls in functions, each with the caller.
+        self.calls: dict[str, list[tuple[Function, Call]]] = {}
+        #: The names of functions whose address a function takes.
+        self.pointed: set[str] = set()
+        for module in modules:
+            for variable in module.variables:
+                for expression in different(variable.initial or ()):
+                    for part in parts(expression):
+                        self._mentioned(part)
+        for caller in functions:
+            for part in within(caller.body):
+                self._mentioned(part)
+                if isinstance(part, Call):
+                    self.calls.setdefault(part.function.name, []).append((caller, part))
+                elif isinstance(part, FunctionRef):
+                    self.pointed.add(part.function.name)
+
+    def _mentioned(self, part: Any) -> None:
+        if isinstance(part, Call | FunctionRef):
+            self.all.setdefault(part.function.path, []).append(part)
 
 
 class HandleNames:
@@ -19,6 +50,14 @@ class HandleNames:
     def __init__(self, linked: Linked) -> None:
         self._linked = linked
         self._known: dict[Any, str] = {}
+        self._read: _Mentions | None = None
+
+    @property
+    def _mentions(self) -> _Mentions:
+        """What the source says of functions, read at the first question."""
+        if self._read is None:
+            self._read = _Mentions(self._linked.program.modules.values(), self.functions)
+        return self._read
 
     def of(self, handle: Any) -> str:
         """The name of the object that holds `handle`; without one, the kernel's own name."""
@@ -47,7 +86,15 @@ class HandleNames:
 
     def passed(self, function: str) -> Paths:
         """The first arguments that statements of the image pass to `function`."""
-        return {path for caller in self.functions for path in first_arguments(caller.body, function)}
+        return {first_argument(call) for _, call in self._mentions.calls.get(function, ())}
+
+    def passed_by(self, *functions: str) -> dict[str, Paths]:
+        """The first arguments that functions of the image pass to any of these functions, by the caller's path."""
+        found: dict[str, Paths] = {}
+        for function in functions:
+            for caller, call in self._mentions.calls.get(function, ()):
+                found.setdefault(caller.path, set()).add(first_argument(call))
+        return found
 
     @property
     def whole(self) -> bool:
@@ -59,10 +106,8 @@ class HandleNames:
 
         A function whose address is taken can be called for anything.
         """
-        for caller in self.functions:
-            for part in within(caller.body):
-                if isinstance(part, FunctionRef) and part.function.name == function:
-                    return True
+        if function in self._mentions.pointed:
+            return True
         passed, objects = self.passed(function), self.objects(handle)
         # If no file-scope object holds the handle now, any of them may have held it before.
         return None in passed or bool(passed & objects) or bool(passed and not objects)
@@ -81,24 +126,15 @@ class HandleNames:
     def callers(self, function: str, handle: Any) -> list[str]:
         """The paths of the functions that can call `function` for `handle`, also where the source does not tell."""
         objects: Paths = {None, *self.objects(handle)}
-        return [caller.path for caller in self.functions if objects & set(first_arguments(caller.body, function))]
+        return [path for path, passed in self.passed_by(function).items() if objects & passed]
 
     def only_given_to(self, path: str, function: str) -> bool:
         """Whether the source mentions the function `path` only in calls of `function`, and never calls it."""
-        modules = self._linked.program.modules.values()
-        variables = (variable for module in modules for variable in module.variables)
-        starts = (expression for variable in variables for expression in different(variable.initial or ()))
-        mentions = [part for expression in starts for part in parts(expression)]
-        mentions += [part for caller in self.functions for part in within(caller.body)]
         given = [
-            id(part) for call in mentions if isinstance(call, Call) and call.function.name == function
+            id(part) for _, call in self._mentions.calls.get(function, ())
             for argument in call.arguments for part in parts(argument)
         ]  # fmt: skip
-        return all(
-            id(part) in given
-            for part in mentions
-            if isinstance(part, FunctionRef | Call) and part.function.path == path
-        )
+        return all(id(part) in given for part in self._mentions.all.get(path, ()))
 
     def bits(self, function: str, handle: Any) -> int:
         """The bits that statements can pass to `function` as second argument, after `handle`.
@@ -106,12 +142,11 @@ class HandleNames:
         All bits where the source does not tell.
         """
         objects, bits = self.objects(handle), 0
-        for caller in self.functions:
-            made = [call for call in calls(caller.body) if call.function.name == function]
-            for call, path in zip(made, first_arguments(caller.body, function), strict=True):
-                if path is None or path in objects:
-                    mask = bare(call.arguments[1])
-                    bits |= mask.value if isinstance(mask, Const) and isinstance(mask.value, int) else ~0
+        for _, call in self._mentions.calls.get(function, ()):
+            path = first_argument(call)
+            if path is None or path in objects:
+                mask = bare(call.arguments[1])
+                bits |= mask.value if isinstance(mask, Const) and isinstance(mask.value, int) else ~0
         return bits
 
     def brings(self, event: Any) -> bool:
@@ -128,18 +163,13 @@ def calls(body: list[Stmt]) -> Iterator[Call]:
     return (part for part in within(body) if isinstance(part, Call))
 
 
-def first_arguments(body: list[Stmt], function: str) -> Iterator[str | None]:
-    """The first argument of each call of `function` in a body: the path of the file-scope object that holds the handle.
-
-    None where the source does not name one.
+def first_argument(call: Call) -> str | None:
+    """The path of the file-scope object that holds the handle in the first argument; None where the source names none.
 
     An array of handles is one object.
     """
-    for call in calls(body):
-        if call.function.name == function:
-            argument = call.arguments[0]
-            match argument.operand if isinstance(argument, Convert) else argument:
-                case Load(lvalue=LValue(root=Variable(kind="global") as variable)):
-                    yield variable.declaration.path
-                case _:
-                    yield None
+    argument = call.arguments[0]
+    match argument.operand if isinstance(argument, Convert) else argument:
+        case Load(lvalue=LValue(root=Variable(kind="global") as variable)):
+            return variable.declaration.path
+    return None

@@ -10,7 +10,7 @@ from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.scheduler import TERMINATED, Task
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.swi import Swi
-from emulator.sysbios.watch.names import HandleNames, Paths, calls, first_arguments
+from emulator.sysbios.watch.names import HandleNames, Paths, calls, first_argument
 
 
 class Posters:
@@ -31,8 +31,10 @@ class Posters:
         for module in self._linked.program.modules.values() if not self._posted else ():
             for function in module.functions:
                 self._mentioned[function.path] = function.calls
-                self._called[function.path] = {call.function.path for call in calls(function.body)}
-                self._posted[function.path] = set(first_arguments(function.body, "Semaphore_post"))
+                made = list(calls(function.body))
+                self._called[function.path] = {call.function.path for call in made}
+                posts = (call for call in made if call.function.name == "Semaphore_post")
+                self._posted[function.path] = {first_argument(post) for post in posts}
 
     def of(self, semaphore: Semaphore) -> set[Task] | None:
         """Tasks whose code posts `semaphore`; None if a Clock, Swi, Hwi or unknown code could post it too."""
