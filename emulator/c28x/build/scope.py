@@ -175,9 +175,12 @@ class Builder:
 
     def collect_effects(self, build: Callable[[], T]) -> tuple[list[Stmt], T]:
         """The effects of `build`, collected apart, and the value that it returns."""
-        with self.collect() as effects:
+        outer, self.out = self.out, []  # as `collect`, which takes longer: every operand comes here
+        try:
             value = build()
-        return effects, value
+            return self.out, value
+        finally:
+            self.out = outer
 
     @contextmanager
     def sequence(self) -> Iterator[None]:

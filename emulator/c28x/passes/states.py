@@ -86,6 +86,8 @@ class States:
         self.functions = {f.path: f for module in self.modules for f in module.functions}
         self.entries = entries
         self.taken: set[Variable] = set()
+        #: The objects that some assignment sets, and every setting of each.
+        self.assigned: set[Variable] = set()
         self.writes: dict[Variable, list[_Write]] = {}
 
     def check(self, reports: dict[Module, StaticReport]) -> None:
@@ -94,6 +96,9 @@ class States:
             return
         for f in self.functions.values():
             self.taken |= addressed(within(f.body))
+            for s in statements(f.body):
+                if isinstance(s, Assign) and isinstance(s.target, LValue) and isinstance(s.target.root, Variable):
+                    self.assigned.add(s.target.root)
         for f in self.functions.values():
             for s in statements(f.body):
                 self._read(f, s)
@@ -121,16 +126,10 @@ class States:
             case Const(value=int(value)):
                 return value
             case Load(lvalue=LValue(root=Variable(kind="global") as v, indices=[], words=0)) if self._followed(v):
-                if not self._assigned(v) and v.initial:
+                if v not in self.assigned and v.initial:
                     start = bare(v.initial[0])
                     return start.value if isinstance(start, Const) and isinstance(start.value, int) else None
         return None
-
-    def _assigned(self, v: Variable) -> bool:
-        return any(
-            isinstance(s, Assign) and isinstance(s.target, LValue) and s.target.root is v
-            for f in self.functions.values() for s in statements(f.body)
-        )  # fmt: skip
 
     def _followed(self, v: Variable) -> bool:
         return isinstance(v.ctype, IntType) and v not in self.taken and not v.escapes
