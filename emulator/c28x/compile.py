@@ -49,7 +49,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
     stamps = Stamps(modules, entries)
     suspicions = stamps.suspicions()
     findings = check(modules, dict(objects), stamps, entries) if options.static else []
-    cut_pulses = pulses(modules, entries)
+    cut_pulses = pulses(stamps)
     names_compared = compared(f for module in modules for f in module.functions)
     names_limited = limited(f for module in modules for f in module.functions)
     floats_made = made_float(f for module in modules for f in module.functions)

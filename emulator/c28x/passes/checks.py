@@ -64,7 +64,7 @@ def check(
                 check_names(function, unit, report, used, by_address=function.path in entered)
         for variable in module.variables:
             file_scope(variable, initialisers[variable], report)
-    States(modules, entries).check(reports)
+    States(modules, entries, stamps).check(reports)
     owners = {function: report for module, report in reports.items() for function in module.functions}
     for function, s, stamp, against in stamps.cuts():
         name = source_text(stamp)

@@ -7,18 +7,18 @@ are lost.  This is wrong only where the object is used as a wider number afterwa
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from emulator.c28x.ctypes import FloatType, IntType
 from emulator.c28x.passes.stamps import CAPTURES, STAMP, Stamps
-from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Assign, Binary, Const, Convert, Declare, Load, LValue, Stmt, Variable
 from emulator.c28x.tree_queries import parts, roots, statements, within
 
 
-def pulses(modules: Iterable[Module], entries: frozenset[str]) -> dict[int, str]:
-    """Identities of conversions, each with the path of its object: those that cut a time, and the wider uses of it."""
-    stamps = Stamps(modules, entries, CAPTURES)
+def pulses(image: Stamps) -> dict[int, str]:
+    """Identities of conversions, each with the path of its object: those that cut a time, and the wider uses of it.
+
+    `image` are the stamps of an image, of whatever registers.
+    """
+    stamps = image.of(CAPTURES)
     for function in stamps.functions:
         stamps.read(function)
     while stamps.grows():

@@ -18,6 +18,7 @@ The result are suspicions, by node.  The running code checks whether the counter
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from copy import copy
 from typing import Any, Final
 
 from emulator.c28x.ctypes import ArrayType, IntType, StructType
@@ -79,6 +80,13 @@ class Stamps:
         #: Pairs of keys of the same object: the target of a parameter, and the object whose address is passed.
         self.same: list[tuple[Key, Key]] = []
         self.given: list[tuple[Key, Expr]] = []
+
+    def of(self, registers: frozenset[str]) -> Stamps:
+        """The stamps of the same image that other registers give; nothing has been read for them."""
+        other = copy(self)
+        other.registers = registers
+        other.kinds, other.same, other.given = {}, [], []
+        return other
 
     def suspicions(self) -> dict[int, str]:
         """Identity of a comparison (or signed difference) that may be wrong -> its kind of suspicion."""

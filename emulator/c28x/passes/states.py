@@ -81,7 +81,9 @@ class _Unclear(Exception):
 class States:
     """The objects of one program, and the assignments to them."""
 
-    def __init__(self, modules: Iterable[Module], entries: frozenset[str]) -> None:
+    def __init__(self, modules: Iterable[Module], entries: frozenset[str], stamps: Stamps) -> None:
+        """`stamps` are those of these modules, after a call of `suspicions`."""
+        self.stamps = stamps
         self.modules = list(modules)
         self.functions = {f.path: f for module in self.modules for f in module.functions}
         self.entries = entries
@@ -387,11 +389,9 @@ class States:
 
     def _backwards(self, reports: dict[Module, StaticReport]) -> None:
         """Report an unsigned difference "earlier stamp minus counter" that is compared by order."""
-        stamps = Stamps(self.modules, self.entries)
-        counters = set(stamps.counters())
+        counters = set(self.stamps.counters())
         if not counters:
             return
-        stamps.suspicions()
         for module, report in reports.items():
             for f in module.functions:
                 for s in statements(f.body):
@@ -400,11 +400,9 @@ class States:
                             case Compare(op="<" | "<=" | ">" | ">=", left=left, right=right):
                                 for side, other in ((left, right), (right, left)):
                                     if self.constant(other) not in (None, 0):
-                                        self._backward(f, s, side, stamps, counters, report)
+                                        self._backward(f, s, side, counters, report)
 
-    def _backward(
-        self, f: Function, s: Stmt, side: Expr, stamps: Stamps, counters: set[Any], report: StaticReport
-    ) -> None:  # fmt: skip
+    def _backward(self, f: Function, s: Stmt, side: Expr, counters: set[Any], report: StaticReport) -> None:
         difference = side
         while isinstance(difference, Convert):
             if not isinstance(difference.ctype, IntType) or difference.ctype.signed:
@@ -415,7 +413,7 @@ class States:
                 before, counter = _variable(old), _variable(now)
                 if before is None or counter is None or (counter, 0) not in counters or (before, 0) in counters:
                     return
-                given = [value for key, value in stamps.given if key == (before, 0)]
+                given = [value for key, value in self.stamps.given if key == (before, 0)]
                 if given and all(self._past(value, counter) for value in given):
                     message = (
                         f"{source_text(difference)} takes the counter {counter.declaration.name} from the earlier "
