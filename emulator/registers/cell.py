@@ -19,7 +19,7 @@ from emulator.registers.taps import lay
 
 if TYPE_CHECKING:
     from emulator.registers.fields import F
-    from emulator.registers.taps import Seen, Tap
+    from emulator.registers.taps import Seen, RegisterTap
 
 
 class Owner(Protocol):
@@ -79,7 +79,7 @@ class Cell:
         self.read_hook: Hook | None = None
         self.write_hook: Hook | None = None
         self._followers: list[tuple[dict[str, Any], str, str]] = []
-        self._taps: dict[Tap | Seen, bool] = {}
+        self._taps: dict[RegisterTap | Seen, bool] = {}
         #: Whether the access functions are those of the present state; else the first access chooses them.
         self._chosen = False
         #: Whether `read` only gives `value`.
@@ -156,12 +156,12 @@ class Cell:
         """Whether a function of a linked program reads it by its name."""
         return any(access in ("read", "source") for _, _, access in self._followers)
 
-    def tap(self, seen: Tap | Seen, *, reads: bool = False) -> None:
+    def tap(self, seen: RegisterTap | Seen, *, reads: bool = False) -> None:
         """Have `seen` told of each write, with `reads` of each read too, right before it happens: `taps.Seen`."""
         self._taps[seen] = reads
         self.bind()
 
-    def untap(self, seen: Tap | Seen) -> None:
+    def untap(self, seen: RegisterTap | Seen) -> None:
         """Tell `seen` nothing more.  Raises KeyError if it was told nothing."""
         del self._taps[seen]
         self.bind()

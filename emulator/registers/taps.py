@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Seen = Callable[["Cell", str, int, int], None]
 
 
-class Tap:
+class RegisterTap:
     """A tap as an object, for registers that are accessed most: a compiled one is told in C."""
 
     __slots__ = ()
@@ -31,7 +31,7 @@ class Tap:
         raise NotImplementedError
 
 
-class _Calling(Tap):
+class _Calling(RegisterTap):
     """Calls a function."""
 
     __slots__ = ("_seen",)
@@ -43,7 +43,7 @@ class _Calling(Tap):
         self._seen(register, access, word, mask)
 
 
-def lay(register: Cell, taps: Mapping[Tap | Seen, bool]) -> None:
+def lay(register: Cell, taps: Mapping[RegisterTap | Seen, bool]) -> None:
     """Lay `taps` (each with whether it wants reads too) over the ways of access that `Cell.bind` has chosen."""
     tapped = Tapped(register, taps)
     if any(taps.values()):
@@ -57,8 +57,8 @@ class Tapped(Hook):
 
     __slots__ = ("_modify", "_read", "_reads", "_register", "_told", "_told_reads", "_write", "_writes")
 
-    def __init__(self, register: Cell, taps: Mapping[Tap | Seen, bool]) -> None:
-        told = [(tap if isinstance(tap, Tap) else _Calling(tap), reads) for tap, reads in taps.items()]
+    def __init__(self, register: Cell, taps: Mapping[RegisterTap | Seen, bool]) -> None:
+        told = [(tap if isinstance(tap, RegisterTap) else _Calling(tap), reads) for tap, reads in taps.items()]
         self._register = register
         self._read: Callable[[], Any] = register.read
         self._write, self._modify = register.write, register.modify

@@ -17,7 +17,7 @@ from emulator.c28x.link import Linked
 from emulator.c28x.memory import Object, Pointer
 from emulator.c28x.watcher import Watcher
 from emulator.registers.cell import Cell
-from emulator.registers.taps import Tap
+from emulator.registers.taps import RegisterTap
 from emulator.signal import Signal
 from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.mailbox import Mailbox
@@ -202,7 +202,7 @@ class _Accesses(Watcher):
             self._transmission.touch(obj, word, write)
 
 
-class _Beginnings(Tap):
+class _Beginnings(RegisterTap):
     """Hears of the writes to a register that can begin what ends in an interrupt."""
 
     __slots__ = ("_events", "_handled", "_handlers", "_kernel", "_started", "_table", "_threads")

@@ -18,7 +18,7 @@ from typing import Any, Protocol
 from emulator.c28x.findings import Finding, Findings
 from emulator.clock import us
 from emulator.registers.cell import Cell
-from emulator.registers.taps import Tap
+from emulator.registers.taps import RegisterTap
 from emulator.signal import Signal
 from emulator.sysbios.watch.accesses import LatestAccess, SharedCell
 from emulator.sysbios.watch.names import HandleNames
@@ -205,7 +205,7 @@ class Transactions:
         regs.registers[name].tap(lambda _register, _access, word, _mask: callback(word))
 
 
-class _Ending(Tap):
+class _Ending(RegisterTap):
     """Hears of the reads that end the transaction on a part."""
 
     __slots__ = ("_open", "_part")
@@ -218,7 +218,7 @@ class _Ending(Tap):
             self._open.pop(self._part, None)
 
 
-class _Occupying(Tap):
+class _Occupying(RegisterTap):
     """Hears of the writes that occupy the parts whose bits are set in the word."""
 
     __slots__ = ("_block", "_opens", "_parts", "_tasks_only", "_threads", "_transactions", "quiet")
