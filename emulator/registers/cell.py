@@ -19,7 +19,7 @@ from emulator.registers.taps import lay
 
 if TYPE_CHECKING:
     from emulator.registers.fields import F
-    from emulator.registers.taps import Seen, RegisterTap
+    from emulator.registers.taps import RegisterTap, Seen
 
 
 class Owner(Protocol):
