@@ -1,10 +1,11 @@
 """Uses the compiled build of these sources, if there is one that belongs to them.
 
 `hil build` compiles the modules that take most of the time into extension modules, and with them the robot's firmware
-(`program`).  Names and results are the same, at about five times the speed.  They lie in a folder of their own.  A
+(`part`).  Names and results are the same, at about five times the speed.  They lie in a folder of their own.  A
 manifest there names every source that they may depend on, with its SHA-256.  If one source differs, the whole build is
-ignored: so the program always runs the sources as they are.  Programs of firmware have a folder each, in one that is
-named after those sources: a program that was compiled with others is never found.  `HIL_PURE=1` ignores the build too.
+ignored: so the program always runs the sources as they are.  What is compiled of a source file of firmware, a part, has
+a folder of its own, in one that is named after those sources: a part that was compiled with others is never found.
+`HIL_PURE=1` ignores the build too.
 """
 
 from __future__ import annotations
@@ -47,9 +48,9 @@ def digest(source: Path) -> str:
     return sha256(source.read_bytes()).hexdigest()
 
 
-def programs_of(store: Path, sources: dict[str, str]) -> Path:
-    """The folder of the programs that were compiled with these sources (name -> digest)."""
-    return store / f"programs-{sha256(json.dumps(sources, sort_keys=True).encode()).hexdigest()[:16]}"
+def parts_of(store: Path, sources: dict[str, str]) -> Path:
+    """The folder of the parts of firmware that were compiled with these sources (name -> digest)."""
+    return store / f"parts-{sha256(json.dumps(sources, sort_keys=True).encode()).hexdigest()[:16]}"
 
 
 def find_build(store: Path = STORE, root: Path = ROOT) -> tuple[str, dict[str, str]]:
@@ -60,8 +61,8 @@ def find_build(store: Path = STORE, root: Path = ROOT) -> tuple[str, dict[str, s
         fresh = all(digest(root / name) == known for name, known in sources.items())
         files = {name: str(store / file) for name, file in manifest["modules"].items()}
         if fresh and all(map(os.path.exists, files.values())):
-            programs = programs_of(store, sources).glob("*/*")
-            return "fresh", files | {file.name.partition(".")[0]: str(file) for file in programs}
+            parts = parts_of(store, sources).glob("*/*")
+            return "fresh", files | {file.name.partition(".")[0]: str(file) for file in parts}
     except (OSError, ValueError, LookupError, TypeError, AttributeError):
         pass  # no manifest, a source that is gone, a file of another form
     return ("stale" if store.exists() else "none"), {}
@@ -81,20 +82,20 @@ def install() -> str:
     return "compiled"
 
 
-def program_name(identity: str) -> str:
-    """The name of the module with a program of firmware, which `c28x/typed_text.py` identifies."""
-    return f"program_{identity[:16]}"
+def part_name(identity: str) -> str:
+    """The name of the module with a part of firmware, which `c28x/typed_text.py` identifies."""
+    return f"part_{identity[:16]}"
 
 
-def program(identity: str) -> ModuleType | None:
-    """The module with a program of firmware.
+def part(identity: str) -> ModuleType | None:
+    """The module with a part of firmware.
 
-    None if the build has none, or is not used, or if a debugger is there: it stops in the program's own lines only
+    None if the build has none, or is not used, or if a debugger is there: it stops in the firmware's own lines only
     where they are interpreted.
     """
     if sys.gettrace() is not None or "pydevd" in sys.modules:
         return None
-    name = program_name(identity)
+    name = part_name(identity)
     built = any(isinstance(finder, Finder) and name in finder.files for finder in sys.meta_path)
     return import_module(name) if built else None
 

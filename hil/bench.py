@@ -76,7 +76,7 @@ class Bench(RunningBoard):
             board, fill=setup.fill, divide=setup.divide, float_division=setup.float_division, fixes=setup.fixes,
             watch=setup.watch, static=setup.static,
             firmware=setup.firmware, include=setup.include, defines=setup.defines,
-            coverage=coverage, steps=steps, built=None if replaceable else compiled.program,
+            coverage=coverage, steps=steps, built=None if replaceable else compiled.part,
         )  # fmt: skip
         super().__init__(
             board, firmware, "main_robot.main", start_up_cycles=int(BOOT_S * SYSCLK_HZ),

@@ -24,12 +24,12 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, Final
 
-from emulator.c28x.link import Linked
 from emulator.c28x.symbols import Module
-from emulator.c28x.typed_text import typed_text
-from emulator.compiled import MANIFEST, ROOT, STORE, digest, find_build, program_name, programs_of
+from emulator.c28x.typed_text import Part, typed_text
+from emulator.compiled import MANIFEST, ROOT, STORE, digest, find_build, part_name, parts_of
 from firmware_model.corrections import ALL
 from firmware_model.image import link
+from hil.collector import uncollected
 from hil.extras import has, hint
 from hil.robot.board import RobotBoard
 
@@ -97,16 +97,17 @@ FIRMWARE_STAYS: Final = (
 STILL: Final = "without a compiled build everything runs in plain Python, at about a fifth of the pace"
 #: Whatever a compiled module may have taken a constant or a type from.
 SOURCES: Final = ("emulator/**/*.py", "hil/world/*.py")
-#: The library in which the modules of the emulator really are.  Each program of firmware has one of its own.
+#: The library in which the modules of the emulator really are.  Each part of firmware has one of its own.
 GROUP: Final = "c2000_hil"
-#: What a build keeps of mypyc's work: with it a further program is translated without the emulator.
+#: What a build keeps of its work: with it a further part of firmware is translated and compiled alone.
 KEPT: Final = "translated"
+#: Within that, the objects of mypyc's own library, which every library here contains.
+OBJECTS: Final = "objects"
 
-
-#: How the file with a program's functions begins, and how it is compiled.  With -O2 a mission takes 3 % fewer
+#: How the file with a part's functions begins, and how it is compiled.  With -O2 a mission takes 3 % fewer
 #: instructions, and the compiler 1.6 to 1.8 times the CPU time.
-PROGRAM_C: Final = "__native_program_"
-PROGRAM_FLAGS: Final = ("-O1",)
+PART_C: Final = "__native_part_"
+PART_FLAGS: Final = ("-O1",)
 
 
 class BuildError(ValueError):
@@ -165,24 +166,27 @@ def _from(root: Path, file: str) -> str:
     return Path(file).relative_to(root).as_posix() if Path(file).is_relative_to(root) else file
 
 
-def programs(own: Iterable[Path] = ()) -> dict[str, Linked]:
-    """Each program of the robot that is compiled, by its identity.
+def parts(own: Iterable[Path] = (), *, alone: bool = False) -> dict[str, Part]:
+    """What is compiled of the robot's programs, by its identity: many programs share a part.
 
-    They are its firmware, the same with all corrections, and its firmware with the C files `own`, if there are any:
-    each as it runs, and as it is watched.  Raises ValueError for C files that cannot be linked.
+    The programs are its firmware with the C files `own`, if there are any, and unless that one is meant `alone`, its
+    firmware, and the same with all corrections: each as it runs, and as it is watched.  Raises ValueError for C files
+    that cannot be linked.
     """
     own = list(own)
     # First the files that may be wrong: that is told before anything takes its time.
-    variants: list[tuple[list[str], list[Path]]] = [*([([], own)] if own else []), ([], []), ([ALL], [])]
+    variants: list[tuple[list[str], list[Path]]] = [([], own)] if own else []
+    if not alone:
+        variants += [([], []), ([ALL], [])]
     linked = [
         link(RobotBoard(), charge_by_call=True, fixes=fixes, firmware=files, watch=watch).linked
         for fixes, files in variants for watch in (False, True)
     ]  # fmt: skip
-    return {each.identity: each for each in linked}
+    return {part.identity: part for each in linked for part in each.parts}
 
 
-def translate(root: Path, target: Path, programs: Mapping[str, Linked]) -> list[Any]:
-    """C for the listed modules and for programs, in `target`, as extensions that setuptools can build.
+def translate(root: Path, target: Path, parts: Mapping[str, Part]) -> list[Any]:
+    """C for the listed modules and for parts of firmware, in `target`, as extensions that setuptools can build.
 
     What mypyc finds translated in `target` it does not translate again.
     """
@@ -194,14 +198,17 @@ def translate(root: Path, target: Path, programs: Mapping[str, Linked]) -> list[
     options = CompilerOptions(multi_file=True, separate=True, target_dir=str(target / "c"))
     # Nobody extends a class of another library here, so mypyc may use what it knows of all subclasses.
     options.global_opts = True
-    arguments = ["--config-file=", "--ignore-missing-imports", f"--cache-dir={target / 'mypy'}"]
+    arguments = [
+        "--config-file=", "--ignore-missing-imports", "--no-sqlite-cache", f"--cache-dir={target / 'mypy'}"
+    ]  # fmt: skip
     try:
         with (
-            tempfile.TemporaryDirectory() as folder, _in_folder(root), contextlib.redirect_stdout(sys.stderr)
+            tempfile.TemporaryDirectory() as folder, _in_folder(root), contextlib.redirect_stdout(sys.stderr),
+            uncollected(),
         ):  # fmt: skip
-            own = [Path(folder) / f"{program_name(identity)}.py" for identity in programs]
-            for file, program in zip(own, programs.values(), strict=True):
-                file.write_text(typed_text(program.compiled, program.first), "utf-8")
+            own = [Path(folder) / f"{part_name(identity)}.py" for identity in parts]
+            for file, part in zip(own, parts.values(), strict=True):
+                file.write_text(typed_text(part), "utf-8")
             groups, made, more = mypyc_build(
                 [*arguments, *core, *map(str, own)], options,
                 separate=[(core, GROUP), *(([str(file)], _group(file.stem)) for file in own)],
@@ -222,6 +229,21 @@ def translate(root: Path, target: Path, programs: Mapping[str, Linked]) -> list[
     ]  # fmt: skip
 
 
+def reduce(translated: Path) -> None:
+    """Leave of what `translate` made what a further part needs: nothing of parts, and of the emulator's C the headers.
+
+    mypyc takes its work for valid without the C then.  Else it would read and digest all files of a library for each
+    module in it: gigabytes, for the emulator.
+    """
+    for part in (translated / "mypy").rglob(f"{part_name('')}*"):
+        part.unlink()
+    for known in (translated / "mypy").rglob("*.ir.json"):
+        known.write_text(json.dumps({**json.loads(known.read_bytes()), "src_hashes": {}}), "utf-8")
+    for made in (translated / "c").rglob("*"):
+        if made.is_file() and made.suffix != ".h":
+            made.unlink()
+
+
 def kept(store: Path) -> Path:
     """Where a build in `store` has mypyc's work.  Another version of mypyc does not find it: it would fit nothing."""
     try:
@@ -230,8 +252,8 @@ def kept(store: Path) -> Path:
         return store / KEPT / "none"
 
 
-def _group(program: str) -> str:
-    return f"c2000_{program}"
+def _group(part: str) -> str:
+    return f"c2000_{part}"
 
 
 def build(
@@ -241,13 +263,14 @@ def build(
     """Compile what is not compiled yet.  Returns how many modules that was.
 
     If a source of the emulator has changed, that is everything, and the new build takes the place of the one before.
-    Else it is the programs that the build does not have, which are put beside the others.  `own` are the C files of
-    `programs`.  `progress` is told the fraction 0..1 of the C files that are compiled.
+    Else it is the parts of firmware that the build does not have, which are put beside the others: those of the C files
+    `own`, if there are any.  `progress` is told the fraction 0..1 of the C files that are compiled.
     """
+    own = list(own)
     sources = {name: digest(root / name) for name in _matching(root, *SOURCES)}
-    wanted = {program_name(identity): (identity, program) for identity, program in programs(own).items()}
     state, known = find_build(store, root)
     fresh = state == "fresh" and kept(store).exists()
+    wanted = {part_name(identity): (identity, part) for identity, part in parts(own, alone=fresh and bool(own)).items()}
     if fresh:
         wanted = {name: each for name, each in wanted.items() if name not in known}
         if not wanted:
@@ -263,40 +286,41 @@ def build(
         if any(digest(root / name) != before for name, before in sources.items()):
             raise BuildError("a source changed during the build: run hil build again")
         by_name = {e.name: e for e in extensions}
-        parts = {name: (f"{_group(name)}__mypyc", name) for name in wanted}
-        ours = [part for both in parts.values() for part in both]
+        made_of = {name: (f"{_group(name)}__mypyc", name) for name in wanted}
+        ours = [module for both in made_of.values() for module in both]
         core = [] if fresh else [name for name in by_name if name not in ours]
         if missing := {*modules, *ours} - set(by_name):
             raise BuildError(f"mypyc did not compile {', '.join(sorted(missing))}")
-        # The C of a program takes longest: it is begun first.
+        # The C of firmware takes longest: it is begun first.
         _compile([by_name[name] for name in (*ours, *core)], work, made, progress)
-        place = programs_of(made, sources)
-        for name, both in parts.items():
+        place = parts_of(made, sources)
+        for name, both in made_of.items():
             (place / name).mkdir(parents=True)
-            for part in both:
-                file = made / _file(made, part)
+            for module in both:
+                file = made / _file(made, module)
                 file.rename(place / name / file.name)
         # Running processes keep the files that they have.
         if fresh:
-            _put_beside(place, programs_of(store, sources))
+            _put_beside(place, parts_of(store, sources))
         else:
             manifest = {"sources": sources, "modules": {name: _file(made, name) for name in core}}
             (made / MANIFEST).write_text(json.dumps(manifest, indent=1), "utf-8")
+            reduce(kept(work))
             (work / KEPT).rename(made / KEPT)
             clean(store)
             made.rename(store)
-    return len(modules) + len(parts)
+    return len(modules) + len(wanted)
 
 
 def _put_beside(made: Path, place: Path) -> None:
-    """Put each program that was made beside the others, unless another build has just done so."""
-    for program in made.iterdir():
+    """Put each part that was made beside the others, unless another build has just done so."""
+    for part in made.iterdir():
         try:
-            program.rename(place / program.name)
+            part.rename(place / part.name)
         except FileNotFoundError:
             raise BuildError("another build has taken the place of this one: run hil build again") from None
         except OSError:
-            if not (place / program.name).exists():
+            if not (place / part.name).exists():
                 raise
 
 
@@ -372,7 +396,7 @@ def _compile(extensions: list[Any], work: Path, made: Path, progress: Callable[[
                     extension.extra_compile_args.append("-Wno-all")
                     # Each C file of a library defines the table of the other one that it uses: one table for all.
                     extension.extra_compile_args.append("-fcommon")
-            _build_extensions(self, progress)
+            _build_extensions(self, work, progress)
 
     command = SideBySide(Distribution({"name": GROUP, "ext_modules": extensions}))
     command.build_lib, command.build_temp = str(made), str(work / "objects")
@@ -384,17 +408,26 @@ def _compile(extensions: list[Any], work: Path, made: Path, progress: Callable[[
         raise BuildError(f"the C compiler failed: {error}") from None
 
 
-def _build_extensions(command: Any, progress: Callable[[float], None]) -> None:
-    """Compile one C file a core, each once, though libraries share some; setuptools does one after the other."""
+def _build_extensions(command: Any, work: Path, progress: Callable[[float], None]) -> None:
+    """Compile one C file a core, each once, though libraries share some; setuptools does one after the other.
+
+    Those that are not in `work` are mypyc's own: their objects are kept, and not made again if they are there.
+    """
+    library = str(kept(work) / OBJECTS)
     total, done = len({source for extension in command.extensions for source in extension.sources}), 0
     compile_in_turn = command.compiler.compile
     objects: dict[str, Future[list[str]]] = {}
 
     def compiled(source: str, options: dict[str, Any]) -> list[str]:
         nonlocal done
-        if Path(source).name.startswith(PROGRAM_C):
-            options = {**options, "extra_postargs": [*options["extra_postargs"], *PROGRAM_FLAGS]}
-        made: list[str] = compile_in_turn([source], **options)
+        made: list[str] = []
+        if Path(source).name.startswith(PART_C):
+            options = {**options, "extra_postargs": [*options["extra_postargs"], *PART_FLAGS]}
+        elif not Path(source).is_relative_to(work):
+            options = {**options, "output_dir": library}
+            made = command.compiler.object_filenames([source], output_dir=library)
+        if not made or not all(map(os.path.exists, made)):
+            made = compile_in_turn([source], **options)
         with one_at_a_time:
             done += 1
             progress(done / total)

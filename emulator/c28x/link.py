@@ -9,6 +9,7 @@ from __future__ import annotations
 import builtins
 from collections.abc import Callable, Mapping, Sequence
 from inspect import unwrap
+from itertools import zip_longest
 from math import isinf
 from numbers import Integral, Real
 from types import CodeType
@@ -56,7 +57,7 @@ from emulator.c28x.tree import (
     Variable,
     Where,
 )  # fmt: skip
-from emulator.c28x.typed_text import attribute, identity, methods, register_name
+from emulator.c28x.typed_text import Part, attribute, methods, parts, register_name
 from emulator.c28x.watcher import Watcher
 from emulator.clock import NEVER
 
@@ -77,7 +78,7 @@ class Linked:
     ) -> None:  # fmt: skip
         """Bind `compiled` to what `runtime` belongs to.
 
-        `built` gives the module of a program that was compiled (`typed_text.py`), by its identity, or None.
+        `built` gives the module of a part that was compiled (`typed_text.py`), by its identity, or None.
         """
         self.compiled = compiled
         self.program = compiled.program
@@ -98,11 +99,14 @@ class Linked:
         self._bound: dict[str, Function] = {}
         self._words = 0
         self.namespace: dict[str, Any] = self._runtime_names()
-        #: The number of the program's first place.
-        self.first = len(runtime.findings.places)
-        module = built(self.identity) if built is not None and not self.replaced else None
-        #: The program's functions as methods; None: they are interpreted.
-        self._methods: Any = None if module is None else module.Program(self.namespace, self._some_register())
+        #: Its functions by source file, as they are compiled.
+        self.parts = parts(compiled, len(runtime.findings.places))
+        modules = self._modules(built) if built is not None and not self.replaced else []
+        #: For each part the object whose methods its functions are; none: all functions are interpreted.
+        self._owners = [
+            module.Part(self.namespace, self._some_register(part))
+            for module, part in zip(modules, self.parts, strict=False)
+        ]  # fmt: skip
         for variable, _ in compiled.objects:
             self._place(variable)
         for finding in compiled.findings:
@@ -110,10 +114,12 @@ class Linked:
                 finding.place, finding.rule, finding.message, object=finding.object, declaration=finding.declaration,
                 value=finding.value, how="static",
             )  # fmt: skip
-        for function, name in zip(compiled.functions, methods(compiled.functions), strict=True):
-            self._define(function, name)
-        if module is not None:
-            self.namespace = _Attributes(self.namespace, self._methods, module.NAMES)
+        for part, owner in zip_longest(self.parts, self._owners):
+            runtime.findings.places.skip_to(part.first)
+            for function, name in zip(part.functions, methods(part.functions), strict=True):
+                self._define(function, None if owner is None else getattr(owner, name))
+        if self._owners:
+            self.namespace = _Attributes(self.namespace, self._owners, [module.NAMES for module in modules])
         for function in compiled.functions:
             self._bind(function)
         if isinstance(self.namespace, _Attributes):
@@ -122,14 +128,9 @@ class Linked:
             self._initialise(variable, values)
 
     @property
-    def identity(self) -> str:
-        """What a compiled program is known by (`typed_text.py`)."""
-        return identity(self.compiled, self.first)
-
-    @property
     def interpreted(self) -> bool:
         """Whether its functions run as Python; else they are methods of a compiled program."""
-        return self._methods is None
+        return not self._owners
 
     def path_of(self, function: Callable[..., Any]) -> str:
         """The `module.name` of a function of the program, as the kernel keeps it; "" for another one."""
@@ -164,9 +165,19 @@ class Linked:
         self.namespace[f"_g_{name}"] = obj.data
         self.namespace[f"_p_{name}"] = Pointer(self.runtime.memory, obj, 0, pointed(variable.ctype))
 
-    def _some_register(self) -> Any:
-        """Any register that the program uses, or None if it uses none."""
-        used = (name for function in self.compiled.functions for name in function.written.names.registers.values())
+    def _modules(self, built: Callable[[str], Any]) -> list[Any]:
+        """The module of each part; none if one is not compiled."""
+        modules = []
+        for part in self.parts:
+            module = built(part.identity)
+            if module is None:
+                return []
+            modules.append(module)
+        return modules
+
+    def _some_register(self, part: Part) -> Any:
+        """Any register that the functions of a part use, or None if they use none."""
+        used = (name for function in part.functions for name in function.written.names.registers.values())
         block, register, _ = next(used, ("", "", ""))
         return self.registers(block, register) if register else None
 
@@ -267,14 +278,13 @@ class Linked:
             "_c_spill": self._spill, "__builtins__": builtins.__dict__,
         }  # fmt: skip
 
-    def _define(self, compiled: CompiledFunction, method: str) -> None:
+    def _define(self, compiled: CompiledFunction, method: Callable[..., Any] | None) -> None:
         """Create a function, or take its method, and number its places."""
         path = compiled.path
         self.sources[path] = compiled.written.text
         first = self.runtime.findings.places.add(compiled.written.places)
-        defined: Callable[..., Any]
-        if self._methods is not None:
-            defined = getattr(self._methods, method)
+        if method is not None:
+            defined = method
         else:
             (code,) = [c for c in compiled.code().co_consts if isinstance(c, CodeType)]
             defined = PyFunction(_numbered(code, first, compiled.function.name), self.namespace)
@@ -300,7 +310,7 @@ class Linked:
             if name not in space:
                 cell = self.registers(block, register)
                 cell.follow(access, space, name)
-                if self._methods is not None:
+                if self._owners:
                     space[register_name(name)] = cell
         for name, text in names.strings.items():
             space[name] = self._string(text)
@@ -354,11 +364,15 @@ class Linked:
 
 
 class _Attributes(dict[str, Any]):
-    """The names of a program whose functions are methods: what these refer to is an attribute of their object too."""
+    """The names of a program whose functions are methods: what these refer to is an attribute of their objects too."""
 
-    def __init__(self, names: Mapping[str, Any], program: Any, bound: frozenset[str]) -> None:
+    def __init__(self, names: Mapping[str, Any], owners: Sequence[Any], bound: Sequence[frozenset[str]]) -> None:
+        """`bound` are the names that the methods of each of `owners` refer to."""
         super().__init__()
-        self._program, self._bound = program, bound
+        self._owners: dict[str, list[Any]] = {}
+        for owner, referred in zip(owners, bound, strict=True):
+            for name in referred:
+                self._owners.setdefault(name, []).append(owner)
         #: Whether all is bound: from then on, functions stay, because methods call each other directly.
         self.closed = False
         self.update(names)
@@ -367,8 +381,8 @@ class _Attributes(dict[str, Any]):
         if self.closed and name.startswith("_f_"):
             raise ValueError(f"{name[3:]} cannot be replaced in a compiled program: link it without `built`")
         super().__setitem__(name, value)
-        if name in self._bound:
-            setattr(self._program, attribute(name), value)
+        for owner in self._owners.get(name, ()):
+            setattr(owner, attribute(name), value)
 
     def update(self, names: Mapping[str, Any]) -> None:  # type: ignore[override]
         """Bind all of `names`."""

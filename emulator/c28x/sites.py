@@ -84,6 +84,16 @@ class StackFrame:
     objects: tuple[tuple[int, Declaration], ...]
 
 
+#: Between the first places of two source files lies a multiple of this: a file that changes mostly leaves the others
+#: their numbers, and what was compiled with them (`hil build`).
+FILE_STEP: Final = 1024
+
+
+def first_of_file(free: int) -> int:
+    """The number of a file's first place; `free` is the first number that is not used."""
+    return free + (1 - free) % FILE_STEP
+
+
 class Places:
     """The places of one board's firmware by number, and their checks; 0 is not a place."""
 
@@ -105,6 +115,12 @@ class Places:
         if site is None:
             raise KeyError(number)
         return site
+
+    def skip_to(self, number: int) -> None:
+        """Have the next place get `number`; those before it stay free."""
+        free = number - len(self._places)
+        self._places += self._places[:1] * free
+        self._sites += [None] * free
 
     def add(self, places: Iterable[tuple[Place, Site | None]]) -> int:
         """Number more places, each with its check, if any.  Returns the number of the first."""

@@ -1,9 +1,10 @@
-"""The typed text of a program: its functions as methods of one class, for mypyc (`hil build`).
+"""The typed text of a program: the functions of each source file as methods of one class, for mypyc (`hil build`).
 
 The methods are the functions that `python.py` wrote, statement by statement: every charge, check and place is the same.
 What is added are types, which let mypyc do without objects and look-ups by name.  C's integers are `int`, its floats
-`float`.  Functions of the program and of `Runtime` are called as methods.  A register that is only looked at, or stored
-in place, is the `Cell` itself.  Every other name that the linker binds is an attribute of the class.  What a type does
+`float`.  Functions of the same file and of `Runtime` are called as methods.  A register that is only looked at, or
+stored in place, is the `Cell` itself.  Every other name that the linker binds, those of functions in other files too,
+is an attribute of the class: so what is compiled of a file stays when another file changes.  What a type does
 not fit (a value that may never have been written, an element of an array, a pointer) stays `Any`; where it is computed
 with, it has been written, and its type is stated.
 """
@@ -11,10 +12,13 @@ with, it has been written, and its type is stated.
 from __future__ import annotations
 
 import ast
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from hashlib import sha256
+from itertools import groupby
 from typing import Final
 
 from emulator.c28x.compiled_program import Compiled, CompiledFunction
@@ -22,11 +26,12 @@ from emulator.c28x.ctypes import VOID, ArrayType, CType, FloatType, IntType, Str
 from emulator.c28x.emit.names import escaped, local_name, object_name
 from emulator.c28x.emit.written import FIRST_NUMBER
 from emulator.c28x.runtime import Runtime
+from emulator.c28x.sites import first_of_file
 
-#: The class of a program.
-CLASS: Final = "Program"
+#: The class with the functions of a file.
+CLASS: Final = "Part"
 #: The writer has `_c_touch(...) or value`: the call gives None.
-_HEADER: Final = f'''"""A program's functions, written by `hil build`."""
+_HEADER: Final = f'''"""The functions of a source file, written by `hil build`."""
 # mypy: disable-error-code="func-returns-value"
 from __future__ import annotations
 from collections.abc import Callable
@@ -39,7 +44,7 @@ from emulator.cpu import Cpu
 from emulator.registers.cell import Cell, look, put
 
 class {CLASS}:
-    """Its functions."""
+    """They are its methods."""
 '''
 #: Names that the text uses itself: one of C's that is the same gets the prefix of `escaped`.
 _TAKEN: Final = frozenset({
@@ -73,27 +78,62 @@ _INFERRED: Final = ("_k", "_p", "_up")
 #: The writer's name for a value that is kept for a moment; the name that the value to return gets here.
 _VALUE: Final = "_v"
 _RESULT: Final = "_result"
+_OBJECT: Final = re.compile(r"_g_[\w·]+")
 #: The types of values that can be computed with.
 _NUMBERS: Final = ("int", "float")
 
 
-def identity(compiled: Compiled, first: int) -> str:
-    """What tells a program apart: its functions with text and types, its objects, the number of its first place.
+@dataclass(frozen=True)
+class Part:
+    """The functions of one C file, or of a program in Python, which are compiled together."""
 
-    Whether it is watched, too: the same text then calls other methods of `Runtime`.
+    functions: Sequence[CompiledFunction]
+    #: The number of its first place.
+    first: int
+    #: Whether accesses are watched (`CompileOptions.watch`).
+    watch: bool
+    #: `_g_x` -> the type of its elements, for every object of the program.
+    elements: Mapping[str, str] = field(repr=False)
+
+    @cached_property
+    def identity(self) -> str:
+        """What tells it apart: its functions with text and types, the types of what they refer to, its first place."""
+        known = sha256(repr((self.first, self.watch)).encode())
+        for each in self.functions:
+            f, text = each.function, each.written.text
+            types = [(local_name(variable), str(variable.ctype)) for variable in (*f.parameters, *f.locals)]
+            called = [(name, str(other.ctype.result)) for name, other in each.written.names.functions.items()]
+            objects = [(name, self.elements.get(name)) for name in sorted({*_OBJECT.findall(text)})]
+            known.update(repr((each.path, str(f.ctype.result), types, called, objects, text)).encode())
+        return known.hexdigest()
+
+    @property
+    def end(self) -> int:
+        """The first number after those of its places."""
+        return self.first + sum(len(each.written.places) for each in self.functions)
+
+
+def parts(compiled: Compiled, free: int) -> list[Part]:
+    """The parts of a program, in the order of its functions; `free` is the first number that no place has.
+
+    C has a part a file.  Python has one for all: nobody waits for it but with the whole build, and calls within a part
+    are the fastest.
     """
-    known = sha256(repr((first, compiled.options.watch)).encode())
-    for function in compiled.functions:
-        f = function.function
-        types = [(local_name(variable), str(variable.ctype)) for variable in (*f.parameters, *f.locals)]
-        known.update(repr((function.path, str(f.ctype.result), types, function.written.text)).encode())
-    for variable, _ in compiled.objects:
-        known.update(repr((object_name(variable), str(variable.ctype))).encode())
-    return known.hexdigest()
+    elements = {f"_g_{object_name(variable)}": _element(variable.ctype) for variable, _ in compiled.objects}
+    found: list[Part] = []
+    for _, functions in groupby(compiled.functions, _of_part):
+        found.append(Part([*functions], first_of_file(free), compiled.options.watch, elements))
+        free = found[-1].end
+    return found
+
+
+def _of_part(compiled: CompiledFunction) -> str:
+    f = compiled.function
+    return "" if f.where.file.endswith(".py") else f.module
 
 
 def methods(functions: Sequence[CompiledFunction]) -> list[str]:
-    """The name of each function's method: its C name, with its number in the program if it is not the only one."""
+    """The name of each function's method: its C name, with its number in the file if it is not the only one."""
     names = [_of_c(escaped(compiled.function.name)) for compiled in functions]
     often = Counter(names)
     return [name if often[name] == 1 else f"{name}__{number}" for number, name in enumerate(names)]
@@ -113,20 +153,20 @@ def register_name(name: str) -> str:
     return name.rpartition("_")[0]
 
 
-def typed_text(compiled: Compiled, first: int) -> str:
-    """The module with the class of a program whose first place has the number `first`."""
-    functions = compiled.functions
-    named = list(zip(functions, methods(functions), strict=True))
-    program = _Names(
+def typed_text(part: Part) -> str:
+    """The module with the class of a part."""
+    named = list(zip(part.functions, methods(part.functions), strict=True))
+    names = _Names(
         {each.path: name for each, name in named},
-        {f"_g_{object_name(variable)}": _element(variable.ctype) for variable, _ in compiled.objects},
-        _WATCHED if compiled.options.watch else _METHODS,
+        part.elements,
+        _WATCHED if part.watch else _METHODS,
     )
     written = []
+    first = part.first
     for each, name in named:
-        written.append(_Method(each, name, first, program).text())
+        written.append(_Method(each, name, first, names).text())
         first += len(each.written.places)
-    bound = program.bound
+    bound = names.bound
     declared = [f"    {attribute(name)}: {kind}\n" for name, kind in sorted(bound.items())]
     return "".join([_HEADER, *declared, *_made(bound), *written, f"\nNAMES = frozenset({sorted(bound)!r})\n"])
 
@@ -135,7 +175,7 @@ def _made(bound: Mapping[str, str]) -> Iterator[str]:
     """The method that makes an object of the class.
 
     It gives each attribute a value: mypyc then does not ask whether there is one.  `names` are those that the linker
-    binds to the runtime, `some` is any register that the program uses.
+    binds to the runtime, `some` is any register that the part uses.
     """
     yield "    def __init__(self, names: dict[str, Any], some: Any) -> None:\n"
     if any(name.startswith("_r_") for name in bound):
@@ -152,12 +192,12 @@ def _made(bound: Mapping[str, str]) -> Iterator[str]:
 
 @dataclass(frozen=True, slots=True)
 class _Names:
-    """The names of a program."""
+    """The names of a part."""
 
     #: The path of each function -> its method.
     methods: dict[str, str]
     #: `_g_x` -> the type of its elements.
-    elements: dict[str, str]
+    elements: Mapping[str, str]
     #: `_c_x` -> the method of `Runtime`.
     runtime: dict[str, str]
     #: What the text refers to -> the type of the attribute.
@@ -167,17 +207,21 @@ class _Names:
 class _Method(ast.NodeTransformer):
     """One function as a method."""
 
-    def __init__(self, compiled: CompiledFunction, name: str, first: int, program: _Names) -> None:
+    def __init__(self, compiled: CompiledFunction, name: str, first: int, names: _Names) -> None:
         self._first = first
-        self._bound = program.bound
-        self._runtime = program.runtime
+        self._bound = names.bound
+        self._runtime = names.runtime
         self._function = compiled.function
-        self._results = {name: f.ctype.result for name, f in compiled.written.names.functions.items()}
+        #: The functions of the program that it calls -> the types of their results.
+        self._results = {
+            name: f.ctype.result for name, f in compiled.written.names.functions.items() if not f.extern
+        }  # fmt: skip
         self._name = name
+        #: Those of the same file -> their methods.
         self._methods = {
-            name: program.methods[function.path]
+            name: names.methods[function.path]
             for name, function in compiled.written.names.functions.items()
-            if not function.extern
+            if not function.extern and function.path in names.methods
         }
         (self._tree,) = ast.parse(compiled.written.text).body
         assert isinstance(self._tree, ast.FunctionDef)
@@ -191,8 +235,9 @@ class _Method(ast.NodeTransformer):
             node.id for node in ast.walk(self._tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
         }
         #: The type of the elements of each array, where all have one.
-        self._elements = program.elements | {
-            local_name(variable): _element(variable.ctype) for variable in self._function.locals if variable.in_memory
+        self._elements = {
+            **names.elements,
+            **{local_name(each): _element(each.ctype) for each in self._function.locals if each.in_memory},
         }
         #: The type that a value has where it is written: the C type of locals that may hold None.
         self._unset: dict[str, str] = {}
@@ -255,7 +300,7 @@ class _Method(ast.NodeTransformer):
         return ast.Attribute(_name("self"), attribute(name), node.ctx)
 
     def visit_Call(self, node: ast.Call) -> ast.expr:
-        """A call of a function of the program or of the runtime.  (A name alone, a pointer, is bound as any other.)"""
+        """A call of a function of the file or of the runtime.  (A name alone, a pointer, is bound as any other.)"""
         name = node.func.id if isinstance(node.func, ast.Name) else ""
         access = _OF_A_CELL.get(name.rpartition("_")[2]) if name.startswith("_r_") else None
         if access is not None and not name.startswith(_VECTORS):
@@ -333,7 +378,7 @@ class _Method(ast.NodeTransformer):
         match node:
             case ast.Name(id=name):
                 return (self._unset.get(name) or self._types.get(name)) == "int"
-            case ast.Call(func=ast.Name(id=name)) if name in self._methods:
+            case ast.Call(func=ast.Name(id=name)) if name in self._results:
                 return isinstance(self._results[name], IntType)
         return self._kind(node) == "int"
 
@@ -344,6 +389,8 @@ class _Method(ast.NodeTransformer):
                 return self._unset.get(name, "")
             case ast.Subscript(value=ast.Name(id=name)):
                 return self._elements.get(name, "")
+            case ast.Call(func=ast.Name(id=name)) if name in self._results and name not in self._methods:
+                return _type(self._results[name])
             case ast.IfExp(test=ast.Compare(left=ast.NamedExpr(value=value), ops=[ast.IsNot()])):
                 return self._kind(value)
             case ast.IfExp(body=body, orelse=orelse):

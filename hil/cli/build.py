@@ -39,7 +39,7 @@ def build(
     """Compile the emulator: the same results, about five times as fast.  It needs a C compiler and some minutes.
 
     A build belongs to the sources that it was made from.  When one of them changes, plain Python runs until the next
-    [bold]hil build[/bold].  Firmware that has changed is compiled alone, in less than a minute.
+    [bold]hil build[/bold].  Of firmware, the files that have changed are compiled alone, in some seconds.
 
     [bold]Examples[/bold]
       hil build

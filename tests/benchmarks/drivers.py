@@ -33,7 +33,7 @@ SOURCE: Final = Path(__file__).with_name("drivers_avr.c")
 def emulated(seconds: int) -> float:
     """CPU seconds of this process for a virtual second of the drivers, with every check."""
     board = RobotBoard()
-    firmware = link(board, built=compiled.program)
+    firmware = link(board, built=compiled.part)
     firmware.spi.Init_SPIA()
     firmware.us.Init_US()
     firmware.gyro.Init_GYRO()

@@ -105,59 +105,59 @@ def test_a_build_that_is_not_whole_is_left_alone(tree: Path, damage: str) -> Non
     assert compiled.find_build(store, tree) == ("stale", {})
 
 
-def test_a_program_is_found_beside_the_build_that_it_was_compiled_with(tree: Path) -> None:
+def test_a_part_of_firmware_is_found_beside_the_build_that_it_was_compiled_with(tree: Path) -> None:
     store, sources = store_of(tree), sources_of(tree)
-    one, other = compiled.programs_of(store, sources), compiled.programs_of(store, {**sources, MODULE: "0"})
-    for place, name in ((one, "program_1"), (other, "program_2")):
+    one, other = compiled.parts_of(store, sources), compiled.parts_of(store, {**sources, MODULE: "0"})
+    for place, name in ((one, "part_1"), (other, "part_2")):
         (place / name).mkdir(parents=True)
         (place / name / f"{name}.cpython.so").touch()
     state, files = compiled.find_build(store, tree)
     assert state == "fresh"
     assert files == {
-        MODULE: str(store / "clock.so"), "program_1": str(one / "program_1" / "program_1.cpython.so"),
+        MODULE: str(store / "clock.so"), "part_1": str(one / "part_1" / "part_1.cpython.so"),
     }  # fmt: skip
 
 
 @pytest.fixture
 def small(tree: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
-    """`hil build` in `tree` for programs of these identities: a module of C each, and its library."""
+    """`hil build` in `tree` for parts of firmware of these identities: a module of C each, and its library."""
     setuptools = pytest.importorskip("setuptools", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
     pytest.importorskip("mypyc", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
     if shutil.which(os.environ.get("CC", "cc")) is None:
         pytest.skip("needs a C compiler: apt install gcc")
-    compiled.programs_of(store_of(tree), sources_of(tree)).mkdir()
+    compiled.parts_of(store_of(tree), sources_of(tree)).mkdir()
     build.kept(store_of(tree)).mkdir(parents=True)
     (build.kept(store_of(tree)) / "emulator").touch()
 
-    def translate(_root: Path, target: Path, programs: dict[str, object]) -> list[Any]:
+    def translate(_root: Path, target: Path, parts: dict[str, object]) -> list[Any]:
         assert [file.name for file in target.iterdir()] == ["emulator"]
         extensions = []
-        for program in map(compiled.program_name, programs):
-            for name in (f"{build._group(program)}__mypyc", program):
+        for part in map(compiled.part_name, parts):
+            for name in (f"{build._group(part)}__mypyc", part):
                 source = target / f"{name}.c"
                 source.write_text(f"#include <Python.h>\nPyMODINIT_FUNC PyInit_{name}(void) {{ return NULL; }}\n")
                 extensions.append(setuptools.Extension(name, [str(source)]))
         return [*extensions, setuptools.Extension(MODULE, ["of the build that is there.c"])]
 
     def made(*identities: str, meanwhile: Callable[[], object] = lambda: None) -> int:
-        monkeypatch.setattr(build, "programs", lambda own: dict.fromkeys(identities))
+        monkeypatch.setattr(build, "parts", lambda own, alone: dict.fromkeys(identities))
         monkeypatch.setattr(build, "translate", lambda *of: (meanwhile(), translate(*of))[1])
         return build.build(root=tree, store=store_of(tree))
 
     return made
 
 
-def test_a_program_that_is_missing_is_compiled_alone_and_put_beside_the_others(
+def test_a_part_that_is_missing_is_compiled_alone_and_put_beside_the_others(
     tree: Path, small: Callable[..., int]
 ) -> None:
     assert small("a" * 64) == 1
     _, one = compiled.find_build(store_of(tree), tree)
-    assert set(one) == {MODULE, f"program_{'a' * 16}", f"c2000_program_{'a' * 16}__mypyc"}
+    assert set(one) == {MODULE, f"part_{'a' * 16}", f"c2000_part_{'a' * 16}__mypyc"}
     assert small("b" * 64, "a" * 64) == 1
     state, both = compiled.find_build(store_of(tree), tree)
     assert state == "fresh"
     assert both.items() > one.items()
-    assert set(both) - set(one) == {f"program_{'b' * 16}", f"c2000_program_{'b' * 16}__mypyc"}
+    assert set(both) - set(one) == {f"part_{'b' * 16}", f"c2000_part_{'b' * 16}__mypyc"}
     assert small("a" * 64, "b" * 64, meanwhile=lambda: pytest.fail("it was translated")) == 0
     assert [each.name for each in store_of(tree).parent.iterdir()] == [store_of(tree).name]
 
@@ -165,20 +165,20 @@ def test_a_program_that_is_missing_is_compiled_alone_and_put_beside_the_others(
 def test_what_another_mypyc_has_translated_is_not_used(
     tree: Path, small: Callable[..., int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A program that it makes does not fit the modules of that one: all is compiled anew."""
+    """A part that it makes does not fit the modules of that one: all is compiled anew."""
     monkeypatch.setattr(build, "version", lambda package: f"another {package}")
-    with pytest.raises(FileNotFoundError):  # `small` translates nothing but programs
+    with pytest.raises(FileNotFoundError):  # `small` translates nothing but parts
         small("a" * 64)
-    assert not [*compiled.programs_of(store_of(tree), sources_of(tree)).iterdir()]
+    assert not [*compiled.parts_of(store_of(tree), sources_of(tree)).iterdir()]
 
 
-def test_two_builds_of_a_program_at_once_leave_one(tree: Path, small: Callable[..., int]) -> None:
+def test_two_builds_of_a_part_at_once_leave_one(tree: Path, small: Callable[..., int]) -> None:
     assert small("a" * 64, meanwhile=lambda: small("a" * 64)) == 1
     assert len(compiled.find_build(store_of(tree), tree)[1]) == 3
 
 
 @pytest.mark.parametrize("change", ["a source", "the build"])
-def test_a_program_is_left_out_when_something_has_changed_meanwhile(
+def test_a_part_is_left_out_when_something_has_changed_meanwhile(
     change: str, tree: Path, small: Callable[..., int]
 ) -> None:
     def changed() -> None:
@@ -190,7 +190,7 @@ def test_a_program_is_left_out_when_something_has_changed_meanwhile(
 
     with pytest.raises(build.BuildError, match="run hil build again"):
         small("a" * 64, meanwhile=changed)
-    assert not [*store_of(tree).glob("programs-*/*")]
+    assert not [*store_of(tree).glob("parts-*/*")]
     assert compiled.find_build(store_of(tree), tree) == ("stale", {})
     assert [each.name for each in store_of(tree).parent.iterdir()] == [store_of(tree).name]
 
@@ -232,7 +232,7 @@ def test_without_a_c_compiler_nothing_is_translated_and_the_build_before_stays(
     if sys.platform == "win32":
         pytest.skip("Visual C++ is found without CC")
     monkeypatch.setenv("CC", str(tree / "no-such-compiler"))
-    monkeypatch.setattr(build, "translate", lambda root, target, programs: pytest.fail("it was translated"))
+    monkeypatch.setattr(build, "translate", lambda root, target, parts: pytest.fail("it was translated"))
     with pytest.raises(build.BuildError, match="no-such-compiler") as told:
         build.build(root=tree, store=store_of(tree))
     assert str(told.value).endswith(build.STILL)
@@ -248,7 +248,7 @@ def test_no_compiler_makes_one_operation_of_a_product_and_a_sum(
     setuptools = pytest.importorskip("setuptools", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
     seen: list[tuple[str, list[str]]] = []
 
-    def seen_by(command: Any, _progress: object) -> None:
+    def seen_by(command: Any, _work: Path, _progress: object) -> None:
         seen.extend((command.compiler.compiler_type, each.extra_compile_args) for each in command.extensions)
 
     monkeypatch.setattr(build, "_build_extensions", seen_by)
@@ -360,24 +360,25 @@ def test_every_listed_module_can_be_translated(tmp_path: Path) -> None:
     """Up to C; no compiler is needed.  Fails for what mypyc does not take, in the module's own terms."""
     pytest.importorskip("mypyc.build", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
     pytest.importorskip("setuptools", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
-    programs = build.programs()
-    names = {extension.name for extension in build.translate(compiled.ROOT, tmp_path / "first", programs)}
+    parts = build.parts()
+    names = {extension.name for extension in build.translate(compiled.ROOT, tmp_path / "first", parts)}
     assert {name.removesuffix(".py").replace("/", ".") for name in build.listed()} <= names
-    assert {compiled.program_name(identity) for identity in programs} <= names
+    assert {compiled.part_name(identity) for identity in parts} <= names
 
-    # A further program, with what is kept of that, wherever it lies now: its C alone.
+    # With what is kept of that, wherever it lies now, a part is translated alone, one that was there too.
     there = shutil.copytree(tmp_path / "first", tmp_path / "second")
-    before = {file.name for file in (there / "c").iterdir()}
-    (program, *_) = programs.values()
-    more = {extension.name for extension in build.translate(compiled.ROOT, there, {"f" * 64: program})}
-    name = compiled.program_name("f" * 64)
-    assert {name, f"{build._group(name)}__mypyc"} <= more
-    assert all(name in made for made in {file.name for file in (there / "c").iterdir()} - before)
+    build.reduce(there)
+    identity = next(identity for identity, part in parts.items() if part.functions[0].function.module == "us")
+    extensions = {each.name: each for each in build.translate(compiled.ROOT, there, {identity: parts[identity]})}
+    name = compiled.part_name(identity)
+    sources = {Path(file).name for file in extensions[f"{build._group(name)}__mypyc"].sources}
+    assert {f"__native_{name}.c", f"__native_{build._group(name)}.c"} < sources
+    assert {file.name for file in (there / "c").glob("__native*.c")} < sources
     # What it has, and whose methods it calls, is known when it is compiled.
     written = (there / "c" / f"__native_{name}.c").read_text("utf-8")
     assert "Clock___run_due(" in written
     assert "CPY_GET_METHOD" not in written
-    assert '"Program", "_c_clock"' not in written
+    assert '"Part", "_c_clock"' not in written
 
 
 @pytest.mark.skipif(compiled.MODE != "compiled", reason="needs `hil build` (extra speed)")
@@ -396,8 +397,8 @@ def test_both_ways_give_the_same_bytes_and_the_same_findings(more: tuple[str, ..
 def test_a_robot_whose_functions_are_methods_drives_alike(
     fixes: tuple[str, ...], watch: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def driven(program: Callable[[str], Any]) -> tuple[Any, ...]:
-        monkeypatch.setattr(compiled, "program", program)
+    def driven(part: Callable[[str], Any]) -> tuple[Any, ...]:
+        monkeypatch.setattr(compiled, "part", part)
         bench = Bench("room", fixes=fixes, watch=watch)
         bench.boot()
         bench.feed("#MISN\r")
@@ -409,10 +410,9 @@ def test_a_robot_whose_functions_are_methods_drives_alike(
         return type(bench.firmware.linked.namespace), (bench.uart_sha256, bench.trace_sha256, told)
 
     told_as: list[str] = []
-    program = link(RobotBoard(), fixes=fixes, watch=watch).linked
-    text = as_methods.module(program.compiled, program.first)
+    texts = as_methods.modules(link(RobotBoard(), fixes=fixes, watch=watch).linked.parts)
     functions, one = driven(lambda _identity: None)
-    methods, other = driven({program.identity: text}.get)
+    methods, other = driven(texts.get)
     assert functions is dict
     assert methods is not dict
     assert one == other
@@ -422,9 +422,9 @@ def test_a_robot_whose_functions_are_methods_drives_alike(
 def test_an_interrupt_at_every_charge_finds_functions_and_methods_alike() -> None:
     """`Read_Distance`, interrupted after each 15 cycles more (no step is shorter); the routine changes what it uses."""
 
-    def distances(program: Callable[[str], Any]) -> tuple[Any, ...]:
+    def distances(part: Callable[[str], Any]) -> tuple[Any, ...]:
         board = RobotBoard()
-        firmware = link(board, built=program)
+        firmware = link(board, built=part)
         cpu, clock, findings = board.cpu, board.clock, firmware.linked.runtime.findings
         firmware.us.Init_US()
 
@@ -448,13 +448,12 @@ def test_an_interrupt_at_every_charge_finds_functions_and_methods_alike() -> Non
         told = [(f.rule, f.place, f.message, f.count) for f in findings]
         return type(firmware.linked.namespace), (results, interrupted, told)
 
-    program = link(RobotBoard()).linked
-    text = as_methods.module(program.compiled, program.first)
+    texts = as_methods.modules(link(RobotBoard()).linked.parts)
     functions, one = distances(lambda _identity: None)
-    methods, other = distances({program.identity: text}.get)
+    methods, other = distances(texts.get)
     assert functions is dict
     assert methods is not dict
-    assert one == other == distances(compiled.program)[1]  # the last is the compiled program, where there is a build
+    assert one == other == distances(compiled.part)[1]  # the last is the compiled program, where there is a build
     results, interrupted, told = one
     assert {"Read_Distance", "Read_Channel"} <= {path[0].function for _, path in interrupted if path}
     assert {0.0, 1.0} <= {shift for _, _, shift in results}
@@ -463,48 +462,74 @@ def test_an_interrupt_at_every_charge_finds_functions_and_methods_alike() -> Non
 
 
 def test_a_debugger_finds_the_firmware_interpreted(monkeypatch: pytest.MonkeyPatch) -> None:
-    name = compiled.program_name("0123456789abcdef0")
+    name = compiled.part_name("0123456789abcdef0")
     monkeypatch.setattr(sys, "meta_path", [compiled.Finder({name: "firmware.so"}), *sys.meta_path])
     monkeypatch.setitem(sys.modules, name, module := ModuleType(name))
     monkeypatch.delitem(sys.modules, "pydevd", raising=False)
     if sys.gettrace() is None:
-        assert compiled.program("0123456789abcdef0") is module
+        assert compiled.part("0123456789abcdef0") is module
     monkeypatch.setitem(sys.modules, "pydevd", ModuleType("pydevd"))
-    assert compiled.program("0123456789abcdef0") is None
+    assert compiled.part("0123456789abcdef0") is None
 
 
-def test_files_are_compiled_side_by_side_each_once_and_linked_in_their_order() -> None:
-    class Compiler:
-        def __init__(self) -> None:
-            self.options: dict[str, list[str]] = {}
+class Compiler:
+    """A compiler that writes down what it compiles, and with which options."""
 
-        def compile(self, sources: list[str], *, output_dir: str, extra_postargs: list[str]) -> list[str]:
-            (source,) = sources
-            assert source not in self.options
-            self.options[source] = extra_postargs
-            if source == "bad.c":
-                raise OSError("bad.c")
-            return [f"{output_dir}/{source}.o"]
+    def __init__(self) -> None:
+        self.options: dict[str, list[str]] = {}
 
-    class Command:
-        def __init__(self, *extensions: list[str]) -> None:
-            self.compiler = Compiler()
-            self.extensions = [SimpleNamespace(sources=sources) for sources in extensions]
-            self.linked: list[list[str]] = []
+    def object_filenames(self, sources: list[str], *, output_dir: str) -> list[str]:
+        return [f"{output_dir}/{Path(source).name}.o" for source in sources]
 
-        def build_extension(self, extension: SimpleNamespace) -> None:
-            made = self.compiler.compile(extension.sources, output_dir="objects", extra_postargs=["-O2"])
-            self.linked.append(made)
+    def compile(self, sources: list[str], *, output_dir: str, extra_postargs: list[str]) -> list[str]:
+        (source,) = sources
+        assert source not in self.options
+        self.options[source] = extra_postargs
+        if source.endswith("bad.c"):
+            raise OSError("bad.c")
+        (made,) = self.object_filenames(sources, output_dir=output_dir)
+        Path(made).parent.mkdir(parents=True, exist_ok=True)
+        Path(made).touch()
+        return [made]
 
-    names = [f"{number}.c" for number in range(8)]
-    program, told = f"{build.PROGRAM_C}1.c", list[float]()
-    command = Command(names, [program, *names])
+
+class Command:
+    """As setuptools' `build_ext`: makes each extension of its sources."""
+
+    def __init__(self, objects: Path, *extensions: list[str]) -> None:
+        self.compiler = Compiler()
+        self.extensions = [SimpleNamespace(sources=sources) for sources in extensions]
+        self.linked: list[list[str]] = []
+        self._objects = str(objects)
+
+    def build_extension(self, extension: SimpleNamespace) -> None:
+        made = self.compiler.compile(extension.sources, output_dir=self._objects, extra_postargs=["-O2"])
+        self.linked.append(made)
+
+
+def test_files_are_compiled_side_by_side_each_once_and_linked_in_their_order(tmp_path: Path) -> None:
+    names = [str(tmp_path / f"{number}.c") for number in range(8)]
+    part, told = str(tmp_path / f"{build.PART_C}1.c"), list[float]()
+    objects = tmp_path / "objects"
+    command = Command(objects, names, [part, *names])
     compiler = command.compiler
-    fast = {name: ["-O2"] for name in names} | {program: ["-O2", *build.PROGRAM_FLAGS]}
-    build._build_extensions(command, told.append)
-    objects = [f"objects/{name}.o" for name in names]
-    assert sorted(command.linked, key=len) == [objects, [f"objects/{program}.o", *objects]]
-    assert compiler.options == fast
+    build._build_extensions(command, tmp_path, told.append)
+    made = [str(objects / f"{Path(name).name}.o") for name in (part, *names)]
+    assert sorted(command.linked, key=len) == [made[1:], made]
+    assert compiler.options == {name: ["-O2"] for name in names} | {part: ["-O2", *build.PART_FLAGS]}
     assert told == pytest.approx([number / 9 for number in range(1, 10)])
     with pytest.raises(OSError, match=r"bad\.c"):
-        build._build_extensions(Command([*names, "bad.c"], [program]), told.append)
+        build._build_extensions(Command(objects, [*names, str(tmp_path / "bad.c")], [part]), tmp_path, told.append)
+
+
+def test_what_every_library_contains_is_compiled_once_and_kept(tmp_path: Path) -> None:
+    """The C files of mypyc, which are not those of this build."""
+    library, work, objects = str(tmp_path / "mypyc" / "int_ops.c"), tmp_path / "work", tmp_path / "work" / "objects"
+    compiled_then, linked = [], []
+    for number in range(2):
+        command = Command(objects, [str(work / f"{number}.c"), library])
+        build._build_extensions(command, work, lambda fraction: None)
+        compiled_then.append({Path(source).name for source in command.compiler.options})
+        linked.append(command.linked[0][1])
+    assert compiled_then == [{"0.c", "int_ops.c"}, {"1.c"}]
+    assert linked == [str(build.kept(work) / build.OBJECTS / "int_ops.c.o")] * 2

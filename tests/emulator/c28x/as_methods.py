@@ -1,4 +1,4 @@
-"""Runs tests with the typed text of each program (`typed_text.py`) in place of its functions, interpreted.
+"""Runs tests with the typed text of each part of a program (`typed_text.py`) in place of its functions, interpreted.
 
     python -m pytest -p tests.emulator.c28x.as_methods tests/emulator/c28x
 
@@ -9,6 +9,7 @@ does.
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterable
 from importlib import import_module
 from types import ModuleType
 from typing import Any, Final
@@ -18,7 +19,7 @@ import pytest
 from emulator.c28x.compiled_program import Compiled
 from emulator.c28x.link import Linked
 from emulator.c28x.runtime import Runtime
-from emulator.c28x.typed_text import typed_text
+from emulator.c28x.typed_text import Part, parts, typed_text
 
 _KINDS: Final[dict[str, tuple[type, ...]]] = {"int": (int,), "float": (float,)}
 
@@ -68,11 +69,15 @@ def _held(kind: str, value: Any) -> Any:
     return value
 
 
-def module(compiled: Compiled, first: int) -> ModuleType:
-    """The typed text of a program, as a module, each value held to its type."""
-    made = ModuleType("program")
+def modules(program: Iterable[Part]) -> dict[str, ModuleType]:
+    """The typed text of each part of a program, by its identity, as a module, each value held to its type."""
+    return {part.identity: _module(part) for part in program}
+
+
+def _module(part: Part) -> ModuleType:
+    made = ModuleType("part")
     made.__dict__["_held"] = _held
-    tree = _Holding().visit(ast.parse(typed_text(compiled, first)))
+    tree = _Holding().visit(ast.parse(typed_text(part)))
     exec(compile(ast.fix_missing_locations(tree), "<typed text>", "exec"), made.__dict__)
     return made
 
@@ -81,8 +86,8 @@ class AsMethods(Linked):
     """A linked program whose functions are methods, whatever it was compiled for."""
 
     def __init__(self, compiled: Compiled, runtime: Runtime, **options: Any) -> None:
-        first = len(runtime.findings.places)
-        super().__init__(compiled, runtime, **{**options, "built": lambda identity: module(compiled, first)})
+        built = modules(parts(compiled, len(runtime.findings.places)))
+        super().__init__(compiled, runtime, **{**options, "built": built.get})
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -5,15 +5,20 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from emulator import image
 from emulator.c28x.memory import Object
-from emulator.c28x.typed_text import identity, methods, typed_text
+from emulator.c28x.sites import FILE_STEP
+from emulator.c28x.typed_text import Part, methods, parts, typed_text
 from emulator.c28x.watcher import CallingWatcher
+from emulator.image import Firmware
+from emulator.system import System
 from tests.emulator.c28x import linking
 from tests.emulator.c28x.as_methods import AsMethods
 from tests.emulator.c28x.workshop import Workshop
@@ -115,19 +120,37 @@ def test_a_function_that_others_call_directly_cannot_be_replaced() -> None:
     assert methods.add(1, 2) == 3
 
 
-def test_a_program_is_known_by_its_text_and_its_first_place() -> None:
-    one, other = Workshop(SOURCE).linked, Workshop(SOURCE.replace("1.5", "1.25")).linked
-    assert one.identity == Workshop(SOURCE).linked.identity != other.identity
-    assert identity(one.compiled, one.first) != identity(one.compiled, one.first + 1)
+def part(source: str, **options: Any) -> Part:
+    """The only part of a program of one file."""
+    (only,) = Workshop(source, **options).linked.parts
+    return only
+
+
+def test_a_part_is_known_by_its_text_its_first_place_and_whether_it_is_watched() -> None:
+    linked = Workshop(SOURCE).linked
+    (one,) = linked.parts
+    assert one.identity == part(SOURCE).identity
+    (later,) = parts(linked.compiled, one.end)
+    different = [part(SOURCE.replace("1.5", "1.25")), part(SOURCE, watch=True), later]
+    assert len({one.identity, *(other.identity for other in different)}) == 4
+
+
+def test_the_places_of_a_file_keep_their_numbers_when_another_one_grows() -> None:
+    linked = Workshop(SOURCE).linked
+    (one,) = linked.parts
+    assert (one.first, one.end) == (1, 1 + sum(len(each.written.places) for each in linked.compiled.functions))
+    assert one.end < FILE_STEP
+    for free in range(2, FILE_STEP + 2):
+        assert [other.first for other in parts(linked.compiled, free)] == [1 + FILE_STEP]
 
 
 @pytest.mark.parametrize("other", ["float32", "int32", "ptr[int16]"])
-def test_a_program_is_known_by_the_types_of_its_variables_too(other: str) -> None:
+def test_a_part_is_known_by_the_types_of_its_variables_too(other: str) -> None:
     """Its text does not show them, and its methods have them."""
     source = "def same(x: T) -> T:\n    y: T = x\n    return y\n"
     one, another = (Workshop(source.replace("T", t)).linked for t in ("int16", other))
     assert one.sources == another.sources
-    assert one.identity != another.identity
+    assert one.parts[0].identity != another.parts[0].identity
 
 
 #: Accesses to a global, to an element, and through a pointer.
@@ -164,16 +187,15 @@ def test_a_program_is_known_by_whether_it_is_watched() -> None:
     source = "def first(t: ptr[int16]) -> int16:\n    return t[0]\n"
     plain, watched = (Workshop(source, watch=watch).linked for watch in (False, True))
     assert plain.sources == watched.sources
-    assert plain.identity != watched.identity
+    assert plain.parts[0].identity != watched.parts[0].identity
 
 
 def test_variables_of_c_have_types_and_what_may_be_unwritten_has_none() -> None:
-    linked = Workshop(SOURCE).linked
-    tree = ast.parse(typed_text(linked.compiled, linked.first))
-    (program,) = (node for node in tree.body if isinstance(node, ast.ClassDef))
-    method = {node.name: ast.unparse(node) for node in program.body if isinstance(node, ast.FunctionDef)}
-    assert list(method) == ["__init__", *methods(linked.compiled.functions)]
-    assert methods(linked.compiled.functions) == ["add", "scaled", "fill", "chosen"]
+    tree = ast.parse(typed_text(part(SOURCE)))
+    (made,) = (node for node in tree.body if isinstance(node, ast.ClassDef))
+    method = {node.name: ast.unparse(node) for node in made.body if isinstance(node, ast.FunctionDef)}
+    assert list(method) == ["__init__", *methods(part(SOURCE).functions)]
+    assert methods(part(SOURCE).functions) == ["add", "scaled", "fill", "chosen"]
     assert method["scaled"].startswith("def scaled(self, x: float, n: int) -> float:")
     assert "last: Any" in method["fill"]
     assert "i: int" in method["fill"]
@@ -183,3 +205,24 @@ def test_variables_of_c_have_types_and_what_may_be_unwritten_has_none() -> None:
 def test_a_program_without_functions_is_a_program() -> None:
     with as_methods():
         assert Workshop("limit: int16 = 7\n").value("limit") == 7
+
+
+def test_a_file_that_changes_leaves_what_is_compiled_of_the_others(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It calls functions of other files as they are by then."""
+    one, other = tmp_path / "one.c", tmp_path / "other.c"
+    other.write_text("float half(int x);\nint quarter(int x) { return (int)(half((int)half(x)) + 0.0f); }\n")
+
+    def linked(statement: str) -> Firmware:
+        one.write_text(f"float half(int x) {{ {statement} return x / 2.0f; }}\n")
+        return image.link(System(), [str(one), str(other)])
+
+    monkeypatch.setattr(image, "Linked", AsMethods)
+    before, after = linked(""), linked("x += 4;")
+    assert [p.functions[0].path for p in before.linked.parts] == ["one.half", "other.quarter"]
+    changed, same = zip(before.linked.parts, after.linked.parts, strict=True)
+    assert changed[0].identity != changed[1].identity
+    assert same[0].identity == same[1].identity
+    assert "cast(float, self._f_half(" in typed_text(same[0])
+    assert (before.other.quarter(20), after.other.quarter(20)) == (5, 8)

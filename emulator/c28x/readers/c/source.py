@@ -175,7 +175,8 @@ class CFiles:
             if not names:
                 return
             asked |= names
-            known = (name for name in names if _module_of_emulator(name) is None and headers.definitions(name) is None)
+            # Sorted: a library reads the module that defines a name, and modules are linked in the order they are read.
+            known = [n for n in sorted(names) if _module_of_emulator(n) is None and headers.definitions(n) is None]
             files = {self._neighbours.file(name) for name in known if self.libraries(name) is None}
             for path in sorted(path for path in files if path is not None):
                 self.bring(path)

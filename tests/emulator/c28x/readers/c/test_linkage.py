@@ -41,6 +41,16 @@ long f(void)
     assert list(shop.findings) == []
 
 
+def test_a_library_is_asked_in_one_order_in_every_process() -> None:
+    """It reads the module of each name then, and modules have their objects in the order they are read."""
+    names = [f"part_{letter}" for letter in "hcafgebd"]
+    asked: list[str] = []
+    calls = " + ".join(f"{name}()" for name in names)
+    text = "".join(f"int {name}(void);\n" for name in names) + f"int f(void) {{ return {calls}; }}\n"
+    read({"drv.c": text}, library=asked.append).translate()
+    assert asked[: len(names)] == sorted(names)
+
+
 def test_a_function_of_ones_own_may_be_called_like_one_of_the_kernel() -> None:
     text = "int Queue_Depth(int of);\nint f(void) { return Queue_Depth(2); }\n"
     assert CWorkshop(text, externs={"Queue_Depth": lambda of: of + 5}).call("f") == 7
