@@ -25,7 +25,7 @@ from threading import Lock
 from typing import Any, Final
 
 from emulator.c28x.symbols import Module
-from emulator.c28x.typed_text import Part, typed_text
+from emulator.c28x.typed_text import ProgramPart, typed_text
 from emulator.compiled import MANIFEST, ROOT, STORE, digest, find_build, part_name, parts_of
 from firmware_model.corrections import ALL
 from firmware_model.image import link
@@ -166,7 +166,7 @@ def _from(root: Path, file: str) -> str:
     return Path(file).relative_to(root).as_posix() if Path(file).is_relative_to(root) else file
 
 
-def parts(own: Iterable[Path] = (), *, alone: bool = False) -> dict[str, Part]:
+def parts(own: Iterable[Path] = (), *, alone: bool = False) -> dict[str, ProgramPart]:
     """What is compiled of the robot's programs, by its identity: many programs share a part.
 
     The programs are its firmware with the C files `own`, if there are any, and unless that one is meant `alone`, its
@@ -185,7 +185,7 @@ def parts(own: Iterable[Path] = (), *, alone: bool = False) -> dict[str, Part]:
     return {part.identity: part for each in linked for part in each.parts}
 
 
-def translate(root: Path, target: Path, parts: Mapping[str, Part]) -> list[Any]:
+def translate(root: Path, target: Path, parts: Mapping[str, ProgramPart]) -> list[Any]:
     """C for the listed modules and for parts of firmware, in `target`, as extensions that setuptools can build.
 
     What mypyc finds translated in `target` it does not translate again.

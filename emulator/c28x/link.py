@@ -57,7 +57,7 @@ from emulator.c28x.tree import (
     Variable,
     Where,
 )  # fmt: skip
-from emulator.c28x.typed_text import Part, attribute, methods, parts, register_name
+from emulator.c28x.typed_text import ProgramPart, attribute, methods, parts, register_name
 from emulator.c28x.watcher import Watcher
 from emulator.clock import NEVER
 
@@ -104,7 +104,7 @@ class Linked:
         modules = self._modules(built) if built is not None and not self.replaced else []
         #: For each part the object whose methods its functions are; none: all functions are interpreted.
         self._owners = [
-            module.Part(self.namespace, self._some_register(part))
+            module.ProgramPart(self.namespace, self._some_register(part))
             for module, part in zip(modules, self.parts, strict=False)
         ]  # fmt: skip
         for variable, _ in compiled.objects:
@@ -175,7 +175,7 @@ class Linked:
             modules.append(module)
         return modules
 
-    def _some_register(self, part: Part) -> Any:
+    def _some_register(self, part: ProgramPart) -> Any:
         """Any register that the functions of a part use, or None if they use none."""
         used = (name for function in part.functions for name in function.written.names.registers.values())
         block, register, _ = next(used, ("", "", ""))

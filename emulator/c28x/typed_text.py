@@ -29,7 +29,7 @@ from emulator.c28x.runtime import Runtime
 from emulator.c28x.sites import first_of_file
 
 #: The class with the functions of a file.
-CLASS: Final = "Part"
+CLASS: Final = "ProgramPart"
 #: The writer has `_c_touch(...) or value`: the call gives None.
 _HEADER: Final = f'''"""The functions of a source file, written by `hil build`."""
 # mypy: disable-error-code="func-returns-value"
@@ -84,7 +84,7 @@ _NUMBERS: Final = ("int", "float")
 
 
 @dataclass(frozen=True)
-class Part:
+class ProgramPart:
     """The functions of one C file, or of a program in Python, which are compiled together."""
 
     functions: Sequence[CompiledFunction]
@@ -113,16 +113,16 @@ class Part:
         return self.first + sum(len(each.written.places) for each in self.functions)
 
 
-def parts(compiled: Compiled, free: int) -> list[Part]:
+def parts(compiled: Compiled, free: int) -> list[ProgramPart]:
     """The parts of a program, in the order of its functions; `free` is the first number that no place has.
 
     C has a part a file.  Python has one for all: nobody waits for it but with the whole build, and calls within a part
     are the fastest.
     """
     elements = {f"_g_{object_name(variable)}": _element(variable.ctype) for variable, _ in compiled.objects}
-    found: list[Part] = []
+    found: list[ProgramPart] = []
     for _, functions in groupby(compiled.functions, _of_part):
-        found.append(Part([*functions], first_of_file(free), compiled.options.watch, elements))
+        found.append(ProgramPart([*functions], first_of_file(free), compiled.options.watch, elements))
         free = found[-1].end
     return found
 
@@ -153,7 +153,7 @@ def register_name(name: str) -> str:
     return name.rpartition("_")[0]
 
 
-def typed_text(part: Part) -> str:
+def typed_text(part: ProgramPart) -> str:
     """The module with the class of a part."""
     named = list(zip(part.functions, methods(part.functions), strict=True))
     names = _Names(

@@ -378,7 +378,7 @@ def test_every_listed_module_can_be_translated(tmp_path: Path) -> None:
     written = (there / "c" / f"__native_{name}.c").read_text("utf-8")
     assert "Clock___run_due(" in written
     assert "CPY_GET_METHOD" not in written
-    assert '"Part", "_c_clock"' not in written
+    assert '"ProgramPart", "_c_clock"' not in written
 
 
 @pytest.mark.skipif(compiled.MODE != "compiled", reason="needs `hil build` (extra speed)")

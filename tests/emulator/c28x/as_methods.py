@@ -19,7 +19,7 @@ import pytest
 from emulator.c28x.compiled_program import Compiled
 from emulator.c28x.link import Linked
 from emulator.c28x.runtime import Runtime
-from emulator.c28x.typed_text import Part, parts, typed_text
+from emulator.c28x.typed_text import ProgramPart, parts, typed_text
 
 _KINDS: Final[dict[str, tuple[type, ...]]] = {"int": (int,), "float": (float,)}
 
@@ -69,12 +69,12 @@ def _held(kind: str, value: Any) -> Any:
     return value
 
 
-def modules(program: Iterable[Part]) -> dict[str, ModuleType]:
+def modules(program: Iterable[ProgramPart]) -> dict[str, ModuleType]:
     """The typed text of each part of a program, by its identity, as a module, each value held to its type."""
     return {part.identity: _module(part) for part in program}
 
 
-def _module(part: Part) -> ModuleType:
+def _module(part: ProgramPart) -> ModuleType:
     made = ModuleType("part")
     made.__dict__["_held"] = _held
     tree = _Holding().visit(ast.parse(typed_text(part)))

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from emulator import image
 from emulator.c28x.memory import Object
 from emulator.c28x.sites import FILE_STEP
-from emulator.c28x.typed_text import Part, methods, parts, typed_text
+from emulator.c28x.typed_text import ProgramPart, methods, parts, typed_text
 from emulator.c28x.watcher import CallingWatcher
 from emulator.image import Firmware
 from emulator.system import System
@@ -120,7 +120,7 @@ def test_a_function_that_others_call_directly_cannot_be_replaced() -> None:
     assert methods.add(1, 2) == 3
 
 
-def part(source: str, **options: Any) -> Part:
+def part(source: str, **options: Any) -> ProgramPart:
     """The only part of a program of one file."""
     (only,) = Workshop(source, **options).linked.parts
     return only
