@@ -3,7 +3,7 @@
 `hil build` compiles the modules that take most of the time into extension modules, and with them the robot's firmware
 (`part`).  Names and results are the same, at about five times the speed.  They lie in a folder of their own.  A
 manifest there names every source that they may depend on, with its SHA-256.  If one source differs, the whole build is
-ignored: so the program always runs the sources as they are.  What is compiled of a source file of firmware, a part, has
+ignored: so the program always runs the sources as they are.  What is compiled of a part of firmware has
 a folder of its own, in one that is named after those sources: a part that was compiled with others is never found.
 `HIL_PURE=1` ignores the build too.
 """

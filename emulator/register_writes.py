@@ -48,7 +48,7 @@ from emulator.chip import ECAP_INPUT, XINT_INPUT
 from emulator.peripherals.dma import CHANNELS, CHINTE, CONTINUOUS, ONESHOT, PERINTE, RUN
 from emulator.registers.cell import Cell
 from emulator.registers.core import Block
-from emulator.registers_by_address import ByAddress, Known, NumberedAccess, Values
+from emulator.registers_by_address import AddressedAccess, ByAddress, Known, Values
 
 #: Bits of TCR.
 TSS: Final = 1 << 4
@@ -299,7 +299,7 @@ class RegisterWrites:
             found += [block for block in named if block not in found]
         return found or None
 
-    def _read_by_address(self, accesses: Iterable[NumberedAccess], register_blocks: Iterable[Block]) -> None:
+    def _read_by_address(self, accesses: Iterable[AddressedAccess], register_blocks: Iterable[Block]) -> None:
         #: Word address -> the register there, and by how many bits the word stands up in it.
         at: dict[int, tuple[Cell, int]] = {}
         spans: dict[Block, range] = {}
@@ -332,7 +332,7 @@ class RegisterWrites:
                 self.anywhere.append(unknown)
 
     def _words(
-        self, access: NumberedAccess, base: int, at: dict[int, tuple[Cell, int]]
+        self, access: AddressedAccess, base: int, at: dict[int, tuple[Cell, int]]
     ) -> Iterator[tuple[Cell, int]]:  # fmt: skip
         """The registers that an access reaches if its address is one from `base`, and where its word 0 is in each."""
         for n in range(access.words):

@@ -62,7 +62,7 @@ _TURNS: Final = 16
 
 
 @dataclass(frozen=True, slots=True)
-class NumberedAccess:
+class AddressedAccess:
     """An access to `words` words at `address`.  A write has a mask and values, as `Write` has.
 
     If not `exact`, something unknown is added to the address, which may be one in a block, an offset, or 0.  A sum that
@@ -80,8 +80,8 @@ class NumberedAccess:
     register: tuple[str, str] | None = None
 
 
-#: NumberedAccesses of a function, each with the numbers of the parameters that its address depends on.
-NumberedAccesses = list[tuple[NumberedAccess, frozenset[int]]]
+#: AddressedAccesses of a function, each with the numbers of the parameters that its address depends on.
+AddressedAccesses = list[tuple[AddressedAccess, frozenset[int]]]
 #: What is known of an address: the sums that it can be, and whether that is all of it.  A local that a loop changes can
 #: be any address; an argument or a member that is not known is taken to be that of a block.
 Sums = tuple[frozenset[int], bool]
@@ -109,14 +109,14 @@ class ByAddress:
         self._library = library
         self._evaluation = evaluation
         #: Function -> arguments -> its accesses.
-        self._followed: dict[str, dict[tuple[Values, ...], NumberedAccesses]] = {}
+        self._followed: dict[str, dict[tuple[Values, ...], AddressedAccesses]] = {}
 
-    def accesses(self, entries: Iterable[Function]) -> list[NumberedAccess]:
+    def accesses(self, entries: Iterable[Function]) -> list[AddressedAccess]:
         """The accesses of these functions and of all that they call, in the order of the statements."""
         found = (self._follow(f, (None,) * len(f.parameters), 0) for f in entries)
         return list(dict.fromkeys(access for accesses in found for access, _ in accesses))
 
-    def _follow(self, f: Function, arguments: tuple[Values, ...], depth: int) -> NumberedAccesses:
+    def _follow(self, f: Function, arguments: tuple[Values, ...], depth: int) -> AddressedAccesses:
         followed = self._followed.setdefault(f.path, {})
         if len(followed) >= _MOST or depth > _DEEPEST:
             arguments = (None,) * len(f.parameters)
@@ -128,7 +128,7 @@ class ByAddress:
             followed[arguments] = call.accesses
         return followed[arguments]
 
-    def _called(self, f: Function, arguments: tuple[Values, ...], depth: int) -> NumberedAccesses:
+    def _called(self, f: Function, arguments: tuple[Values, ...], depth: int) -> AddressedAccesses:
         """The accesses of a function that the program calls; none if it is not one of its own."""
         own = self._functions.get(f.path)
         return [] if own is None else self._follow(own, arguments[: len(own.parameters)], depth)
@@ -139,7 +139,7 @@ class _FollowedCall:
 
     def __init__(
         self, f: Function, arguments: tuple[Values, ...], evaluation: Evaluation,
-        follow: Callable[[Function, tuple[Values, ...]], NumberedAccesses], library: Set[str],
+        follow: Callable[[Function, tuple[Values, ...]], AddressedAccesses], library: Set[str],
     ) -> None:  # fmt: skip
         self._f = f
         self._library = library
@@ -152,7 +152,7 @@ class _FollowedCall:
         self._numbers: set[Variable] = set()
         #: What was last assigned to a local, as far as it is known.
         self._sum_of: dict[Variable, Sums] = {}
-        self.accesses: NumberedAccesses = []
+        self.accesses: AddressedAccesses = []
         self._walk(f.body)
 
     def _values(self, e: Expr) -> Values:
@@ -265,7 +265,7 @@ class _FollowedCall:
                 self._access(target, s.where, s)
             case Assign(target=RegisterRef() as target) if self._f.path in self._library:
                 place, named = self._evaluation.place(self._f, s.where), (target.block, target.register)
-                access = NumberedAccess(True, 0, 1, place, True, *self._evaluation.bits(s, self._known), named)
+                access = AddressedAccess(True, 0, 1, place, True, *self._evaluation.bits(s, self._known), named)
                 self.accesses.append((access, frozenset()))
 
     def _call(self, call: Call, where: Where) -> None:
@@ -289,7 +289,7 @@ class _FollowedCall:
         for number in sorted(address[0]) or [0]:
             # An access to 32 bits ignores bit 0 of its address (SPRU430).
             first = (number + lvalue.words) & (~1 if words > 1 else -1)
-            self.accesses.append((NumberedAccess(s is not None, first, words, place, address[1], *written), depends))
+            self.accesses.append((AddressedAccess(s is not None, first, words, place, address[1], *written), depends))
 
     def _is_number(self, pointer: Expr) -> bool:
         """Whether the value of a pointer was computed as an integer."""

@@ -1,9 +1,11 @@
-"""The typed text of a program: the functions of each source file as methods of one class, for mypyc (`hil build`).
+"""The typed text of a program: the functions of each C file, or all of a program in Python, as methods of one class.
+
+`hil build` gives it to mypyc.
 
 The methods are the functions that `python.py` wrote, statement by statement: every charge, check and place is the same.
 What is added are types, which let mypyc do without objects and look-ups by name.  C's integers are `int`, its floats
-`float`.  Functions of the same file and of `Runtime` are called as methods.  A register that is only looked at, or
-stored in place, is the `Cell` itself.  Every other name that the linker binds, those of functions in other files too,
+`float`.  Functions of the same part and of `Runtime` are called as methods.  A register that is only looked at, or
+stored in place, is the `Cell` itself.  Every other name that the linker binds, those of functions in other parts too,
 is an attribute of the class: so what is compiled of a file stays when another file changes.  What a type does
 not fit (a value that may never have been written, an element of an array, a pointer) stays `Any`; where it is computed
 with, it has been written, and its type is stated.
@@ -31,7 +33,7 @@ from emulator.c28x.sites import first_of_file
 #: The class with the functions of a file.
 CLASS: Final = "ProgramPart"
 #: The writer has `_c_touch(...) or value`: the call gives None.
-_HEADER: Final = f'''"""The functions of a source file, written by `hil build`."""
+_HEADER: Final = f'''"""The functions of a part of a program, written by `hil build`."""
 # mypy: disable-error-code="func-returns-value"
 from __future__ import annotations
 from collections.abc import Callable
