@@ -47,7 +47,7 @@ def _shown(script: Script, look: Callable[[Bench, Desk], Evidence], fixes: Fixes
     variant = Variant.of(fixes)
     corrected = IDS if ALL in variant else variant.fixes & IDS
     # Only the behaviour of the console is measured, so the firmware is not watched.
-    with robot(replace(variant, fixes=variant.fixes - IDS), watch=False, static=False) as bench:
+    with robot(replace(variant, fixes=variant.fixes - IDS), watch=False) as bench:
         return look(bench, run_console(bench, script, corrected))
 
 

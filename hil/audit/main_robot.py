@@ -9,7 +9,7 @@ from typing import Any, Final
 from emulator.clock import SYSCLK_HZ
 from hil.audit import main_robot_guards, main_robot_navigation
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
-from hil.audit.rig import Fixes, robot
+from hil.audit.rig import Fixes, Rig, robot
 from hil.audit.task_rig import TaskRig
 
 PRESSED, FREE = 0, 1
@@ -19,7 +19,7 @@ def clock_before_task(fixes: Fixes) -> Evidence:
     """Count the releases that wait for TaskGYRO and TaskODO while Init_GYRO takes its two seconds."""
     times: list[float] = []
     waiting: dict[str, list[int]] = {"TaskGYRO": [], "TaskODO": []}
-    with robot(fixes, boot=False, static=False) as bench:
+    with robot(fixes, boot=False) as bench:
 
         def look(_share: float) -> None:
             times.append(bench.clock.now / SYSCLK_HZ)
@@ -35,7 +35,7 @@ def clock_before_task(fixes: Fixes) -> Evidence:
 
 def us_period(fixes: Fixes) -> Evidence:
     """Let the robot read the sonars for three seconds."""
-    with robot(fixes, watch=False, static=False) as bench:
+    with robot(fixes, watch=False) as bench:
         bench.findings.clear()
         bench.run_for(3.0)
         return reported(bench.findings, "stale-sample", object="sonar")
@@ -43,7 +43,7 @@ def us_period(fixes: Fixes) -> Evidence:
 
 def gyro_period(fixes: Fixes) -> Evidence:
     """Let the robot read the gyro for three seconds, after the releases of start-up are done."""
-    with robot(fixes, watch=False, static=False) as bench:
+    with robot(fixes, watch=False) as bench:
         bench.run_for(1.0)
         bench.findings.clear()
         bench.run_for(3.0)
@@ -52,13 +52,13 @@ def gyro_period(fixes: Fixes) -> Evidence:
 
 def us_first_read(fixes: Fixes) -> Evidence:
     """Read the first distances after power-up."""
-    with robot(fixes, watch=False, static=False) as bench:
+    with robot(fixes, watch=False) as bench:
         return reported(bench.findings, "startup-read", object="sonar")
 
 
 def calib_task(fixes: Fixes) -> Evidence:
     """Run the last period of the five seconds of CALIBRATION, while TaskGYRO uses the same bus."""
-    with robot(fixes, static=False) as bench:
+    with robot(fixes) as bench:
         bench.run_for(0.8)
         bench.firmware.main_robot.cuenta_gyro = 101
         bench.feed(b"#CALB\r")
@@ -124,12 +124,12 @@ def calib_resumed(fixes: Fixes) -> Evidence:
 def unused_objects(fixes: Fixes) -> Evidence:
     """Look for objects at file scope that no statement uses."""
     names = {f"main_robot.{name}" for name in ("d", "Iwl", "Iwr", "Wl_ref_pi", "Wr_ref_pi")}
-    return reported([f for f in TaskRig(fixes).findings if f.object in names], "unused-object")
+    return reported([f for f in Rig(fixes).findings if f.object in names], "unused-object")
 
 
 def titaref_unread(fixes: Fixes) -> Evidence:
     """Look for `titaref` in Position, where another name hides the object that TaskNAVIGATION sets."""
-    return reported(TaskRig(fixes).findings, "hidden-name", function="Position", object="titaref")
+    return reported(Rig(fixes).findings, "hidden-name", function="Position", object="titaref")
 
 
 def _navigate(fixes: Fixes, turns: int, status: str, bumper: int = FREE, **objects: Any) -> tuple[TaskRig, list[float]]:
@@ -232,7 +232,7 @@ def init_reference(fixes: Fixes) -> Evidence:
 
 def odo_commanded(fixes: Fixes) -> Evidence:
     """Order 0.3 m/s for 0.1 s of each period of TaskODO, which reads the reference once."""
-    with robot(fixes, world="room", watch=False, static=False) as bench:
+    with robot(fixes, world="room", watch=False) as bench:
         bench.run_for(0.8)
         bench.feed(b"#TELE\r")
         for _ in range(16):
@@ -255,7 +255,7 @@ def odo_commanded(fixes: Fixes) -> Evidence:
 def odo_race(fixes: Fixes) -> Evidence:
     """Find TaskODO's use of references that TaskNAVIGATION, a higher task, writes; the three distances have the same
     defect."""
-    with robot(fixes, static=False) as bench:
+    with robot(fixes) as bench:
         bench.run_for(1.0)
         bench.feed(b"#MISN\r")
         bench.run_for(1.0)
@@ -265,7 +265,7 @@ def odo_race(fixes: Fixes) -> Evidence:
 def init_others(fixes: Fixes) -> Evidence:
     """Find objects of TaskSERVO and TaskUS, which are above TaskNAVIGATION and share no gate with it."""
     theirs = ("Wl", "Wr", "Wl_ref", "Wr_ref", "U_l", "U_r", "Left_distance", "Front_distance", "Right_distance")
-    with robot(fixes, static=False) as bench:
+    with robot(fixes) as bench:
         bench.run_for(0.8)
         bench.feed(b"#INIT\r")
         bench.run_for(0.2)
@@ -285,7 +285,7 @@ def init_odometry(fixes: Fixes) -> Evidence:
 
 def init_distances(fixes: Fixes) -> Evidence:
     """Read the distances in the frames half a second after INIT, in the middle of a room."""
-    with robot(fixes, world="room", watch=False, static=False) as bench:
+    with robot(fixes, world="room", watch=False) as bench:
         bench.run_for(0.8)
         bench.feed(b"#INIT\r")
         bench.run_for(0.5)

@@ -20,7 +20,7 @@ PERIOD_S: Final = 0.05
 
 def distance_despite(fixes: Fixes, fault: str, within_s: float, *, orders: bytes = b"#MISN\r") -> float:
     """Return the roll of the wheels (m) in the second that begins `within_s` after a fault; the robot then drives."""
-    with robot(fixes, watch=False, static=False) as bench:
+    with robot(fixes, watch=False) as bench:
         bench.run_for(0.8)
         bench.feed(orders)
         bench.run_for(1.0)
@@ -106,7 +106,7 @@ _SLANTED: Final = _slanted()
 
 def push_unnoticed(fixes: Fixes) -> Evidence:
     """Drive a mission towards a wall at 50 degrees, which the front sonar misses; it arrives after some 4 s."""
-    with robot(fixes, world_map=_SLANTED, watch=False, static=False) as bench:
+    with robot(fixes, world_map=_SLANTED, watch=False) as bench:
         bench.run_for(0.8)
         bench.feed(b"#MISN\r")
         bench.run_for(7.0)

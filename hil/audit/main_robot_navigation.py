@@ -52,7 +52,7 @@ def turn_moving(fixes: Fixes) -> Evidence:
 def turn_not_kept(fixes: Fixes) -> Evidence:
     """Turn to the left before the end of the corridor.  A wall is certainly detected within 20 degrees of its normal.
     """
-    with robot(fixes, world="corridor", watch=False, static=False) as bench:
+    with robot(fixes, world="corridor", watch=False) as bench:
         bench.run_for(0.8)
         bench.world.place(Pose(3.13, 0.6, 0.0))
         bench.feed(b"#MISN\r")
@@ -110,7 +110,7 @@ def _walls_near(bench: Bench, reach_m: float) -> Series:
 def blind_spot(fixes: Fixes) -> Evidence:
     """Leave the corridor's bend, where all walls are at 45 degrees: no sonar detects anything while a wall comes
     nearer."""
-    with robot(fixes, world="corridor", watch=False, static=False) as bench:
+    with robot(fixes, world="corridor", watch=False) as bench:
         bench.run_for(0.8)
         bench.world.place(Pose(3.15, 1.0, radians(90.0)))
         bench.feed(b"#MISN\r")

@@ -86,6 +86,7 @@ class RigOrder:
     float_to_int: str
     room: frozenset[tuple[str, int]]
     keep_locals: bool
+    static: bool
     board: BoardOrder
 
     @property
@@ -100,7 +101,7 @@ class RigOrder:
             board, modules=self.modules, fill=self.fill, externs=dict.fromkeys(self.replaced, _not_there),
             fixes=self.variant.fixes, firmware=self.variant.firmware, include=self.variant.include,
             defines=self.variant.defines, float_to_int=self.float_to_int, room=dict(self.room),
-            keep_locals=self.keep_locals, watch=True, static=True,
+            keep_locals=self.keep_locals, static=self.static,
         )  # fmt: skip
         return board, fw
 
@@ -137,21 +138,22 @@ class RobotOrder:
 class Rig:
     """One board with ideal devices and the linked firmware; its functions are called one by one.
 
-    All detectors are on.  Task_sleep waits.  Semaphores and gates need tasks: use `robot`, or replace them in
+    All detectors are on, but those that look for errors between threads, because there are none, and with `static`
+    False the static checks.  Task_sleep waits.  Semaphores and gates need tasks: use `robot`, or replace them in
     `externs`.
     """
 
     def __init__(
         self, fixes: Variant | Iterable[str] = (), *, fill: str = "zero", modules: Sequence[str] = MODULES,
         externs: Mapping[str, Callable[..., Any]] | None = None, float_to_int: str = "saturate",
-        room: Mapping[str, int] | None = None, keep_locals: bool = False, ideal: bool = True, seed: int = 1,
-        sonars_powered_up: bool = True,
+        room: Mapping[str, int] | None = None, keep_locals: bool = False, static: bool = True, ideal: bool = True,
+        seed: int = 1, sonars_powered_up: bool = True,
     ) -> None:  # fmt: skip
         standing_in: dict[str, Callable[..., Any]] = {"Task_sleep": lambda ticks: self.wait(ticks * TICK_S)}
         standing_in |= dict(externs or {})
         self.board, self.fw = templates.take(RigOrder(
             Variant.of(fixes), fill, tuple(modules), frozenset(standing_in), float_to_int,
-            frozenset((room or {}).items()), keep_locals, BoardOrder(ideal, seed, sonars_powered_up),
+            frozenset((room or {}).items()), keep_locals, static, BoardOrder(ideal, seed, sonars_powered_up),
         ))  # fmt: skip
         for name, function in standing_in.items():
             self.fw.linked.replace(name, function)
@@ -193,8 +195,11 @@ def robot(
     fixes: Variant | Iterable[str] = (), *, world: str = "corridor", boot: bool = True,
     world_map: WorldMap | None = None, **setup: Any,
 ) -> Iterator[Bench]:  # fmt: skip
-    """The whole robot in a world (a name, or a map), booted (2.2 s of virtual time); ideal, unless `realistic=True`."""
-    options: dict[str, Any] = {"realistic": False, "watch": True, "static": True} | setup
+    """The whole robot in a world (a name, or a map), booted (2.2 s of virtual time); ideal, unless `realistic=True`.
+
+    There are no static checks: a rig shows what they find.
+    """
+    options: dict[str, Any] = {"realistic": False, "watch": True} | setup
     variant = Variant.of(fixes)
     own: dict[str, Any] = {"firmware": variant.firmware, "include": variant.include, "defines": variant.defines}
     order = Setup(world=world, fixes=tuple(sorted(variant.fixes)), **own, **options)

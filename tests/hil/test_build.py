@@ -356,24 +356,18 @@ def test_no_constant_is_a_tuple_of_floats(name: str) -> None:
                 assert not _has_float(node.value), f"{name}:{node.lineno}"
 
 
-def test_every_listed_module_can_be_translated(tmp_path: Path) -> None:
-    """Up to C; no compiler is needed.  Fails for what mypyc does not take, in the module's own terms."""
-    pytest.importorskip("mypyc.build", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
-    pytest.importorskip("setuptools", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
-    parts = build.parts()
-    names = {extension.name for extension in build.translate(compiled.ROOT, tmp_path / "first", parts)}
-    assert {name.removesuffix(".py").replace("/", ".") for name in build.listed()} <= names
-    assert {compiled.part_name(identity) for identity in parts} <= names
-
-    # With what is kept of that, wherever it lies now, a part is translated alone, one that was there too.
-    there = shutil.copytree(tmp_path / "first", tmp_path / "second")
-    build.reduce(there)
-    identity = next(identity for identity, part in parts.items() if part.functions[0].function.module == "us")
-    extensions = {each.name: each for each in build.translate(compiled.ROOT, there, {identity: parts[identity]})}
+@pytest.mark.skipif(compiled.MODE != "compiled", reason="needs `hil build` (extra speed)")
+def test_a_part_is_translated_alone_with_what_a_build_keeps(tmp_path: Path) -> None:
+    kept = build.kept(compiled.STORE)
+    there = shutil.copytree(kept, tmp_path / kept.name)
+    before = {file: file.read_bytes() for file in (there / "c").rglob("*.h")}
+    identity, part = next((i, p) for i, p in build.parts().items() if p.functions[0].function.module == "us")
+    extensions = {each.name: each for each in build.translate(compiled.ROOT, there, {identity: part})}
     name = compiled.part_name(identity)
     sources = {Path(file).name for file in extensions[f"{build._group(name)}__mypyc"].sources}
     assert {f"__native_{name}.c", f"__native_{build._group(name)}.c"} < sources
     assert {file.name for file in (there / "c").glob("__native*.c")} < sources
+    assert before == {file: file.read_bytes() for file in before}
     # What it has, and whose methods it calls, is known when it is compiled.
     written = (there / "c" / f"__native_{name}.c").read_text("utf-8")
     assert "Clock___run_due(" in written

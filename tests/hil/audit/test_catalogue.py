@@ -59,6 +59,7 @@ def test_with_all_corrections_nothing_is_left_that_the_typed_tree_shows() -> Non
     assert [f"{f.rule}: {f.message}" for f in Rig([ALL]).findings] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DEMONSTRATIONS)
 def test_an_entry_is_shown_by_evidence_of_its_rule(name: str) -> None:
     outcome = demonstrate(name)

@@ -38,6 +38,7 @@ def odometry_error_m(bench: Bench) -> float:
     return hypot(believed.x_m - ahead, believed.y_m - left)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("parts", "seed"), RUNS)
 @pytest.mark.parametrize("world", sorted({*builtin_maps()} - {"paddock"}))  # that one: test_soak.py
 def test_the_corrected_mission_goes_through(world: str, parts: str, seed: int) -> None:

@@ -444,6 +444,7 @@ def test_a_folder_is_the_drivers_in_it(folder: Path, capsys: pytest.CaptureFixtu
     assert (status, [one["name"] for one in data["run"]["functions"]]) == (0, ["A", "B"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(path.stem for path in SPECIMENS.glob("[a-z]*.py")))
 def test_a_correct_driver_is_not_told_that_it_is_wrong(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     status, data = report(capsys, str(SPECIMENS / f"{name}.py"), "--for", "0.1")

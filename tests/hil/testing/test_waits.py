@@ -333,6 +333,7 @@ ENDED: dict[str, tuple[str, str]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", ENDED)
 def test_a_wait_that_something_ends_is_waited_for(project: pytest.Pytester, how: str) -> None:
     body, fixtures = ENDED[how]
