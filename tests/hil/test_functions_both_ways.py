@@ -114,10 +114,10 @@ class Machine:
             outcome = f"{type(error).__name__}: {error}"
         took = clock.now - begun
         clock.cancel(event)
-        memory = [list(a.obj.data) for a in arguments if isinstance(a, Pointer) and a.obj] + [obj.data for obj in self.objects]
+        passed = [argument.obj for argument in arguments if isinstance(argument, Pointer) and argument.obj]
         told = [(f.rule, f.message, f.place, f.count) for f in findings if before.get(id(f)) != f.count]
-        seen = [[getattr(value, "__name__", repr(value)) for value in values] for values in memory]
-        return [outcome, took, cpu.sp, cpu.ier, cpu.ifr, cpu.intm, seen, told]
+        memory = [[getattr(v, "__name__", repr(v)) for v in obj.data] for obj in (*passed, *self.objects)]
+        return [outcome, took, cpu.sp, cpu.ier, cpu.ifr, cpu.intm, memory, told]
 
     def argument(self, ctype: CType, given_: Given) -> Any:
         """A number, or a pointer to some: sometimes a null pointer."""
