@@ -235,6 +235,9 @@ class Connections:
                     other = "SOCB" if trigger.startswith("SOCA") else "SOCA"
                     why = f"{missing.why}, while its {other} occurs and starts nothing"
                     missing = MissingLink(why, register, "TRIGSEL")
+                elif missing and trigsel in TIMERS and (other_timer := self._unused_timer()) is not None:
+                    why = f"{missing.why}, while CPU timer {other_timer} occurs and starts nothing"
+                    missing = MissingLink(why, register, "TRIGSEL")
                 if missing:
                     waits = f"{register}.TRIGSEL waits for {trigger}, which never occurs"
                     self._report(place, waits, missing, f"{register}.TRIGSEL")
@@ -248,6 +251,19 @@ class Connections:
             self._could(f"Adc{letter.lower()}Regs.ADCSOC{n}CTL", lambda word: word == other, "TRIGSEL")
             for letter in ADC_PIE for n in range(16)
         )
+
+    def _unused_timer(self) -> int | None:
+        """A CPU timer that ends and that nobody waits for: probably the one that a TRIGSEL means."""
+        ier = self._chip.cpu.ier
+        for n, enabled in enumerate((self._chip.pie.enabled(1, 7), bool(ier & 1 << 12), bool(ier & 1 << 13))):
+            trigsel = TIMERS[n]
+            triggers = any(
+                self._could(f"Adc{letter.lower()}Regs.ADCSOC{soc}CTL", trigsel.__eq__, "TRIGSEL")
+                for letter in ADC_PIE for soc in range(16)
+            )
+            if not enabled and not triggers and self._no_timer(n) is None and not self._could_trigger_dma(trigsel):
+                return n
+        return None
 
     def _could_trigger_dma(self, trigsel: int) -> bool:
         """Whether a statement could make a DMA channel listen to the trigger of this TRIGSEL."""

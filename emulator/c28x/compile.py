@@ -21,8 +21,10 @@ from emulator.c28x.passes.flow import Flow
 from emulator.c28x.passes.guards import Guards
 from emulator.c28x.passes.intervals import annotate_bounds
 from emulator.c28x.passes.pulses import pulses
+from emulator.c28x.passes.signs import signed_words
 from emulator.c28x.passes.stamps import Stamps
 from emulator.c28x.passes.taken import mark_copy_and_clear
+from emulator.c28x.passes.wind_up import wind_up
 from emulator.c28x.program import Program
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module
@@ -53,6 +55,8 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
     names_compared = compared(f for module in modules for f in module.functions)
     names_limited = limited(f for module in modules for f in module.functions)
     floats_made = made_float(f for module in modules for f in module.functions)
+    regulators = wind_up(f for module in modules for f in module.functions) if options.watch else {}
+    words = signed_words(f for module in modules for f in module.functions)
     costs = Costs(float_division(options.float_division))
     owners: set[str] = set()
     functions = []
@@ -68,6 +72,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
             Guards(
                 function, watch=options.watch, ieee=options.ieee, room=options.room, compared=names_compared,
                 limited=names_limited, made_float=floats_made, stamps=suspicions, pulses=cut_pulses,
+                regulators=regulators, words=words,
             ).run()  # fmt: skip
             costs.leave(function)
             mark_copy_and_clear(function)

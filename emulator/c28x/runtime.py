@@ -56,6 +56,8 @@ SMALL: Final = -4096
 _FINE: Final = 100
 #: CHOICE: a float passed for an integer parameter that never reaches this value was not meant as an integer.
 _FEW: Final = 10
+#: CHOICE: an integral has wound up if its share is beyond the limit by a part of the output's whole range: one of this.
+_SPANS: Final = 4.0
 FILLS: Final = ("zero", "ones", "nan", "random:SEED", "stack", "trap")
 #: The words at the start of a frame that hold the return address.
 RETURN_ADDRESS_WORDS: Final = 2
@@ -102,6 +104,22 @@ class RuntimeSite(Site):
         #: Tests: the initial value of this object, shared by all its sites; values of cells outside of it.
         self.initial: dict[str, Any] = {}
         self.planted: dict[int, Any] = {}
+
+
+class RegulatorState:
+    """What was seen last of a regulator: the place of its sum, the integral's share of the output, the output."""
+
+    __slots__ = ("limits", "output", "share", "side", "sum_at")
+
+    def __init__(self) -> None:
+        self.sum_at = 0
+        self.share = 0.0
+        #: The sides on which no statement limits the integral.
+        self.side = ""
+        #: The output before it is limited; None: there is none yet.
+        self.output: float | None = None
+        #: The limits that the output has met, by side.
+        self.limits: dict[str, float] = {}
 
 
 class RuntimeSites(dict[int, RuntimeSite]):
@@ -212,6 +230,8 @@ class Runtime:
         self._register_at, self._blames_unmodelled, self._driven = register_at, blames_unmodelled, driven
         #: An object -> the site at which it has kept 16 bits of a longer time between two captures, and that time.
         self.cut_pulses: dict[str, tuple[RuntimeSite, int]] = {}
+        #: The regulators that have run, by name.
+        self.regulators: dict[str, RegulatorState] = {}
         #: How many of them were used as a wider number.
         self.wrong_pulses = 0
         #: The number in the text that `atoi` has read last.
@@ -978,6 +998,41 @@ class Runtime:
                 self.hit(cut, "widened-late", f"{cut.name} is {whole}: {kept}", whole)
         return value
 
+    def regulated(self, value: int, number: int) -> int:
+        """A part of a regulator that computes with integers."""
+        self._regulate(float(value), number)
+        return value
+
+    def regulated_float(self, value: float, number: int) -> float:
+        """A part of a regulator that computes with floats."""
+        self._regulate(value, number)
+        return value
+
+    def _regulate(self, value: float, number: int) -> None:
+        """Report an integral that goes on growing while the output stands at its limit."""
+        site = self.sites[number]
+        state = self.regulators.get(site.regulator)
+        if state is None:
+            state = self.regulators[site.regulator] = RegulatorState()
+        if site.kind == "sum":
+            state.sum_at = number
+        elif site.kind == "share":
+            state.share, state.side = value * site.scale, site.side
+        elif site.kind == "output":
+            state.output = value
+        elif state.output is not None:
+            output, state.output = state.output, None
+            if output == value or not state.sum_at:
+                return
+            side = "high" if output > value else "low"
+            state.limits[side] = value
+            span = abs(state.limits.get("high", 0.0) - state.limits.get("low", 0.0))
+            beyond = state.share - value if side == "high" else value - state.share
+            if side in state.side and 0.0 < span < beyond * _SPANS:
+                at = self.sites[state.sum_at]
+                message = f"{at.name} goes on while the output stands at its limit {value:g}: its share is {state.share:g}"
+                self.hit(at, "wind-up", f"{message}, and must come back before the output moves", value)
+
     def quantity(self, value: int, number: int) -> int:
         """A number that does not fit the register field to which it is written."""
         site = self.sites[number]
@@ -994,6 +1049,14 @@ class Runtime:
         assert isinstance(ctype, IntType)
         taken = value & (1 << ctype.bits) - 1
         message = f"{site.name} is {value}: taken as unsigned it is {taken}, which {site.widened}"
+        self.hit(site, "sign-lost", message, value)
+        return value
+
+    def signed_word(self, value: int, number: int) -> int:
+        """An unsigned word or octet whose highest bit is set, which the source takes for a sign."""
+        site = self.sites[number]
+        meant = value - 2 * (site.bound + 1)
+        message = f"{site.name} is {value}, as its highest bit is no sign here: {meant} is meant, {site.widened}"
         self.hit(site, "sign-lost", message, value)
         return value
 

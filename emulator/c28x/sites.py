@@ -74,6 +74,10 @@ class Site:
     constants: tuple[tuple[int, str], ...] = ()
     #: A read of a value never written: the switches that have no case for the value if it happens.
     caseless: frozenset[Where] = frozenset()
+    #: A part of a regulator: its name; the factor of an integral's share; the sides where nothing limits the integral.
+    regulator: str = ""
+    scale: float = 1.0
+    side: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -200,6 +200,8 @@ class Expr:
     unwrapped: bool = field(default=False, kw_only=True, repr=False, compare=False, metadata=FOUND)
     #: Pass `guards`: the check of a float that others will see, or of an integer that goes to a register field.
     leaving: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    #: Pass `guards`: it is a part of a regulator, which follows it.
+    regulated: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
 
 
 @dataclass

@@ -3,7 +3,7 @@
 Modelled: byte and page write (64 bytes, rolling over within the page); the self-timed write cycle, which begins with a
 STOP; no acknowledgment while it lasts, so that a driver can poll for its end; current address, random and sequential
 read (rolling over at the end of the memory); address pins; write protection.  A write over the end of its page is
-reported.
+reported, and a driver that addresses the device in its write cycle each time, and does not ask again.
 Not modelled: endurance, the software reset by clocks without a STOP, supply, set-up and hold times.
 Time: lazy.  The memory changes at the first access after the end of a write cycle.
 Sources: AT24C256 data sheet: device addressing, write and read operations, AC characteristics (tWR at most 5 ms; 10 ms
@@ -17,7 +17,7 @@ from __future__ import annotations
 from typing import Final
 
 from emulator.clock import CYCLES_PER_MS, Clock
-from emulator.devices.report import DeviceReport, DiscardedReports
+from emulator.devices.report import DeviceReport, DiscardedReports, Mark, mark_of
 
 SIZE: Final = 32768
 PAGE: Final = 64
@@ -27,6 +27,10 @@ ADDRESS: Final = 0x50
 ERASED: Final = 0xFF
 #: tWR, at most.
 WRITE_CYCLE_MS: Final = 5.0
+#: CHOICE: who was refused and addresses the device only after so many further write cycles does not poll for the end.
+PATIENT_CYCLES: Final = 4
+#: So many times in a row it is no accident.
+GIVEN_UP: Final = 3
 
 
 class At24c256:
@@ -37,8 +41,8 @@ class At24c256:
     """
 
     __slots__ = (
-        "_address_bytes", "_clock", "_cycle_cycles", "_cycle_end", "_first", "_latches", "_memory", "_pointer",
-        "_report", "_sent", "_writing", "address", "write_protect",
+        "_address_bytes", "_clock", "_cycle_cycles", "_cycle_end", "_first", "_given_up", "_latches", "_mark",
+        "_memory", "_pointer", "_refused", "_report", "_sent", "_stopped_by", "_writing", "address", "write_protect",
     )  # fmt: skip
 
     def __init__(
@@ -48,6 +52,7 @@ class At24c256:
             raise ValueError(f"address pins {pins}: expected A2, A1, A0 as a number 0..7")
         self._clock = clock
         self._report: DeviceReport = report or DiscardedReports()
+        self._mark = mark_of(self._report)
         self._cycle_cycles = round(write_cycle_ms * CYCLES_PER_MS)
         self.address = ADDRESS | pins
         self.write_protect = 0
@@ -60,6 +65,11 @@ class At24c256:
         self._first = self._sent = 0
         self._writing: dict[int, int] = {}
         self._cycle_end = 0
+        #: Who has begun the write cycle; when the device refused its address (None: it has not since); how often in a
+        #: row nobody has asked again.
+        self._stopped_by: Mark = ()
+        self._refused: int | None = None
+        self._given_up = 0
 
     @property
     def memory(self) -> bytearray:
@@ -85,8 +95,22 @@ class At24c256:
 
     def addressed(self, reading: bool) -> bool:
         """Acknowledged unless a write cycle is under way."""
+        now = self._clock.now
+        if self._refused is not None and now - self._refused > PATIENT_CYCLES * self._cycle_cycles:
+            self._given_up, self._refused = self._given_up + 1, None
+        elif self._refused is not None:
+            self._given_up = -GIVEN_UP  # it polls: a refusal now and then is no defect
         if self.busy:
+            if self._refused is None and self._given_up >= GIVEN_UP - 1:
+                self._report(
+                    "eeprom-busy",
+                    f"AT24C256: it was addressed in its write cycle, and refused, {self._given_up + 1} times in a row; "
+                    "nobody asked again until long after the end of the cycle",
+                    object=f"AT24C256 {self.address:#04x}", since=self._stopped_by,
+                )  # fmt: skip
+            self._refused = now
             return False
+        self._refused = None
         self._address_bytes = 0 if reading else 2
         return True
 
@@ -115,6 +139,7 @@ class At24c256:
         if self._latches and not self.write_protect:
             self._finish_write()
             self._writing, self._cycle_end = self._latches, self._clock.now + self._cycle_cycles
+            self._stopped_by = self._mark()
             beyond = self._first % PAGE + self._sent - PAGE
             if beyond > 0:
                 page = self._first - self._first % PAGE

@@ -59,6 +59,9 @@ class Dac:
             message = f"{register.path} is locked by DACLOCK: the write was dropped"
             self._findings.report("locked", message, object=register.path, value=word)
             return
+        if name == "DACVALS" and word >= CODES:
+            message = f"{register.path} holds 0 to {CODES - 1}: {word} was written, and arrives as {word % CODES}"
+            self._findings.report("register-value", message, object=register.path, value=word)
         register.store(word, lanes)
         registers["DACVALA"].value = registers["DACVALS"].value
         self._follow()

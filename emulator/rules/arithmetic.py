@@ -158,7 +158,7 @@ source has a minus or a negative constant there.
     _rule(
         "sign-lost",
         Severity.ERROR,
-        "A negative number was taken as an unsigned one, and then limited, scaled, divided or made a float.",
+        "A negative number was taken as an unsigned one, and then limited, scaled, compared or made a float.",
         """
 Full power for a small negative error.
 
@@ -171,6 +171,12 @@ makes it unsigned and the result is then widened and multiplied, divided, or con
 casts a number to a signed type, an unsigned object or member takes it, and another expression makes a float of that
 (`raw.x = (int16)(high << 8 | low);` with `Uint16 x`). Then only -4096 to -1 count: a cast may be needless, but a small
 negative number is none of the upper half of an unsigned range.
+
+A word that came in octets (`int32_t rpm = data[0] | data[1] << 8;`), from a buffer or a union has no sign either. It is
+reported if its highest bit is set, and the object that takes it gets nothing else and is compared by order with a
+number below -1 (`rpm >= -3000`): so negative numbers are expected, and none can come. The same holds for an octet that
+a wider object takes, and for two sides of a comparison by order that both get signed numbers only by casts to unsigned
+(`words[n] > (Uint16) limit`).
 
 These are not reported: additions and subtractions, which give the right result; masks and shifts; a factor above
 65535; a test that rejects the number (`if (x >= N) return;`), because it rejects negative ones too.

@@ -60,7 +60,7 @@ A ramp from 125 in steps of 6 is never 2250. A count that begins at 5 and goes u
 cycle then grows beyond its period, or the retries never end.
 
 The check needs the source of a whole program. It reports a loop or a state if the object gets only constants and steps
-of one size in one direction, and if the test for equality ends the loop, or decides between a further step and its
+of one size, up or down or both, and if the test for equality ends the loop, or decides between a further step and its
 end.
 
 **Fix:** compare by order (`duty < wanted`), and set the exact value when the limit is passed.
@@ -86,6 +86,27 @@ and every value of the stamp must be the counter, or the counter minus a constan
 """,
         "ISO C 6.2.5 p9",
         how="static",
+    ),
+    _rule(
+        "wind-up",
+        Severity.WARNING,
+        "The integral of a regulator goes on growing while its output stands at its limit.",
+        """
+After a load, a blocked motor or a sag of the supply the output stays at its limit, long after the error has changed its
+sign: the speed, the voltage or the temperature overshoots by far.
+
+The regulator limits its output, but not its integral. While the output stands at its limit, the error does not become
+smaller, and the integral grows with each pass. All of it must be integrated back before the output moves.
+
+It is reported at the statement that adds to the integral, if the integral's share of the output alone is beyond the
+limit by more than a quarter of the range of the output. The output must be a sum of the error, scaled, and of the
+integral, scaled, and the same function must limit it. Nothing is reported about an integral that a statement limits on
+that side, that loses a part of itself in each pass (a filter), or that is no part of such a sum (a meter of energy, an
+odometer, a clock).
+
+**Fix:** limit the integral to the limits of the output, or add to it only while the output is within them.
+""",
+        "K. J. Astrom, R. M. Murray, Feedback Systems, 11.4",
     ),
     _rule(
         "no-case",

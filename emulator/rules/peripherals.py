@@ -966,6 +966,24 @@ next message.
         "AT24C256: page write",
     ),
     _rule(
+        "eeprom-busy",
+        Severity.ERROR,
+        "An EEPROM was addressed in its write cycle, and nobody asked again.",
+        """
+Every record counts as an error, although it is written, or every second record is missing.
+
+After the STOP of a write the EEPROM is busy for up to 5 ms. It does not acknowledge its address in this time, and takes
+no part in the message.
+
+The finding is made if the EEPROM was addressed in its write cycle three times in a row, and each time not once more
+within the next four write cycles (20 ms). A driver that polls for the acknowledge, or comes back soon, is right. It is
+at the statement that made both accesses, the write and the refused one.
+
+**Fix:** poll for the acknowledge, or wait 5 ms, after each write.
+""",
+        "AT24C256: acknowledge polling, write cycle time",
+    ),
+    _rule(
         "endless-retry",
         Severity.WARNING,
         "A transaction that a part refuses is repeated without a limit.",

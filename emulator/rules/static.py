@@ -123,6 +123,7 @@ range of values that decides. Examples:
 * a local that starts at 0 and only counts up is never below 0; a loop with ten passes counts no more than 10;
 * after a loop, its counter has the value that ended the loop: `while (n-- > 0)` decrements once more when it ends, so
   `n` is then -1 (or 65535) and never 0;
+* a counter at file scope is set to 0 and counted right before it is compared: each pass begins it anew;
 * a pointer that was already used is not NULL: the test comes too late, or it should test another pointer.
 
 `while (1)` and conditions of constants only (build switches) are not reported.

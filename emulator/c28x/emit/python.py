@@ -785,12 +785,21 @@ class PythonWriter:
             number, high = self.number(e.guard), mathematical_bounds(e, e.ctype)[1]
             test = f"0 <= (_t := {text})" if high <= e.ctype.high else f"0 <= (_t := {text}) <= {e.ctype.high}"
             text = f"(_t if {test} else _c_wrapped(_t, {number}))"
-        if e.leaving is None:
+        if e.leaving is not None:
+            text = self.leaving(e.leaving, text)
+        if e.regulated is None:
             return text
-        number = self.number(e.leaving)
-        if e.leaving.kind == "quantity":
-            return f"(_t if 0 <= (_t := {text}) <= {e.leaving.site.bound} else _c_quantity(_t, {number}))"
-        if e.leaving.kind == "sign-lost":
+        helper = "_c_regulated_float" if isinstance(e.ctype, FloatType) else "_c_regulated"
+        return f"{helper}({text}, {self.number(e.regulated)})"
+
+    def leaving(self, guard: Guard, text: str) -> str:
+        """The text of a value, with the check that its use asks for."""
+        number = self.number(guard)
+        if guard.kind == "quantity":
+            return f"(_t if 0 <= (_t := {text}) <= {guard.site.bound} else _c_quantity(_t, {number}))"
+        if guard.kind == "signed-word":
+            return f"(_t if (_t := {text}) <= {guard.site.bound} else _c_signed_word(_t, {number}))"
+        if guard.kind == "sign-lost":
             return f"(_t if 0 <= (_t := {text}) else _c_sign_lost(_t, {number}))"
         return f"_c_float_out({text}, {number})"
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from emulator.c28x.passes.anew import check_begun_anew
 from emulator.c28x.passes.copies import check_copies
 from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.masked import check_masked
@@ -57,6 +58,7 @@ def check(
             check_stores(function, report)
             check_copies(function, report)
             check_masked(function, report)
+            check_begun_anew(function, report)
             NullTests(function, report).run()
             check_waiting(function, threads, report)
             if not in_header(function.where, unit.file):

@@ -28,6 +28,8 @@ Kinds of guards:
 | `float-out` | floats that others will see | they are finite |
 | `quantity` | integers that go to a register field | they fit the field |
 | `sign-lost` | signed integers that are scaled or limited as unsigned ones | they are not negative |
+| `signed-word` | unsigned words that the source takes for signed (pass `signs`) | their highest bit is not set |
+| `regulator` | parts of regulators (pass `wind_up`) | their integral does not run beyond the limits of the output |
 """
 
 from __future__ import annotations
@@ -53,6 +55,8 @@ from emulator.c28x.ctypes import (
     StructType,
 )
 from emulator.c28x.passes.intervals import LONGEST, RING, bounds_of, combine
+from emulator.c28x.passes.signs import SignedWord
+from emulator.c28x.passes.wind_up import RegulatorPart
 from emulator.c28x.sites import Site, StackFrame
 from emulator.c28x.tree import (
     AddressOf,
@@ -104,6 +108,7 @@ from emulator.c28x.tree_queries import (
     parts,
     polls,
     register_text,
+    roots,
     source_text,
     statements,
     variables,
@@ -135,12 +140,14 @@ class Guards:
     `watch`: the image is watched; `ieee`: float division follows IEEE; `room`: path of an array -> its length, instead
     of that of its type; `compared`: variables that occur in a comparison or a subscript; `limited`: unsigned variables
     that some function limits; `made_float`: unsigned scalars that some function makes floats of; `stamps`: the
-    suspicions of pass `stamps`; `pulses`: the result of pass `pulses`.
+    suspicions of pass `stamps`; `pulses`: the result of pass `pulses`; `regulators`, `words`:
+    those of passes `wind_up` and `signs`.
     """
 
     def __init__(
         self, function: Function, *, watch: bool, ieee: bool, room: Mapping[str, int], compared: Set[Variable],
         limited: Set[Variable], made_float: Set[NamedScalar], stamps: Mapping[int, str], pulses: Mapping[int, str],
+        regulators: Mapping[int, RegulatorPart], words: Mapping[int, SignedWord],
     ) -> None:  # fmt: skip
         self.function = function
         self.watch = watch
@@ -151,6 +158,8 @@ class Guards:
         self.made_float = made_float
         self.stamps = stamps
         self.pulses = pulses
+        self.regulators = regulators
+        self.words = words
         self.where = function.where
         self.frame = StackFrame(
             function.path,
@@ -168,6 +177,7 @@ class Guards:
         for s in statements(self.function.body):
             self.where = s.where
             self.statement(s)
+            self.follow_parts(s)
         self.where = self.function.where
         f = self.function
         if f.ends and f.ctype.result != VOID:
@@ -178,6 +188,21 @@ class Guards:
         """The site of a check: at `at` if that has a line, else at the statement."""
         where = at if at is not None and at.line else self.where
         return Site(where, ctype, name, declaration, **more)
+
+    def follow_parts(self, s: Stmt) -> None:
+        """Check the words that have a sign in a statement, and follow the parts of regulators in it."""
+        for p in (p for root in roots(s) for p in parts(root)) if self.regulators or self.words else ():
+            word = self.words.get(id(p))
+            if word is not None and p.leaving is None:
+                site = self.site(p.ctype, source_text(p), at=p.where, bound=word.largest, widened=word.use)
+                p.leaving = Guard("signed-word", site)
+            part = self.regulators.get(id(p))
+            if part is not None:
+                name = part.integral if part.kind == "sum" else source_text(p)
+                site = self.site(
+                    p.ctype, name, kind=part.kind, regulator=part.regulator, scale=part.scale, side=part.side
+                )  # fmt: skip
+                p.regulated = Guard("regulator", site)
 
     # Statements
 
@@ -775,7 +800,8 @@ def loses_high_bits(e: Expr, target: IntType) -> bool:
         case Binary(op="*"):
             return target.signed
         case Binary(op="/", left=left):
-            return _product(left)
+            # A clock divided by a rate: the cut is no counter's wrap.
+            return _product(left) or (isinstance(left, Const) and left.value > UINT.high)
         case Binary(op=">>", left=Expr(ctype=IntType(signed=True)) as left, right=Const(value=count)):
             return target.signed and (_product(left) or 0 < count < target.bits)
     return False

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from math import gcd
 from typing import Any, Final
 
 from emulator.c28x.arithmetic import COMPARE
@@ -364,12 +365,15 @@ class States:
         writes = [w for w in self.writes.get(v, []) if not _holds(met, w.statement)]
         steps = {w.step for w in writes if w.step}
         starts = {w.value for w in writes if w.value is not None}
-        if any(w.value is None and not w.step for w in writes) or len(steps) != 1:
+        if any(w.value is None and not w.step for w in writes) or not steps:
             return
         if v.kind == "global":
             starts.add(self._start(v))
-        (step,) = steps
-        if step is None or any((goal - start) % step == 0 and (goal - start) * step >= 0 for start in starts):
+        step = gcd(*(each for each in steps if each is not None))
+        one_way = len(steps) == 1
+        if one_way and min(each for each in steps if each is not None) < 0:
+            step = -step
+        if any((goal - start) % step == 0 and ((goal - start) * step >= 0 or not one_way) for start in starts):
             return
         bounds = (
             p for g in self.functions.values() for s in statements(g.body) for root in roots(s) for p in parts(root)
@@ -379,8 +383,9 @@ class States:
         if v.kind == "local" and any(True for _ in bounds):
             return
         begun = " or ".join(map(str, sorted(starts)))
+        way = "up" if one_way and step > 0 else "down" if one_way else "up and down"
         message = (
-            f"{v.declaration.name} begins at {begun} and goes {'up' if step > 0 else 'down'} by {abs(step)}: it steps "
+            f"{v.declaration.name} begins at {begun} and goes {way} by {abs(step)}: it steps "
             f"past {goal}, so {source_text(compare)} never becomes true"
         )  # fmt: skip
         report.report(f, s.where, "stepped-over", message, object=v.declaration.path, declaration=v.declaration)

@@ -4,6 +4,9 @@ A message takes several writes to an interface (IF1 or IF2): its identifier, its
 If a routine uses the same interface between two of them, `main` sends what the routine has left there.  The source
 shows which routines and functions use an interface, and whether a test keeps them apart; the run shows whether the
 routine is held off.
+
+A library reaches the registers by numbers (TI's driverlib).  Then the run shows which routines use an interface, and
+the source of the user's functions, down to the call of the library, shows whether a test keeps them apart.
 """
 
 from __future__ import annotations
@@ -12,10 +15,11 @@ from collections.abc import Collection, Iterable, Iterator
 from functools import cached_property, partial
 from typing import Any, Final, NamedTuple, Protocol
 
+from emulator.c28x.ctypes import IntType
 from emulator.c28x.findings import Findings
-from emulator.c28x.symbols import Module
-from emulator.c28x.tree import Assign, Call, Function, RegisterLoad, RegisterRef, Stmt
-from emulator.c28x.tree_queries import assigned, statements, variables, within
+from emulator.c28x.symbols import Module, library_headers
+from emulator.c28x.tree import Assign, Call, Expr, Function, LValue, RegisterLoad, RegisterRef, Stmt
+from emulator.c28x.tree_queries import assigned, bare, statements, variables, within
 from emulator.sysbios.watch.statements import StatementLocator
 from emulator.sysbios.watch.threads import Routine, ThreadWatch, excluded
 from emulator.sysbios.watch.ways import below, free_ways, interrupt_routines
@@ -49,6 +53,10 @@ class Interfaces:
     ) -> None:  # fmt: skip
         self._threads, self._locator, self._findings, self._modules = threads, locator, findings, modules
         self._told: set[tuple[str, str]] = set()
+        #: Interface -> the routines that have written to it.
+        self._used: dict[str, set[str]] = {}
+        #: Routine -> the lines of the user's functions that run whatever it has done.
+        self._free: dict[str, set[tuple[str, int]]] = {}
 
     def watch(self, regs: CanBlock) -> None:
         """Watch the two interfaces of a module."""
@@ -58,6 +66,9 @@ class Interfaces:
 
     def _written(self, regs: CanBlock, interface: str, *_access: object) -> None:
         threads = self._threads
+        current = threads.current.what
+        if isinstance(current, Routine):
+            self._used.setdefault(interface, set()).add(current.name)
         if threads.current is not threads.main or not threads.routines or threads.kernel.active:
             return
         if regs.registers["CAN_CTL"].value & INIT or not regs.registers["CAN_GLB_INT_EN"].value:
@@ -66,9 +77,10 @@ class Interfaces:
         assert place is not None
         for routine in threads.all:
             what = routine.what
-            if not isinstance(what, Routine) or SharedInterface(interface, what.name, place[:2]) not in self._shared:
+            if not isinstance(what, Routine) or (interface, what.name) in self._told:
                 continue
-            if (interface, what.name) in self._told:
+            by_name = SharedInterface(interface, what.name, place[:2]) in self._shared
+            if not by_name and not (what.name in self._used.get(interface, ()) and self._freely(what.name)):
                 continue
             if not excluded(threads.main, threads.protection(), routine, routine.protection):
                 self._told.add((interface, what.name))
@@ -77,6 +89,32 @@ class Interfaces:
                     "the registers between two writes of main"
                 )
                 self._findings.report("transaction-cut", message, object=interface)
+
+    def _freely(self, routine: str) -> bool:
+        """Whether `main` is in a function of a library, and is there whatever a routine has done."""
+        frames = list(self._locator.frames())
+        own = [place[:2] for place in frames if place.file not in self._libraries]
+        if len(own) == len(frames):
+            return False  # the names of the registers say it
+        if routine not in self._free:
+            self._free[routine] = self._lines(routine)
+        return self._free[routine].issuperset(own)
+
+    @cached_property
+    def _libraries(self) -> frozenset[str]:
+        """The files of libraries: those that others brought, and their headers."""
+        return library_headers(self._modules) | {module.file for module in self._modules if module.brought}
+
+    def _lines(self, name: str) -> set[tuple[str, int]]:
+        """The lines of the user's functions that run whatever a routine has done."""
+        own = {function.path: function for module in self._modules for function in module.functions}
+        routines = list(interrupt_routines(own))
+        inside = {function.path for _, reached in routines for function in reached}
+        mine = {f.path: f for f in own.values() if f.where.file not in self._libraries}
+        others = [function for path, function in mine.items() if path not in inside]
+        telling = {path for routine, reached in routines if routine.name == name for path in _set(reached)}
+        ways = free_ways(others, own, telling, lambda part: _tells(part, own, telling) or _by_number(part, own))
+        return {(way.function.where.file, statement.line) for way in ways for statement in way.undecided}
 
     @cached_property
     def _shared(self) -> set[SharedInterface]:
@@ -107,6 +145,14 @@ def _interface(statement: Stmt) -> Iterator[str]:
     match statement:
         case Assign(target=RegisterRef(block=block, register=register)) if register.startswith(("CAN_IF1", "CAN_IF2")):
             yield f"{block}.{register[:7]}"
+
+
+def _by_number(part: Call | RegisterLoad, own: dict[str, Function]) -> bool:
+    """Whether a call reads something at an address that is computed: it may be a register."""
+    return isinstance(part, Call) and any(
+        isinstance(inner, LValue) and isinstance(inner.root, Expr) and isinstance(bare(inner.root).ctype, IntType)
+        for function in below(part.function.path, own) for inner in within(function.body)
+    )  # fmt: skip
 
 
 def _set(functions: Iterable[Function]) -> Iterator[str]:

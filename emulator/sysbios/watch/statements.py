@@ -6,6 +6,8 @@ compare.  It becomes a `Place` only when a finding needs it.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from emulator.c28x.findings import Findings
 from emulator.c28x.position import INTERRUPT, Calls, interrupted
 from emulator.c28x.sites import Place
@@ -47,6 +49,10 @@ class StatementLocator:
         """The innermost firmware statement that is executing."""
         position = self._position
         return position.at or position.innermost()
+
+    def frames(self) -> Iterator[Place]:
+        """Where each function stands that is executing, innermost first."""
+        return (self._places[statement] for statement, _ in self._position.frames())
 
     def call(self) -> Call | None:
         """The identity of the innermost firmware call that is executing."""

@@ -1,0 +1,164 @@
+"""Pass `signs`: words and octets without a sign that the source takes for signed numbers.
+
+    int32_t rpm = data[0] | (data[1] << 8);       // 64636 for -900
+    if (rpm >= -3000 && rpm <= 3000) ...
+
+A word that is composed of octets, or read from a buffer or a union, is unsigned.  It has a sign for its reader if the
+object that takes it is compared by order with a negative number, and never gets anything else.  A comparison with 0 or
+-1 says nothing: it may belong to a test of the range.
+
+The second form is a comparison by order in which a cast makes a signed number unsigned, and the other side is an object
+that gets signed numbers by casts, too.  One of the two alone may be the test whether a subscript is within an array.
+
+The result are the unsigned expressions that must not have their highest bit set.  The running code checks it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from emulator.c28x.ctypes import FloatType, IntType
+from emulator.c28x.passes.intervals import bounds_of
+from emulator.c28x.passes.stamps import Key, key_of
+from emulator.c28x.tree import (
+    Assign,
+    Binary,
+    Compare,
+    Const,
+    Convert,
+    Declare,
+    Expr,
+    For,
+    Function,
+    Load,
+    LValue,
+    Variable,
+)
+from emulator.c28x.tree_queries import (
+    NamedScalar,
+    addressed,
+    bare,
+    named_scalar,
+    source_text,
+    statements,
+    within,
+)
+
+
+class SignedWord(NamedTuple):
+    """The largest value of an unsigned expression that has no sign, and how the source takes it for a signed one."""
+
+    largest: int
+    use: str
+
+
+def signed_words(functions: Iterable[Function]) -> dict[int, SignedWord]:
+    """Identities of unsigned expressions whose highest bit is a sign for the source."""
+    functions = list(functions)
+    return _widened(functions) | _compared(functions)
+
+
+def _widened(functions: list[Function]) -> dict[int, SignedWord]:
+    """Words and octets that are widened without their sign, for an object that is compared with a negative number."""
+    asked = dict(found for function in functions for found in _asked(function))
+    if not asked:
+        return {}
+    taken = {variable for function in functions for variable in addressed(within(function.body))}
+    given: dict[NamedScalar, list[Expr]] = {}
+    lost: set[NamedScalar] = {(variable, 0) for variable in taken}
+    for function in functions:
+        for s in statements(function.body):
+            match s:
+                case Assign(target=LValue() as target, value=value) if (named := named_scalar(target)) in asked:
+                    assert named is not None
+                    given.setdefault(named, []).append(value)
+                case Declare(variable=variable, value=Expr() as value) if (variable, 0) in asked:
+                    given.setdefault((variable, 0), []).append(value)
+                case For(counter=variable):
+                    lost.add((variable, 0))
+    found: dict[int, SignedWord] = {}
+    for named, values in given.items():
+        words = [_word(value) for value in values if not isinstance(bare(value), Const)]
+        if named in lost or None in words or (isinstance(named[0], Variable) and named[0].kind == "parameter"):
+            continue
+        for word in words:
+            assert word is not None
+            low, high = bounds_of(word)
+            if low >= 0 and high > 0xFF:
+                found[id(word)] = SignedWord(0x7FFF, asked[named])
+            elif low >= 0 and high == 0xFF:
+                found[id(word)] = SignedWord(0x7F, asked[named])
+    return found
+
+
+def _asked(function: Function) -> Iterator[tuple[NamedScalar, str]]:
+    """The signed scalars that a function compares by order with a number below -1, each with the comparison."""
+    for p in within(function.body):
+        if isinstance(p, Compare) and p.op not in ("==", "!="):
+            for side, other in ((p.left, p.right), (p.right, p.left)):
+                load, limit = bare(side), bare(other)
+                if isinstance(load, Load) and isinstance(limit, Const) and limit.value < -1:
+                    ctype, named = load.ctype, named_scalar(load.lvalue)
+                    signed = isinstance(ctype, FloatType) or (isinstance(ctype, IntType) and ctype.signed)
+                    if signed and named is not None:
+                        yield named, f"{source_text(p)} expects negative ones"
+
+
+def _word(e: Expr) -> Expr | None:
+    """The unsigned word or octet that an expression widens; None: it does something else."""
+    while isinstance(e, Convert):
+        if isinstance(e.ctype, IntType) and e.ctype.signed and e.ctype.bits == 16:
+            low, high = bounds_of(e.operand)
+            if low < 0 or high > e.ctype.high:
+                return None  # here the highest bit becomes a sign
+        e = e.operand
+    ctype = e.ctype
+    if not isinstance(ctype, IntType) or ctype.bits != 16:
+        return None
+    low, high = bounds_of(e)
+    return e if not ctype.signed or (low >= 0 and high == 0xFF) else None
+
+
+def _compared(functions: list[Function]) -> dict[int, SignedWord]:
+    """The sides of comparisons by order of two numbers that casts have made unsigned."""
+    pairs: list[tuple[Compare, Expr, Load, Key]] = []
+    for function in functions:
+        for p in within(function.body):
+            if isinstance(p, Compare) and p.op not in ("==", "!="):
+                for side, other in ((p.left, p.right), (p.right, p.left)):
+                    load = other
+                    key = key_of(load.lvalue) if isinstance(load, Load) else None
+                    if _cast(side) and isinstance(load, Load) and key is not None and _is_word(load):
+                        pairs.append((p, side, load, key))
+    if not pairs:
+        return {}
+    keys = {key for _, _, _, key in pairs}
+    cast: set[Key] = set()
+    for function in functions:
+        for s in statements(function.body):
+            if isinstance(s, Assign) and isinstance(s.target, LValue) and _cast(s.value):
+                key = key_of(s.target)
+                if key in keys:
+                    assert key is not None
+                    cast.add(key)
+    found: dict[int, SignedWord] = {}
+    for compare, side, load, key in pairs:
+        if key in cast:
+            use = f"{source_text(compare)} compares it"
+            found[id(side)] = found[id(load)] = SignedWord(0x7FFF, use)
+    return found
+
+
+def _is_word(e: Expr) -> bool:
+    return isinstance(e.ctype, IntType) and not e.ctype.signed and e.ctype.bits == 16
+
+
+def _cast(e: Expr) -> bool:
+    """Whether a cast makes a signed number of 16 bits, which may be negative, unsigned."""
+    match e:
+        case Convert(explicit=True, ctype=IntType(signed=False, bits=16), operand=operand):
+            # The cast of a difference of unsigned numbers says how they wrap.
+            signed = isinstance(operand.ctype, IntType) and operand.ctype.signed and operand.ctype.bits == 16
+            return signed and bounds_of(operand)[0] < 0 and not isinstance(operand, Const | Binary)
+    return False

@@ -1,0 +1,326 @@
+"""Pass `wind_up`: integrals of regulators that nothing limits, although their output is limited.
+
+A regulator adds its error to an integral, and its output is a sum of the error, scaled, and of the integral, scaled:
+
+    integral += ki * error;
+    output = kp * error + integral;
+    if (output > HIGH) output = HIGH;
+
+While the output stands at its limit, such an integral goes on growing.  Whether it does is seen when the program runs:
+the running code compares the integral's share of the output with the limit (`Guards`, `Runtime.regulator`).
+
+None is an integral that a statement limits, that loses a part of itself (a filter), whose addend depends on the limited
+output (back-calculation), or without a share of the same error beside it: an odometer, a clock, a meter of energy.
+
+The result are the parts of regulators, by the identity of their expressions:
+
+| kind | the value is |
+|---|---|
+| `sum` | the new integral |
+| `share` | the integral's share of the output, before it is multiplied by `scale` |
+| `output` | the output before it is limited |
+| `limit` | the limited output |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any, Final, NamedTuple
+
+from emulator.c28x.ctypes import FloatType, IntType
+from emulator.c28x.passes.stamps import Key, key_of
+from emulator.c28x.tree import (
+    AddressOf,
+    Assign,
+    Binary,
+    Call,
+    Compare,
+    Conditional,
+    Const,
+    Convert,
+    Declare,
+    Expr,
+    Function,
+    If,
+    Load,
+    LValue,
+    Return,
+    Stmt,
+    Variable,
+)
+from emulator.c28x.tree_queries import bare, parts, roots, statements
+
+#: Functions of the libraries that limit a value, their first argument or any.
+_LIMITERS: Final = frozenset({
+    "fmin", "fmax", "fminf", "fmaxf", "fminl", "fmaxl", "__fmin", "__fmax", "__fsat", "_IQsat", "__IQsat", "__min",
+    "__max", "__lmin", "__lmax",
+})  # fmt: skip
+_ABOVE: Final = (">", ">=")
+_SIDES: Final = frozenset({"high", "low"})
+
+
+class RegulatorPart(NamedTuple):
+    """A part of a regulator: its kind, the regulator, its integral's text, and the factor of a share.
+
+    `side`: the sides on which nothing limits the integral.
+    """
+
+    kind: str
+    regulator: str
+    integral: str
+    scale: float = 1.0
+    side: str = ""
+
+
+class _Sum(NamedTuple):
+    """A statement that adds to an integral: its function, the integral, what is added, and the new value."""
+
+    function: Function
+    target: LValue
+    key: Key
+    addend: Expr
+    value: Expr
+
+
+def wind_up(functions: Iterable[Function]) -> dict[int, RegulatorPart]:
+    """The parts of the regulators whose integral nothing limits, by the identity of their expressions."""
+    functions = list(functions)
+    sums = [found for function in functions for found in _sums(function)]
+    if not sums:
+        return {}
+    free = _unlimited({found.key for found in sums}, functions, {id(found.value) for found in sums})
+    found: dict[int, RegulatorPart] = {}
+    for each in sums:
+        if free[each.key]:
+            found |= _regulator(each, "/".join(sorted(free[each.key])))
+    return found
+
+
+def _sums(function: Function) -> Iterator[_Sum]:
+    """The statements of a function that add to an object which outlasts it."""
+    for s in statements(function.body):
+        match s:
+            case Assign(target=LValue(ctype=FloatType() | IntType() as ctype) as target, value=value):
+                if (isinstance(ctype, IntType) and not ctype.signed) or target.indices:
+                    continue
+                if isinstance(target.root, Variable) and target.root.plain:
+                    continue
+                key, summed = key_of(target), bare(value)
+                if key is None or not isinstance(summed, Binary) or summed.op != "+":
+                    continue
+                for old, addend in ((summed.left, summed.right), (summed.right, summed.left)):
+                    grown = bare(old)
+                    if isinstance(grown, Load) and grown.lvalue == target and not _mentions(addend, key):
+                        yield _Sum(function, target, key, addend, value)
+                        break
+
+
+def _unlimited(keys: set[Key], functions: list[Function], added: set[int]) -> dict[Key, set[str]]:
+    """On which sides no statement limits each integral; `added` are the values of the statements that add."""
+    free = {key: set(_SIDES) for key in keys}
+    for function in functions:
+        for s in statements(function.body):
+            if isinstance(s, Assign) and isinstance(s.target, LValue):
+                key = key_of(s.target)
+                taken_over = isinstance(bare(s.value), Load)  # from the same member of another regulator
+                if key in free and id(s.value) not in added and not taken_over and _mentions(s.value, key):
+                    free[key].clear()
+            for p in (p for root in roots(s) for p in parts(root)):
+                match p:
+                    case AddressOf(lvalue=lvalue) if (key := key_of(lvalue)) in free:
+                        free[key].clear()
+                    case Compare(op=op, left=left, right=right):
+                        for side, above in ((left, op in _ABOVE), (right, op not in _ABOVE)):
+                            for key in keys:
+                                if _mentions(side, key):
+                                    plain = isinstance(bare(side), Load) and op not in ("==", "!=")
+                                    free[key] -= {"high" if above else "low"} if plain else _SIDES
+    return free
+
+
+def _mentions(e: Any, key: Key) -> bool:
+    return any(isinstance(p, Load) and key_of(p.lvalue) == key for p in parts(e))
+
+
+def _regulator(added: _Sum, side: str) -> dict[int, RegulatorPart]:
+    """The parts of the regulator that has this integral; empty if there is none."""
+    function, key = added.function, added.key
+    error = _leaves(added.addend)
+    for value, limited in _outputs(function):
+        found = _share(value, key)
+        if found is None:
+            continue
+        share, scale = found
+        common = error & _leaves(value, without=share)
+        if scale <= 0 or error & _leaves(share) or not common or not _differs(added, common):
+            continue
+        if any(_same(each, p) for each in limited for p in parts(added.addend)):
+            continue
+        text = added.target.text
+        name = f"{function.path}: {text}"
+        of = {
+            id(added.value): RegulatorPart("sum", name, text),
+            id(share): RegulatorPart("share", name, text, scale, side),
+            id(value): RegulatorPart("output", name, text),
+        }
+        if len(of) == 3:
+            return of | {id(each): RegulatorPart("limit", name, text) for each in limited}
+    return {}
+
+
+def _outputs(function: Function) -> Iterator[tuple[Expr, list[Expr]]]:
+    """The sums that a function limits, each with the limited values."""
+    given: list[tuple[LValue | Variable, Expr]] = []
+    for s in statements(function.body):
+        match s:
+            case Assign(target=LValue() as object, value=value):
+                given.append((object, value))
+            case Declare(variable=variable, value=Expr() as value):
+                given.append((variable, value))
+        for root in roots(s):
+            for p in parts(root):
+                operand = _limits(p)
+                if operand is not None and _summed(operand):
+                    yield operand, [p]
+    for target, value in given:
+        if _summed(bare(value)):
+            limited = [e for s in statements(function.body) for e in _limited(s, target)]
+            if limited:
+                yield value, limited
+
+
+def _summed(e: Expr) -> bool:
+    """Whether an expression has a sum."""
+    return any(isinstance(p, Binary) and p.op in ("+", "-") for p in parts(e))
+
+
+def _limits(e: Any) -> Expr | None:
+    """What a call or a conditional expression limits; None: it limits nothing."""
+    match e:
+        case Call(function=function, arguments=arguments):
+            if function.extern and function.name in _LIMITERS:
+                candidates = list(arguments)
+            else:
+                at = _limiter(function)
+                candidates = [arguments[at]] if at is not None and at < len(arguments) else []
+            for argument in candidates:
+                inner = bare(argument)
+                if not isinstance(inner, Const):
+                    return _limits(inner) or inner
+        case Conditional(test=test, then=then, otherwise=otherwise):
+            for p in parts(test):
+                if isinstance(p, Compare) and p.op not in ("==", "!="):
+                    for side in (p.left, p.right):
+                        if any(_same(side, each) for each in (then, otherwise)) and not isinstance(bare(side), Const):
+                            return bare(side)
+    return None
+
+
+def _limiter(function: Function) -> int | None:
+    """Which parameter a function limits: it returns the parameter, or something else where that is beyond a limit."""
+    body = list(statements(function.body))
+    if function.extern or not body or not all(isinstance(s, If | Return | Assign | Declare) for s in body):
+        return None
+    returned = [s.value for s in body if isinstance(s, Return) and s.value is not None]
+    for n, parameter in enumerate(function.parameters):
+        tests = [s.test for s in body if isinstance(s, If)]
+        compared = any(
+            isinstance(p, Compare) and p.op not in ("==", "!=") and (_is(p.left, parameter) or _is(p.right, parameter))
+            for test in tests for p in parts(test)
+        )  # fmt: skip
+        if compared and any(_is(value, parameter) for value in returned):
+            return n
+    return None
+
+
+def _limited(s: Stmt, target: LValue | Variable) -> Iterator[Expr]:
+    """The values that a statement gives instead of `target` where that is beyond a limit."""
+    match s:
+        case If(test=test, then=then):
+            for p in parts(test):
+                if isinstance(p, Compare) and p.op not in ("==", "!="):
+                    for side, limit in ((p.left, p.right), (p.right, p.left)):
+                        if _is(side, target):
+                            for inner in then:
+                                value = getattr(inner, "value", None)
+                                if not isinstance(inner, Assign | Return) or not isinstance(value, Expr):
+                                    continue
+                                if isinstance(bare(value), Const) or _same(value, limit):
+                                    yield value
+            return
+    for root in roots(s):
+        for p in parts(root):
+            operand = _limits(p)
+            if operand is not None and _is(operand, target):
+                yield p
+
+
+def _is(e: Expr, target: LValue | Variable) -> bool:
+    """Whether an expression is the value of an object."""
+    load = bare(e)
+    if not isinstance(load, Load):
+        return False
+    if isinstance(target, Variable):
+        return load.lvalue.root is target and not load.lvalue.indices
+    return load.lvalue == target
+
+
+def _same(a: Any, b: Any) -> bool:
+    """Whether two expressions are the same one, conversions apart."""
+    return isinstance(a, Expr) and isinstance(b, Expr) and bare(a) == bare(b)
+
+
+def _share(e: Expr, key: Key) -> tuple[Expr, float] | None:
+    """The integral's share of a sum, and the factor of the sum behind it; None: it has no such share."""
+    if not _mentions(e, key):
+        return None
+    match e:
+        case Convert(operand=operand) if isinstance(operand.ctype, FloatType | IntType):
+            return _share(operand, key)
+        case Binary(op="+" | "-" as op, left=left, right=right):
+            inside, outside = (left, right) if _mentions(left, key) else (right, left)
+            if _mentions(outside, key):
+                return None
+            found = _share(inside, key)
+            sign = -1.0 if op == "-" and inside is right else 1.0
+            return None if found is None else (found[0], found[1] * sign)
+        case Binary(op="*", left=left, right=Const(value=value)) | Binary(op="*", left=Const(value=value), right=left):
+            return _scaled(left, key, float(value))
+        case Binary(op="/", left=left, right=Const(value=value)) if value:
+            return _scaled(left, key, 1.0 / value)
+        case Binary(op=">>", left=left, right=Const(value=value)):
+            return _scaled(left, key, 0.5 ** int(value))
+    return e, 1.0
+
+
+def _scaled(e: Expr, key: Key, factor: float) -> tuple[Expr, float] | None:
+    found = _share(e, key)
+    return None if found is None else (found[0], found[1] * factor)
+
+
+def _leaves(e: Any, without: Expr | None = None) -> set[Key]:
+    """The numbers that an expression reads; `without`: a part that does not count."""
+    aside = {id(p) for p in parts(without)} if without is not None else set()
+    loads = (p for p in parts(e) if isinstance(p, Load) and isinstance(p.ctype, FloatType | IntType))
+    keys = {key_of(load.lvalue) for load in loads if id(load) not in aside}
+    return {key for key in keys if key is not None}
+
+
+def _differs(added: _Sum, common: set[Key]) -> bool:
+    """Whether what is added is an error: a difference, or a parameter."""
+    if _subtracts(added.addend):
+        return True
+    for s in statements(added.function.body):
+        match s:
+            case Assign(target=LValue() as target, value=value) if key_of(target) in common and _subtracts(value):
+                return True
+            case Declare(variable=variable, value=Expr() as value) if (variable, 0) in common and _subtracts(value):
+                return True
+    return any((parameter, 0) in common for parameter in added.function.parameters)
+
+
+def _subtracts(e: Any) -> bool:
+    return any(
+        isinstance(p, Binary) and p.op == "-" and not any(isinstance(bare(side), Const) for side in (p.left, p.right))
+        for p in parts(e)
+    )  # fmt: skip
