@@ -211,9 +211,16 @@ def _limits(e: Any) -> Expr | None:
             for p in parts(test):
                 if isinstance(p, Compare) and p.op not in ("==", "!="):
                     for side in (p.left, p.right):
-                        if any(_same(side, each) for each in (then, otherwise)) and not isinstance(bare(side), Const):
+                        chosen = [*_choices(then), *_choices(otherwise)]
+                        if any(_same(side, each) for each in chosen) and not isinstance(bare(side), Const):
                             return bare(side)
     return None
+
+
+def _choices(e: Expr) -> list[Expr]:
+    """The values that a conditional expression, or one within it, can have."""
+    inner = bare(e)
+    return [*_choices(inner.then), *_choices(inner.otherwise)] if isinstance(inner, Conditional) else [inner]
 
 
 def _limiter(function: Function) -> int | None:

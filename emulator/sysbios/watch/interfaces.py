@@ -19,13 +19,15 @@ from emulator.c28x.ctypes import IntType
 from emulator.c28x.findings import Findings
 from emulator.c28x.symbols import Module, library_headers
 from emulator.c28x.tree import Assign, Call, Expr, Function, LValue, RegisterLoad, RegisterRef, Stmt
-from emulator.c28x.tree_queries import assigned, bare, statements, variables, within
+from emulator.c28x.tree_queries import assigned, bare, parts, roots, statements, variables, within
 from emulator.sysbios.watch.statements import StatementLocator
 from emulator.sysbios.watch.threads import Routine, ThreadWatch, excluded
 from emulator.sysbios.watch.ways import below, free_ways, interrupt_routines
 
 #: The registers of an interface that a message is written to.
 WRITTEN: Final = ("MSK", "ARB", "MCTL", "DATA", "DATB", "CMD")
+#: File, line and column of a statement.
+_At = tuple[str, int, int]
 #: CAN_CTL.Init: the module takes no part in the bus.
 INIT: Final = 1 << 0
 
@@ -55,8 +57,8 @@ class Interfaces:
         self._told: set[tuple[str, str]] = set()
         #: Interface -> the routines that have written to it.
         self._used: dict[str, set[str]] = {}
-        #: Routine -> the lines of the user's functions that run whatever it has done.
-        self._free: dict[str, set[tuple[str, int]]] = {}
+        #: Routine -> the places of the user's functions that are reached whatever it has done.
+        self._free: dict[str, set[_At]] = {}
 
     def watch(self, regs: CanBlock) -> None:
         """Watch the two interfaces of a module."""
@@ -93,11 +95,11 @@ class Interfaces:
     def _freely(self, routine: str) -> bool:
         """Whether `main` is in a function of a library, and is there whatever a routine has done."""
         frames = list(self._locator.frames())
-        own = [place[:2] for place in frames if place.file not in self._libraries]
+        own = [(place.file, place.line, place.column) for place in frames if place.file not in self._libraries]
         if len(own) == len(frames):
             return False  # the names of the registers say it
         if routine not in self._free:
-            self._free[routine] = self._lines(routine)
+            self._free[routine] = self._undecided(routine)
         return self._free[routine].issuperset(own)
 
     @cached_property
@@ -105,8 +107,8 @@ class Interfaces:
         """The files of libraries: those that others brought, and their headers."""
         return library_headers(self._modules) | {module.file for module in self._modules if module.brought}
 
-    def _lines(self, name: str) -> set[tuple[str, int]]:
-        """The lines of the user's functions that run whatever a routine has done."""
+    def _undecided(self, name: str) -> set[_At]:
+        """The statements and calls of the user's functions that run whatever a routine has done."""
         own = {function.path: function for module in self._modules for function in module.functions}
         routines = list(interrupt_routines(own))
         inside = {function.path for _, reached in routines for function in reached}
@@ -114,7 +116,9 @@ class Interfaces:
         others = [function for path, function in mine.items() if path not in inside]
         telling = {path for routine, reached in routines if routine.name == name for path in _set(reached)}
         ways = free_ways(others, own, telling, lambda part: _tells(part, own, telling) or _by_number(part, own))
-        return {(way.function.where.file, statement.line) for way in ways for statement in way.undecided}
+        free = [statement for way in ways for statement in way.undecided]
+        calls = [part for s in free for root in roots(s) for part in parts(root) if isinstance(part, Call)]
+        return {(at.where.file, at.where.line, at.where.column) for at in (*free, *calls)}
 
     @cached_property
     def _shared(self) -> set[SharedInterface]:

@@ -103,6 +103,13 @@ def test_a_goal_that_steps_go_past_is_told(tick: str, turn: str, line: str, tmp_
     assert told(tmp_path, f"Pushed = Now & 1;\n{tick}", turn) == [("stepped-over", line)]
 
 
+@pytest.mark.parametrize(("goal", "found"), [(210, True), (140, False), (60, False), (251, True)])
+def test_a_goal_beside_the_steps_up_and_down_is_told(goal: int, found: bool, tmp_path: Path) -> None:
+    line = f"if (Level == {goal}) Door = SHUT;"
+    tick = f"if (Pushed) {{ if (Level < 900) Level += 40; }} else {{\n{line}\nelse if (Level > 40) Level -= 40; }}"
+    assert told(tmp_path, f"Pushed = Now & 1;\n{tick}") == [("stepped-over", line)] * found
+
+
 @pytest.mark.parametrize(("tick", "turn"), [
     (RAMP.format(50), ""),
     ("if (Level < 250) Level += 40; else { Level = 250; Door = WIDE; }", ""),

@@ -162,3 +162,24 @@ def test_the_address_pins_are_the_lower_bits_of_the_address(pins: int) -> None:
 def test_there_are_three_address_pins() -> None:
     with pytest.raises(ValueError, match="address pins 8"):
         At24c256(Clock(), 8)
+
+
+@pytest.mark.parametrize(("pause_ms", "again_ms", "records", "told"), [
+    (1, 60, 5, 3),  # each record is read back in its write cycle, and nobody asks again
+    (1, 60, 2, 0),  # an accident
+    (1, 3, 5, 0),  # polled for its end
+    (1, 12, 5, 0),  # asked again soon
+    (6, 60, 5, 0),  # after the end of the cycle
+])  # fmt: skip
+def test_a_device_that_is_addressed_in_its_write_cycle_each_time_is_told(
+    pause_ms: int, again_ms: int, records: int, told: int
+) -> None:
+    bench = Bench()
+    for record in range(records):
+        bench.write(64 * record, record, wait=False)
+        bench.clock.advance_to(bench.clock.now + pause_ms * CYCLES_PER_MS)
+        bench.answers()
+        bench.clock.advance_to(bench.clock.now + again_ms * CYCLES_PER_MS)
+        while not bench.answers():
+            bench.clock.advance_to(bench.clock.now + CYCLES_PER_MS)
+    assert [rule for rule, _ in bench.reports] == ["eeprom-busy"] * told

@@ -46,7 +46,7 @@ STATIC = (
     *(
         f"emulator/c28x/passes/{name}.py"
         for name in (
-            "blocks", "checks", "copies", "flow", "formats", "names", "null_tests", "states", "stores", "values",
+            "anew", "blocks", "checks", "copies", "flow", "formats", "names", "null_tests", "states", "stores", "values",
             "waiting",
         )
     ),

@@ -114,3 +114,59 @@ def test_an_interface_that_the_routine_can_change_is_told(routine: str, turn: st
 )
 def test_an_interface_that_is_kept_apart_is_not_told(routine: str, turn: str, tmp_path: Path) -> None:
     assert told(routine, turn, tmp_path) == []
+
+
+#: A library that reaches the interfaces by numbers: a word of a byte peripheral is at twice its offset (TRM, CAN).
+LIBRARY = """#ifndef WIRE_H
+#define WIRE_H
+#include "F28x_Project.h"
+#define LONG(x) (*((volatile unsigned long *)(unsigned long)(x)))
+#define WIRE_A 0x48000ul
+void Wire_send(unsigned long base, unsigned int object, unsigned int data);
+void Wire_clear(unsigned long base, unsigned int object, unsigned int interface);
+unsigned long Wire_pending(unsigned long base);
+#endif
+"""
+SOURCE = """#include "wire.h"
+void Wire_send(unsigned long base, unsigned int object, unsigned int data)
+{
+    LONG(base + 0x110) = data;
+    LONG(base + 0x100) = 0x00860000ul | object;
+    while (LONG(base + 0x100) & 0x8000ul)
+        ;
+}
+
+void Wire_clear(unsigned long base, unsigned int object, unsigned int interface)
+{
+    LONG(base + 0x100 + 0x20 * (interface - 1)) = 0x00080000ul | object;
+}
+
+unsigned long Wire_pending(unsigned long base) { return LONG(base + 0x88); }
+"""
+SENDS = "Wire_send(WIRE_A, 1, Number++);"
+
+
+@pytest.mark.parametrize(
+    ("routine", "turn", "lines"),
+    [
+        ("Wire_clear(WIRE_A, 1, 1);", f"\n{SENDS}", [SENDS]),
+        ("Wire_clear(WIRE_A, 1, 1);", f"if (Ticks & 1)\n{SENDS}", [SENDS]),
+        ("Wire_clear(WIRE_A, 1, 1);", f"DINT; {SENDS} EINT;", []),
+        ("Wire_clear(WIRE_A, 1, 2);", SENDS, []),
+        ("Wire_clear(WIRE_A, 1, 1); Free = 1;", f"if (Free) {{ Free = 0; {SENDS} }}", []),
+        ("Wire_clear(WIRE_A, 1, 1);", f"if (Wire_pending(WIRE_A) & 1) continue; {SENDS}", []),
+    ],
+)
+def test_an_interface_that_a_library_uses_by_numbers(
+    routine: str, turn: str, lines: list[str], tmp_path: Path
+) -> None:
+    folder = tmp_path / "library"
+    folder.mkdir()
+    (folder / "wire.h").write_text(LIBRARY, encoding="utf-8")
+    (folder / "wire.c").write_text(SOURCE, encoding="utf-8")
+    file = tmp_path / "sender.c"
+    text = PROGRAM.replace("@routine", routine).replace("@turn", turn).replace("F28x_Project.h", "wire.h")
+    file.write_text(text, encoding="utf-8")
+    found = check_files(DriverFiles([file], include=[folder], seconds=0.01)).findings
+    cut = [f.place for f in found if f.rule == "transaction-cut" and f.place is not None]
+    assert [text.splitlines()[place.line - 1].strip() for place in cut] == lines

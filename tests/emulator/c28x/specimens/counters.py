@@ -231,6 +231,25 @@ def Scaled(code: uint16) -> uint16:
     ),
     Pair(
         "narrowed",
+        "a clock divided by a rate, cut to 16 bits",
+        (("Interval", (400,)), ("Interval", (6000,))),
+        """
+CLOCK = 200000000
+def Interval(rate: uint16) -> uint16:
+    counts: uint16 = uint16(uint32(CLOCK) / rate)  # <-
+    return counts
+""",
+        """
+CLOCK = 200000000
+def Interval(rate: uint16) -> uint16:
+    counts: uint32 = uint32(CLOCK) / rate
+    if counts > 65535:
+        return 65535
+    return uint16(counts)
+""",
+    ),
+    Pair(
+        "narrowed",
         "a product that a cast cuts",  # 2929 * 14 is 41006
         (("Way", (2929,)),),
         """

@@ -325,6 +325,87 @@ def Duty(error: int32) -> int16:
     ),
     Pair(
         "sign-lost",
+        "a word of two octets that is widened without its sign",
+        (("Take", (0x7C, 0xFC)), ("Take", (0x10, 0x01))),
+        """
+wanted: int16 = 0
+def Take(low: uint16, high: uint16) -> int16:
+    rpm: int32
+    rpm = low | high << 8  # <-
+    if rpm >= -3000 and rpm <= 3000:
+        wanted = int16(rpm)
+    return wanted
+""",
+        """
+wanted: int16 = 0
+def Take(low: uint16, high: uint16) -> int16:
+    rpm: int16
+    count: int32
+    rpm = int16(low | high << 8)
+    count = low | high << 8
+    if rpm >= -3000 and rpm <= 3000:
+        wanted = rpm
+    if count < 0 or count > 60000:
+        wanted = 0
+    return wanted
+""",
+    ),
+    Pair(
+        "sign-lost",
+        "an octet that is taken without its sign",
+        (("Take", (0xF6,)), ("Take", (20,))),
+        """
+cold: uint16 = 0
+def Take(octet: uint16) -> int16:
+    degrees: int16
+    degrees = octet & 0xFF  # <-
+    if degrees < -5:
+        cold += 1
+    return degrees
+""",
+        """
+cold: uint16 = 0
+def Take(octet: uint16) -> int16:
+    degrees: int16
+    degrees = octet & 0xFF
+    if degrees > 127:
+        degrees -= 256
+    if degrees < -5:
+        cold += 1
+    return degrees
+""",
+    ),
+    Pair(
+        "sign-lost",
+        "two signed numbers that are compared as words",
+        (("Put", (-40,)), ("Lamp", (10,)), ("Put", (30,)), ("Lamp", (10,))),
+        """
+words: array[uint16, 4] = (0, 0, 0, 0)
+def Put(value: int16) -> int16:
+    words[1] = uint16(value)
+    return value
+def Lamp(limit: int16) -> int16:
+    if words[1] > uint16(limit):  # <-
+        return 1
+    return 0
+""",
+        """
+words: array[uint16, 4] = (0, 0, 0, 0)
+counts: array[uint16, 4] = (0, 0, 0, 0)
+def Put(value: int16) -> int16:
+    words[1] = uint16(value)
+    counts[1] = 40000
+    return value
+def Lamp(limit: int16) -> int16:
+    if counts[1] < uint16(limit):
+        return 2
+    if int16(words[1]) > limit:
+        return 1
+    return 0
+""",
+    ),
+    Pair(
+        "sign-lost",
         "a signed word in an unsigned member",
         (("Take", (0xFFF6,)),),
         """

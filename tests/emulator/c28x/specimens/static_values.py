@@ -172,6 +172,46 @@ def Speed(now: int32) -> int32:
     ),
     static_pair(
         "constant-condition",
+        "a counter that each pass begins anew",
+        """
+total: int32 = 0
+taken: uint16 = 0
+offset: int16 = 0
+def Calibrate(raw: int16) -> int16:
+    total = 0
+    taken = 0
+    total += raw
+    taken += 1
+    if taken >= 64:  # <-
+        offset = int16(total / 64)
+    return offset
+""",
+        """
+total: int32 = 0
+taken: uint16 = 0
+offset: int16 = 0
+fast: uint16 = 0
+def Begin() -> int16:
+    total = 0
+    taken = 0
+    return 0
+def Calibrate(raw: int16) -> int16:
+    fast = 1
+    if fast == 1:
+        total += raw
+        taken += 1
+    if taken >= 64:
+        offset = int16(total / 64)
+        taken = 0
+        taken += Begin()
+        if taken == 0:
+            total = 0
+    return offset
+""",
+        ("Calibrate", (7,)),
+    ),
+    static_pair(
+        "constant-condition",
         "a range as in mathematics",
         """
 def Inside(d: float32) -> int16:

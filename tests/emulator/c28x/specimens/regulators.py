@@ -1,0 +1,196 @@
+"""Regulators whose integral runs beyond the limits of their output, beside right ones."""
+
+from __future__ import annotations
+
+from tests.emulator.c28x.specimens import Pair
+
+#: The error stays for 200 passes.
+_HOLD = (("Hold", (40, 200)), ("Hold", (-30, 5)))
+
+
+def _regulator(name: str, defect: str, correct: str) -> Pair:
+    return Pair("wind-up", name, _HOLD, defect, correct, watch=True)
+
+
+PAIRS = (
+    _regulator(
+        "an integral in fixed point",
+        """
+LIMIT = 900
+total: int32 = 0
+def Step(target: int16, value: int16) -> int16:
+    error: int32 = int32(target) - value
+    duty: int32
+    total += error * 24  # <-
+    duty = (error * 180 + total) / 256
+    if duty > LIMIT:
+        duty = LIMIT
+    elif duty < -LIMIT:
+        duty = -LIMIT
+    return int16(duty)
+def Hold(error: int16, passes: int16) -> int16:
+    i: int16
+    last: int16 = 0
+    for i in range(passes):
+        last = Step(error * 10, 0)
+    return last
+""",
+        """
+LIMIT = 900
+total: int32 = 0
+def Step(target: int16, value: int16) -> int16:
+    error: int32 = int32(target) - value
+    duty: int32
+    total += error * 24
+    if total > LIMIT * int32(256):
+        total = LIMIT * int32(256)
+    if total < -LIMIT * int32(256):
+        total = -LIMIT * int32(256)
+    duty = (error * 180 + total) / 256
+    if duty > LIMIT:
+        duty = LIMIT
+    elif duty < -LIMIT:
+        duty = -LIMIT
+    return int16(duty)
+def Hold(error: int16, passes: int16) -> int16:
+    i: int16
+    last: int16 = 0
+    for i in range(passes):
+        last = Step(error * 10, 0)
+    return last
+""",
+    ),
+    _regulator(
+        "an integral of a structure, and a function that limits",
+        """
+class Loop(struct):
+    kp: float32
+    ki: float32
+    total: float32
+heat: Loop = (0.5, 0.2, 0.0)
+def Within(value: float32, low: float32, high: float32) -> float32:
+    if value < low:
+        return low
+    if value > high:
+        return high
+    return value
+def Step(loop: ptr[Loop], error: float32) -> float32:
+    loop.total = loop.total + loop.ki * error  # <-
+    return Within(loop.kp * error + loop.total, 0.0, 100.0)
+def Hold(error: int16, passes: int16) -> float32:
+    i: int16
+    last: float32 = 0.0
+    for i in range(passes):
+        last = Step(addressof(heat), error)
+    return last
+""",
+        """
+class Loop(struct):
+    kp: float32
+    ki: float32
+    total: float32
+heat: Loop = (0.5, 0.2, 0.0)
+def Within(value: float32, low: float32, high: float32) -> float32:
+    if value < low:
+        return low
+    if value > high:
+        return high
+    return value
+def Step(loop: ptr[Loop], error: float32) -> float32:
+    output: float32 = loop.kp * error + loop.total
+    if (output < 100.0 or error < 0.0) and (output > 0.0 or error > 0.0):
+        loop.total = loop.total + loop.ki * error
+    return Within(output, 0.0, 100.0)
+def Hold(error: int16, passes: int16) -> float32:
+    i: int16
+    last: float32 = 0.0
+    for i in range(passes):
+        last = Step(addressof(heat), error)
+    return last
+""",
+    ),
+    _regulator(
+        "an integral that is taken back by what the limit cut off",
+        """
+total: float32 = 0.0
+def Step(error: float32) -> float32:
+    output: float32
+    limited: float32
+    total += 0.2 * error  # <-
+    output = 0.5 * error + total
+    limited = 100.0 if output > 100.0 else 0.0 if output < 0.0 else output
+    return limited
+def Hold(error: int16, passes: int16) -> float32:
+    i: int16
+    last: float32 = 0.0
+    for i in range(passes):
+        last = Step(error)
+    return last
+""",
+        """
+total: float32 = 0.0
+def Step(error: float32) -> float32:
+    output: float32
+    limited: float32
+    output = 0.5 * error + total
+    limited = 100.0 if output > 100.0 else 0.0 if output < 0.0 else output
+    total += 0.2 * error + 0.5 * (limited - output)
+    return limited
+def Hold(error: int16, passes: int16) -> float32:
+    i: int16
+    last: float32 = 0.0
+    for i in range(passes):
+        last = Step(error)
+    return last
+""",
+    ),
+    _regulator(
+        "sums that are no integrals of a regulator",
+        """
+total: float32 = 0.0
+def Step(target: float32, value: float32) -> float32:
+    output: float32
+    total = total + (target - value) * 0.3  # <-
+    output = (target - value) * 0.5 + total
+    if output > 100.0:
+        output = 100.0
+    return output
+def Hold(error: int16, passes: int16) -> float32:
+    i: int16
+    last: float32 = 0.0
+    for i in range(passes):
+        last = Step(error, 0.0)
+    return last
+""",
+        """
+way: float32 = 0.0
+before: float32 = 0.0
+mean: float32 = 0.0
+elapsed: int32 = 0
+def Step(place: float32, value: float32) -> float32:
+    shown: float32
+    output: float32
+    smooth: float32
+    way += place - before
+    before = place
+    shown = way * 2.0
+    if shown > 100.0:
+        shown = 100.0
+    elapsed += 3
+    output = elapsed * 0.25
+    if output > 100.0:
+        output = 100.0
+    mean += (value - mean) * 0.1
+    smooth = mean + 0.2 * value
+    if smooth > 100.0:
+        smooth = 100.0
+    return shown + output + smooth
+def Hold(error: int16, passes: int16) -> float32:
+    i: int16
+    last: float32 = 0.0
+    for i in range(passes):
+        last = Step(float32(i) * error, error)
+    return last
+""",
+    ),
+)
