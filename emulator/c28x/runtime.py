@@ -1030,8 +1030,9 @@ class Runtime:
             beyond = state.share - value if side == "high" else value - state.share
             if side in state.side and 0.0 < span < beyond * _SPANS:
                 at = self.sites[state.sum_at]
-                message = f"{at.name} goes on while the output stands at its limit {value:g}: its share is {state.share:g}"
-                self.hit(at, "wind-up", f"{message}, and must come back before the output moves", value)
+                message = f"{at.name} goes on while the output stands at its limit {value:g}"
+                share = f"its share is {state.share:g}, and must come back before the output moves"
+                self.hit(at, "wind-up", f"{message}: {share}", value)
 
     def quantity(self, value: int, number: int) -> int:
         """A number that does not fit the register field to which it is written."""

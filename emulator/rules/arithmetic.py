@@ -127,9 +127,11 @@ passed.
 
 The detector follows stamps from CPU timers, eCAPs, the kernel's clock and counters of interrupt routines, through
 variables, members and functions. It reports a comparison that goes wrong because the counter has wrapped between the
-two stamps. If a 16-bit counter is compared by order with a stamp and a number (`now < last + 20`), the source is
-enough: the sum wraps before the counter does. A comparison by order is right if its branch takes the difference:
-`if (now < last) d = 65536 - last + now;`.
+two stamps. A comparison by order is right if its branch takes the difference: `if (now < last) d = 65536 - last + now;`.
+
+In two cases the source is enough. If a 16-bit counter is compared by order with a stamp and a number
+(`now < last + 20`), the sum wraps before the counter does. If no statement ever sets the stamp of a difference of 16
+bits, that is the time since the start: a time-out is over for ever, but for a moment in each round.
 
 **Fix:** compare differences: `(unsigned int) (now - last) >= INTERVAL`, or `(int) (now - end) >= 0` for a time that is
 at most half of the range ahead.

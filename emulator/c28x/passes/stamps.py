@@ -46,7 +46,7 @@ from emulator.c28x.tree import (
     Unary,
     Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import bare, different, parts, roots, statements, within
+from emulator.c28x.tree_queries import addressed, assigned, bare, different, parts, roots, statements, within
 
 #: The kinds of expressions: neither of the others; a stamp; a deadline, which is a stamp plus or minus something.
 NONE: Final = 0
@@ -242,6 +242,32 @@ class Stamps:
                         ordered = self.of_compare(p.op, p.left, p.right) == "order"
                         if wraps and ordered and not _handled(s, root, p.left, p.right):
                             yield function, s, p
+
+    def never_set(self) -> Iterator[tuple[Function, Stmt, Binary, Variable]]:
+        """16-bit times since a stamp that no statement ever sets: they are those since the start, and wrap.
+
+        Yields the function, the statement, the difference and the object.  Call it after `suspicions`.
+        """
+        if not self.kinds:
+            return
+        nodes = [p for function in self.functions for p in within(function.body)]
+        set_ = addressed(nodes)
+        for function in self.functions:
+            set_ |= {root for s in statements(function.body) if (root := assigned(s)) is not None}
+        for function in self.functions:
+            for s in statements(function.body):
+                for root in roots(s):
+                    for p in parts(root):
+                        match p:
+                            case Binary(op="-", ctype=IntType(bits=16, signed=False), left=now, right=right):
+                                load = bare(right)
+                            case _:
+                                continue
+                        match load:
+                            case Load(lvalue=LValue(root=Variable(kind="global") as stamp, indices=[])):
+                                plain = isinstance(stamp.ctype, IntType) and not stamp.constant and not stamp.escapes
+                                if plain and stamp not in set_ and self.kind(now) == STAMP and stamp.initial:
+                                    yield function, s, p, stamp
 
     # Suspicions
 

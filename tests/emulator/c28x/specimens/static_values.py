@@ -171,6 +171,34 @@ def Speed(now: int32) -> int32:
         ("Speed", (7,)),
     ),
     static_pair(
+        "stamp-compare",
+        "a time since a stamp that no statement sets",
+        """
+Ticks: volatile[uint16] = 0
+Last: uint16 = 0
+def Tick() -> void:
+    Ticks += 1
+Vector: funcptr = Tick
+def Seen() -> void:
+    Vector()
+def Late() -> int16:
+    return uint16(Ticks - Last) > 100  # <-
+""",
+        """
+Ticks: volatile[uint16] = 0
+Last: uint16 = 0
+FIRST: const[uint16] = 5
+def Tick() -> void:
+    Ticks += 1
+Vector: funcptr = Tick
+def Seen() -> void:
+    Vector()
+    Last = Ticks
+def Late() -> int16:
+    return uint16(Ticks - Last) > 100 or uint16(Ticks - FIRST) == 7
+""",
+    ),
+    static_pair(
         "constant-condition",
         "a counter that each pass begins anew",
         """
