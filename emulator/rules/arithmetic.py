@@ -127,7 +127,8 @@ passed.
 
 The detector follows stamps from CPU timers, eCAPs, the kernel's clock and counters of interrupt routines, through
 variables, members and functions. It reports a comparison that goes wrong because the counter has wrapped between the
-two stamps. A comparison by order is right if its branch takes the difference: `if (now < last) d = 65536 - last + now;`.
+two stamps. A comparison by order is right if its branch takes the difference:
+`if (now < last) d = 65536 - last + now;`.
 
 In two cases the source is enough. If a 16-bit counter is compared by order with a stamp and a number
 (`now < last + 20`), the sum wraps before the counter does. If no statement ever sets the stamp of a difference of 16

@@ -73,10 +73,10 @@ def check(
         wrong = f"{source_text(against)} is wrong once it is beyond 65535"
         message = f"{name} has 32 bits, and 16 of them are kept: {wrong}"
         owners[function].report(function, s.where, "stamp-compare", message, object=name)
-    for function, s, since, stamp in stamps.never_set():
-        name = stamp.declaration.name
-        message = f"{source_text(since)}: no statement sets {name}, so this is the time since the start, and wraps"
-        owners[function].report(function, s.where, "stamp-compare", message, object=stamp.declaration.path)
+    for function, s, since, unset in stamps.never_set():
+        named = unset.declaration
+        message = f"{source_text(since)}: no statement sets {named.name}: it is the time since the start, and wraps"
+        owners[function].report(function, s.where, "stamp-compare", message, object=named.path)
     for function, s, compare in stamps.ends():
         text = source_text(compare)
         message = f"{text}: the end of the time wraps before the counter does, and the comparison is wrong then"

@@ -118,7 +118,8 @@ class Interfaces:
         ways = free_ways(others, own, telling, lambda part: _tells(part, own, telling) or _by_number(part, own))
         free = [statement for way in ways for statement in way.undecided]
         calls = [part for s in free for root in roots(s) for part in parts(root) if isinstance(part, Call)]
-        return {(at.where.file, at.where.line, at.where.column) for at in (*free, *calls)}
+        places = [statement.where for statement in free] + [call.where for call in calls]
+        return {(at.file, at.line, at.column) for at in places}
 
     @cached_property
     def _shared(self) -> set[SharedInterface]:
