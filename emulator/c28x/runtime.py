@@ -56,6 +56,8 @@ SMALL: Final = -4096
 _FINE: Final = 100
 #: CHOICE: a float passed for an integer parameter that never reaches this value was not meant as an integer.
 _FEW: Final = 10
+#: CHOICE: after so many limited outputs it is known whether their limit moves.
+_MET: Final = 20
 #: CHOICE: an integral has wound up if its share is beyond the limit by a part of the output's whole range: one of this.
 _SPANS: Final = 4.0
 FILLS: Final = ("zero", "ones", "nan", "random:SEED", "stack", "trap")
@@ -109,7 +111,7 @@ class RuntimeSite(Site):
 class RegulatorState:
     """What was seen last of a regulator: the place of its sum, the integral's share of the output, the output."""
 
-    __slots__ = ("limits", "output", "share", "side", "sum_at")
+    __slots__ = ("limits", "met", "moving", "output", "share", "side", "sum_at")
 
     def __init__(self) -> None:
         self.sum_at = 0
@@ -118,8 +120,11 @@ class RegulatorState:
         self.side = ""
         #: The output before it is limited; None: there is none yet.
         self.output: float | None = None
-        #: The limits that the output has met, by side.
+        #: The limits that the output has met, by side, and how often it has met one; whether a limit has moved (it
+        #: limits the steps of the output then, or follows another value).
         self.limits: dict[str, float] = {}
+        self.met = 0
+        self.moving = False
 
 
 class RuntimeSites(dict[int, RuntimeSite]):
@@ -1025,7 +1030,11 @@ class Runtime:
             if output == value or not state.sum_at:
                 return
             side = "high" if output > value else "low"
+            state.moving = state.moving or state.limits.get(side, value) != value
             state.limits[side] = value
+            state.met += 1
+            if state.moving or state.met < _MET:
+                return
             span = abs(state.limits.get("high", 0.0) - state.limits.get("low", 0.0))
             beyond = state.share - value if side == "high" else value - state.share
             if side in state.side and 0.0 < span < beyond * _SPANS:

@@ -99,10 +99,10 @@ The regulator limits its output, but not its integral. While the output stands a
 smaller, and the integral grows with each pass. All of it must be integrated back before the output moves.
 
 It is reported at the statement that adds to the integral, if the integral's share of the output alone is beyond the
-limit by more than a quarter of the range of the output. The output must be a sum of the error, scaled, and of the
-integral, scaled, and the same function must limit it. Nothing is reported about an integral that a statement limits on
-that side, that loses a part of itself in each pass (a filter), or that is no part of such a sum (a meter of energy, an
-odometer, a clock).
+limit by more than a quarter of the range of the output, and the limit has not moved. The output must be a sum of the
+error, scaled, and of the integral, scaled, and the same function must limit it. Nothing is reported about an integral
+that a statement limits on that side, that loses a part of itself in each pass (a filter), or that is no part of such a
+sum (a meter of energy, an odometer, a clock).
 
 **Fix:** limit the integral to the limits of the output, or add to it only while the output is within them.
 """,

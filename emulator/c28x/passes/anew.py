@@ -1,6 +1,7 @@
 """Static check of counters that every pass begins anew: `count = 0; count++; if (count >= 64) ...` is never true.
 
-A value that is only set may be a choice of the build (`fast = 1; if (fast)`).  One that is also counted is not.
+A value that is only set may be a choice of the build (`fast = 1; if (fast)`), and a subscript that is set and counted
+may be tested against the end of its array.  A number of passes is neither.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ from typing import Final
 from emulator.c28x.arithmetic import COMPARE
 from emulator.c28x.ctypes import IntType
 from emulator.c28x.passes.report import StaticReport
-from emulator.c28x.tree import Assign, Binary, Compare, Const, Expr, Function, If, Load, LValue, Stmt, Variable
-from emulator.c28x.tree_queries import bare, blocks, calls, roots, source_text, statements
+from emulator.c28x.tree import Assign, Binary, Compare, Const, Expr, Function, If, Index, Load, LValue, Stmt, Variable
+from emulator.c28x.tree_queries import bare, blocks, calls, parts, roots, source_text, statements, variables, within
 
 #: The value of an object, and whether it was counted since it was set.
 _Known = tuple[int, bool]
@@ -21,6 +22,7 @@ _STEPS: Final = ("+", "-")
 
 def check_begun_anew(function: Function, report: StaticReport) -> None:
     """Report comparisons of counters that are set and counted right before them."""
+    subscripts = {v for p in within(function.body) if isinstance(p, Index) for v in variables(parts(p))}
     for block in _all_blocks(function.body):
         known: dict[Variable, _Known] = {}
         for s in block:
@@ -32,6 +34,8 @@ def check_begun_anew(function: Function, report: StaticReport) -> None:
                 known = {} if opaque else {v: value for v, value in known.items() if v not in changed}
             else:
                 _follow(s, known)
+                for variable in subscripts:
+                    known.pop(variable, None)
 
 
 def _all_blocks(body: list[Stmt]) -> Iterator[list[Stmt]]:

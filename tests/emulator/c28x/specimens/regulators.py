@@ -193,4 +193,41 @@ def Hold(error: int16, passes: int16) -> float32:
     return last
 """,
     ),
+    _regulator(
+        "an output whose steps are limited",
+        """
+total: float32 = 0.0
+def Step(error: float32) -> float32:
+    output: float32
+    total += 0.2 * error  # <-
+    output = 0.5 * error + total
+    if output > 100.0:
+        output = 100.0
+    return output
+def Hold(error: int16, passes: int16) -> float32:
+    i: int16
+    last: float32 = 0.0
+    for i in range(passes):
+        last = Step(error)
+    return last
+""",
+        """
+total: float32 = 0.0
+before: float32 = 0.0
+def Step(error: float32) -> float32:
+    output: float32
+    total += 0.02 * error
+    output = 0.5 * error + total
+    if output > before + 0.25:
+        output = before + 0.25
+    before = output
+    return output
+def Hold(error: int16, passes: int16) -> float32:
+    i: int16
+    last: float32 = 0.0
+    for i in range(passes):
+        last = Step(error)
+    return last
+""",
+    ),
 )

@@ -219,6 +219,8 @@ total: int32 = 0
 taken: uint16 = 0
 offset: int16 = 0
 fast: uint16 = 0
+length: uint16 = 0
+out: array[int16, 4]
 def Begin() -> int16:
     total = 0
     taken = 0
@@ -234,6 +236,11 @@ def Calibrate(raw: int16) -> int16:
         taken += Begin()
         if taken == 0:
             total = 0
+    length = 0
+    out[length] = raw
+    length += 1
+    if length >= 4:
+        return 0
     return offset
 """,
         ("Calibrate", (7,)),
