@@ -131,10 +131,9 @@ def _unlimited(keys: set[Key], functions: list[Function], added: set[int]) -> di
                         free[key].clear()
                     case Compare(op=op, left=left, right=right):
                         for side, above in ((left, op in _ABOVE), (right, op not in _ABOVE)):
-                            for key in keys:
-                                if _mentions(side, key):
-                                    plain = isinstance(bare(side), Load) and op not in ("==", "!=")
-                                    free[key] -= {"high" if above else "low"} if plain else _SIDES
+                            plain = isinstance(bare(side), Load) and op not in ("==", "!=")
+                            for key in keys & {key_of(p.lvalue) for p in parts(side) if isinstance(p, Load)}:
+                                free[key] -= {"high" if above else "low"} if plain else _SIDES
     return free
 
 

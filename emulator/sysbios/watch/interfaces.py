@@ -94,7 +94,7 @@ class Interfaces:
 
     def _freely(self, routine: str) -> bool:
         """Whether `main` is in a function of a library, and is there whatever a routine has done."""
-        frames = list(self._locator.frames())
+        frames = self._locator.frames()
         own = [(place.file, place.line, place.column) for place in frames if place.file not in self._libraries]
         if len(own) == len(frames):
             return False  # the names of the registers say it

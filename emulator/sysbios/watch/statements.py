@@ -6,8 +6,6 @@ compare.  It becomes a `Place` only when a finding needs it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from emulator.c28x.findings import Findings
 from emulator.c28x.position import INTERRUPT, Calls, interrupted
 from emulator.c28x.sites import Place
@@ -50,9 +48,9 @@ class StatementLocator:
         position = self._position
         return position.at or position.innermost()
 
-    def frames(self) -> Iterator[Place]:
+    def frames(self) -> list[Place]:
         """Where each function stands that is executing, innermost first."""
-        return (self._places[statement] for statement, _ in self._position.frames())
+        return [self._places[statement] for statement, _ in self._position.frames()]
 
     def call(self) -> Call | None:
         """The identity of the innermost firmware call that is executing."""
