@@ -38,6 +38,8 @@ WORDS: Final = {
 _C: Final = re.compile(r"""(?P<comment>//[^\n]*|/\*.*?(?:\*/|\Z))|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'""", re.DOTALL)
 #: A declaration in a line of a comment; the marks of the comment may surround it.
 _DECLARES: Final = re.compile(r"^[\s/*#!<]*hil:\s*(?P<word>\S*)\s*(?P<text>.*?)\s*(?:\*/)?$")
+#: The marks of a comment, with those of documentation generators.
+_BARE: Final = re.compile(r"^(?:/\*+|//+|#+)[!<]*\s*|\s*\*+/$")
 #: The end of a C statement, or of the head of one that has a body.
 _C_END: Final = re.compile(r"[;{}:]\s*$")
 
@@ -76,6 +78,32 @@ def declarations(file: str) -> tuple[UserDeclaration, ...]:
         return _declarations(file, status.st_mtime_ns, status.st_size)
     except OSError:
         return ()
+
+
+def lines_with_comments(file: str) -> tuple[tuple[str, str], ...]:
+    """The lines of a file: the code of each, and the text of the comment that ends or begins behind it on this line.
+
+    Nothing if the file cannot be read.
+    """
+    try:
+        status = Path(file).stat()
+        return _lines_with_comments(file, status.st_mtime_ns, status.st_size)
+    except OSError:
+        return ()
+
+
+@lru_cache
+def _lines_with_comments(file: str, changed_ns: int, size: int) -> tuple[tuple[str, str], ...]:
+    """The lines of a file with their comments; cached by its time of change and size."""
+    text = Path(file).read_text(encoding="utf-8", errors="replace")
+    comments = list((_python_comments if file.endswith(".py") else _c_comments)(text))
+    code = _code(text, comments)
+    beside = dict.fromkeys(range(len(code)), "")
+    line, last = 0, 0
+    for offset, comment in comments:
+        line, last = line + text.count("\n", last, offset), offset
+        beside[line] = _BARE.sub("", comment).strip()
+    return tuple((part, beside[number]) for number, part in enumerate(code))
 
 
 @lru_cache

@@ -137,6 +137,8 @@ class I2c:
         bus.taken_changed.connect(self._bus_taken)
         regs.bind("I2CMDR", write=self._write_I2CMDR)
         regs.bind("I2CPSC", write=self._write_I2CPSC)
+        regs.bind("I2CCLKL", write=self._write_I2CCLKL)
+        regs.bind("I2CCLKH", write=self._write_I2CCLKH)
 
     def reset(self) -> None:
         """Reset of the module (power-on, SOFTPRES9)."""
@@ -155,6 +157,14 @@ class I2c:
         before = self._psc.value
         self._psc.store(word, lanes)
         self._checks.prescaler(before, running=bool(self._mdr.value & IRS))
+
+    def _write_I2CCLKL(self, word: int, lanes: int) -> None:
+        self._clkl.store(word, lanes)
+        self._checks.divider()
+
+    def _write_I2CCLKH(self, word: int, lanes: int) -> None:
+        self._clkh.store(word, lanes)
+        self._checks.divider()
 
     def _write_I2CMDR(self, word: int, lanes: int) -> None:
         mdr = self._mdr

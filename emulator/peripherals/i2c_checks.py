@@ -19,6 +19,8 @@ from emulator.signals import I2cBus
 #: The allowed range of the module's clock, in Hz.
 SLOWEST_HZ: Final = 7_000_000
 FASTEST_HZ: Final = 12_000_000
+#: The least rate of SMBus, in Hz.  I2C itself has none.
+SLOWEST_BUS_HZ: Final = 10_000
 #: The limit of the bus's fast mode, with a margin for the rounding of the integer dividers.
 FASTEST_BUS_HZ: Final = 400_000 * 1.005
 #: Bits of I2CSAR that are a 7-bit address.
@@ -33,7 +35,8 @@ class I2cChecks:
     """Findings of one module."""
 
     __slots__ = (
-        "_bus", "_clkh", "_clkl", "_fftx", "_findings", "_ier", "_mdr", "_name", "_prescaled", "_psc", "_sar", "_str",
+        "_bus", "_clkh", "_clkl", "_divided", "_fftx", "_findings", "_ier", "_mdr", "_name", "_prescaled", "_psc",
+        "_sar", "_str",
     )  # fmt: skip
 
     def __init__(self, regs: I2cRegs, findings: Findings, bus: I2cBus) -> None:
@@ -45,6 +48,8 @@ class I2cChecks:
         self._ier, self._fftx = registers["I2CIER"], registers["I2CFFTX"]
         #: The statement that wrote I2CPSC last.
         self._prescaled: Cause | None = None
+        #: The statement that wrote I2CCLKL or I2CCLKH last.
+        self._divided: Cause | None = None
 
     def start(self, module_cycles: int, bit_cycles: int) -> None:
         """A START, with `module_cycles` SYSCLK cycles a module clock, and `bit_cycles` a bit."""
@@ -59,6 +64,13 @@ class I2cChecks:
                 object=self._psc.path, value=module_cycles - 1, cause=self._prescaled,
             )  # fmt: skip
         bus_hz = SYSCLK_HZ / bit_cycles
+        if bus_hz < SLOWEST_BUS_HZ and hertz >= SLOWEST_HZ:
+            self._findings.report(
+                "i2c-slow",
+                f"{self._bus.name} runs at {bus_hz:.4g} Hz, with {self._clkl.path} = {self._clkl.value} and "
+                f"{self._clkh.path} = {self._clkh.value}: a byte takes {9000 / bus_hz:.3g} ms",
+                object=self._clkl.path, value=self._clkl.value, cause=self._divided,
+            )  # fmt: skip
         if bus_hz > FASTEST_BUS_HZ:
             self._findings.report(
                 "i2c-clock",
@@ -82,6 +94,10 @@ class I2cChecks:
             )  # fmt: skip
         if self._bus.missing and not mode & _DLB:
             self._not_configured(f"{self._bus.missing}: the transfer does not reach the bus", self._bus.name)
+
+    def divider(self) -> None:
+        """I2CCLKL or I2CCLKH was written."""
+        self._divided = self._findings.mark()
 
     def prescaler(self, before: int, *, running: bool) -> None:
         """I2CPSC was written."""

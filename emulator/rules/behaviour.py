@@ -1,7 +1,7 @@
 """Properties of drivers and of the closed loop: what must hold of any correct implementation, each stated once.
 
-No detector reports these while the firmware runs: a property test does, or a demonstration of the catalogue, with what
-it measured in the message.  The units stand in each page.
+No detector reports these while the firmware runs: a property test does, `hil check` by the text, or a demonstration of
+the catalogue, with what it measured in the message.  The units stand in each page.
 """
 
 from __future__ import annotations
@@ -155,6 +155,58 @@ its parts.
 
 **Fix:** put the unit into the name, convert at one place, and send what the protocol specifies.
 """,
+    ),
+    _rule(
+        "unit-by-name", Severity.WARNING, "A value goes where a name or a comment states another unit.", """
+A time in microseconds goes where milliseconds are expected, an angle in radians where degrees are: the number is wrong
+by a factor.
+
+The units are those that names and comments state. A name states one by its end (`timeoutMs`, `SAMPLE_US`, `dist_mm`,
+`TiltDegrees`, `tempTenthsDeg`, `angle_deg_x10`), a comment beside the declaration if it begins with nothing but a unit
+(`// mV`, `// 0.1 degree`), or has one in brackets (`[mm]`). Ends that mean other things too count beside a word for the
+quantity (`timeout_s`, `temperatureDc`). Time-outs and periods of SYS/BIOS are in ticks, `DELAY_US` takes microseconds,
+angles of the C library are in radians. The message names both units, and says where each comes from.
+
+`hil check` reports a value that goes to an object, a parameter or a result with another unit of the same quantity, and
+sums and comparisons of two units. A constant factor converts: `x_ms * 1000` is microseconds. A power of ten in the
+wrong direction, or the reverse of the right factor, is reported. Any other factor may mean something else, and is not.
+Values of two quantities are reported only if no sensor makes one of the other without a factor.
+
+A comment that speaks of a scale (`// in tenths`, `// counts per mV`), an amount in a name (`RATE_6400_HZ`), and an
+object that the program converts where it is (`t_us /= 1000`) make the unit unknown.
+
+**Fix:** convert the value, or correct the name. If both are meant so, accept it: `// hil: allow unit-by-name, REASON`.
+""", how="static",
+    ),
+    _rule(
+        "unit-in-comment", Severity.NOTE, "The name of a constant states another unit than its comment.", """
+`#define TIMEOUT_MS 5    // 5 s` is 5 ms by its name and 5 s by its comment: one of them is wrong.
+
+The comment beside the definition begins with a number and a unit (`// 85 degrees`), and in the unit that the name
+states it is the number of the definition times a power of ten. Differences that are no power of ten are not reported:
+they come from rounding, or from a comment that says something else.
+
+**Fix:** correct the number, the name or the comment.
+""", how="static",
+    ),
+    _rule(
+        "step-away", Severity.WARNING, "A value that follows another one steps away from it.", """
+A ramp or a limiter runs away: once its target is on one side, each step increases the distance.
+
+The value follows its target in a chain of tests, of which one way sets it to the target. Another way is taken where the
+target is more than a step away, and steps in the wrong direction: its test stays true, for ever.
+
+```c
+if (target > value + RISE)
+    value += RISE;
+else if (target < value - FALL)
+    value += FALL;                // it has to be -=
+else
+    value = target;
+```
+
+**Fix:** step towards the target.
+""", how="static",
     ),
     _rule(
         "figure", Severity.NOTE, "A figure of an analysis does not follow from its own numbers.", """

@@ -736,6 +736,24 @@ The check is made at each START.
         "TRM I2C: clock generation, I2CPSC",
     ),
     _rule(
+        "i2c-slow",
+        Severity.NOTE,
+        "The bus clock of the I2C is below 10 kHz.",
+        """
+Transfers take so long that the program gives up before they end, or a part on the bus does.
+
+SCL is slower than 10 kHz, the least that SMBus allows: parts with its time-outs let go of a slow bus. The message gives
+the rate and the time of one byte. Usual rates are 100 and 400 kHz. A rate a thousand times lower is often one in kHz
+where Hz are wanted.
+
+A part without time-outs works at any low rate, so this is a note. The check is made at each START; the finding is at
+the statement that set the dividers.
+
+**Fix:** set `I2CCLKL` and `I2CCLKH` for the rate of SCL, or give the rate to the library in Hz.
+""",
+        "SMBus specification 3.2, AC specifications: FSMB; TRM I2C: clock generation",
+    ),
+    _rule(
         "i2c-fifo-interrupt",
         Severity.ERROR,
         "Interrupts of XRDY or RRDY are enabled while the I2C is in FIFO mode.",

@@ -11,6 +11,7 @@ from emulator.c28x.findings import Finding
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from hil.board import Board
 from hil.drivers.call_checker import CallChecker, CheckedFunction, Key, key_of
+from hil.drivers.following import wrong_steps
 from hil.drivers.program_run import ProgramOutcome, run_program
 from hil.drivers.roles import Roles, roles
 from hil.drivers.units import mixed_units
@@ -85,8 +86,10 @@ def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction:
     for file in build.files:
         allowances(file)  # a wrong one is told before anything runs
     static = build.image()
-    for mixed in mixed_units(build.modules):
-        static.board.findings.report_at(mixed.place, "unit", mixed.message, object=mixed.object, how="static")
+    for mixed in mixed_units(build.modules, static.board.kernel.clocks.tick_period_us):
+        static.board.findings.report_at(mixed.place, mixed.rule, mixed.message, object=mixed.object, how="static")
+    for step in wrong_steps(build.modules):
+        static.board.findings.report_at(step.place, "step-away", step.message, object=step.object, how="static")
     keys = _add(checked, (f for f in static.findings if f.place is None or f.place.file not in build.others), {})
     static.close()
     if found.main is not None or found.tasks:

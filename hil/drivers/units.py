@@ -1,26 +1,36 @@
-"""Checks declared units: does each value go only where its unit is expected?
+"""Checks units: does each value go only where its unit is expected?
 
     int16_t distance;                 // hil: unit cm
     // hil: unit mm                      (of the result)
     // hil: unit v mm/s                  (of the parameter v)
     int16_t braking_distance(int16_t v) { ... }
 
-Units are names: `cm` is not `mm`, and nothing is converted.  A value keeps its unit through assignments, casts, signs
-and sums, and in local variables that take only values of this unit.  A product, a quotient and a number have no known
-unit.  But a mean keeps the unit of its parts: a sum of products with constants that add up to 1, as in a filter.
-Angles of the C library are in radians: they go to no value that is declared in degrees.
+A unit is declared, or a name or a comment states it (`stated_units.py`), or the C library, the chip's library or the
+kernel has it: angles are in radians, time-outs of SYS/BIOS in ticks.  A value keeps its unit through assignments,
+casts, signs and sums, and in local variables that take only values of this unit.  A mean keeps the unit of its parts: a
+sum of products with constants that add up to 1, as in a filter.  Other products and quotients have no known unit.
+
+A product with constants is in its unit or, if the constants convert it, in another: `x_ms * 1000` is in ms or in us.
+It is told if no scaling can have been meant, and the constant is a power of ten, or the reverse of what would convert.
+
+CHOICE: values of two different quantities are told only if no sensor can have made one of the other without a factor:
+10 mV for a degree are tenths of a degree, and a sensor may give a microsecond for a millimetre.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import isclose, log10
 from typing import Final
 
+from emulator.c28x.ctypes import ArrayType, CType, FloatType, IntType, PointerType, StructType
 from emulator.c28x.declarations import UserDeclaration, declarations
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
+    AddressOf,
     Assign,
     Binary,
     Call,
@@ -40,52 +50,92 @@ from emulator.c28x.tree import (
     Where,
 )
 from emulator.c28x.tree_queries import bare, parts, roots, source_text, statements
+from hil.drivers.stated_units import Measured, comment_beside, members, misnamed, of_definition, stated
+from hil.drivers.unit_names import PhysicalUnit, UnitRemark, first_word, unit_of_text
 
 #: Operators whose operands must have the same unit; the result has this unit too.
 _KEEPS: Final = ("+", "-")
-#: The unit of angles in the C library, which no declaration can name, and names of another unit of angles.
-RADIANS: Final = "radians of the C library"
-_DEGREES: Final = ("deg", "degree", "degrees", "°")
-#: Functions of the C library whose result is an angle, and those whose argument is one.
+#: The unit of angles in the C library.
+RADIANS: Final = replace(unit_of_text("rad") or PhysicalUnit(""), name="radians of the C library")
+#: Functions of the C library whose result is an angle, those whose argument is one, and those that keep a unit.
 _ANGLES: Final = ("acos", "asin", "atan", "atan2")
 _OF_ANGLES: Final = ("cos", "sin", "tan")
+_SAME: Final = ("abs", "labs", "fabs", "floor", "ceil", "round")
+#: Functions of the chip's library and the kernel -> the unit of each parameter ("": none).
+_PARAMETERS: Final = {
+    "DELAY_US": ("us",), "ConfigCpuTimer": ("", "MHz", "us"), "Task_sleep": ("tick",), "Semaphore_pend": ("", "tick"),
+    "Mailbox_pend": ("", "", "tick"), "Mailbox_post": ("", "", "tick"), "Event_pend": ("", "", "", "tick"),
+    "Clock_create": ("", "tick"), "Clock_setTimeout": ("", "tick"), "Clock_setPeriod": ("", "tick"),
+}  # fmt: skip
+#: Their functions whose result is a number of ticks, and members of their structures that are.
+_TICKS: Final = ("Clock_getTicks", "Clock_getPeriod", "Clock_getTimeout")
+_TICK_MEMBERS: Final = (("Clock_Params", "period"),)
+#: First words of functions whose result is not in the unit of their name, which is that of what they take.
+_TAKING: Final = ("delay", "wait", "sleep", "pause", "set", "write", "send", "start", "run")
+_ASKING: Final = ("is", "has", "check", "was", "can")
+#: Quantities of which no common sensor makes another one without a factor.
+_FOREIGN: Final = ({"length", "temperature"}, {"length", "angle"}, {"length", "power"}, {"length", "energy"},
+                   {"angle", "power"}, {"angle", "energy"}, {"time", "frequency"})  # fmt: skip
 #: The weights of a mean add up to 1, but for the rounding of floats.
 _ROUNDING: Final = 1e-6
+#: A factor converts if it differs no more than this from the exact one (1/1024 for 1/1000, 57.3 for 180/pi).
+_ALMOST: Final = 0.05
+#: A factor that is wrong by a power of ten from this one on cannot be meant as a part (a tenth, a percent).
+_NO_PART: Final = 3
+#: The last name in the text of an lvalue, without subscripts.
+_LAST: Final = re.compile(r"(\w+)\W*$")
+_SUBSCRIPT: Final = re.compile(r"\[[^\[\]]*\]")
 
 
 @dataclass(frozen=True, slots=True)
 class UnitMismatch:
-    """A place where a value of one unit goes to a target of another unit."""
+    """A place where a value of one unit goes to a target of another unit, with the rule that it breaks."""
 
     place: Place
     message: str
     object: str
+    rule: str = "unit"
 
 
-def mixed_units(modules: Iterable[Module]) -> list[UnitMismatch]:
-    """The places of `modules` where units are mixed.
+Report = Callable[[Where, str, str, bool], None]
+
+
+def mixed_units(modules: Iterable[Module], tick_us: int) -> list[UnitMismatch]:
+    """The places of `modules` where units are mixed; `tick_us` is the kernel's tick in microseconds.
 
     Raises ValueError, one line with file and line, for a declaration that names nothing.
     """
     modules = list(modules)
-    units = _Units(modules)
-    return [found for module in modules for function in module.functions for found in units.of(function)]
+    units = _Units(modules, tick_us)
+    found = [found for module in modules for function in module.functions for found in units.of(function)]
+    for wrong in misnamed(units.files):
+        place = Place(wrong.file, wrong.line, "", wrong.file)
+        found.append(UnitMismatch(place, str(wrong), wrong.name, "unit-in-comment"))
+    return found
 
 
 class _Units:
-    """The declared units of functions and variables, and the units that follow from them."""
+    """The units of functions and objects, and the units that follow from them."""
 
-    def __init__(self, modules: list[Module]) -> None:
-        self.results: dict[str, str] = {}
-        self.variables: dict[Variable, str] = {}
+    def __init__(self, modules: list[Module], tick_us: int) -> None:
+        self.results: dict[str, Measured] = {}
+        self.variables: dict[Variable, Measured | None] = {}
+        self._tick = PhysicalUnit(f"ticks of {tick_us / 1000:g} ms", "time", tick_us * 1e-6, tick_us * 1e-6)
         self._found: list[UnitMismatch] = []
         functions = [function for module in modules for function in module.functions]
         objects = [variable for module in modules for variable in module.variables]
         objects += [variable for function in functions for variable in (*function.parameters, *function.locals)]
-        for file in {function.where.file for function in functions} | {v.declaration.file for v in objects}:
+        self.files = {function.where.file for function in functions} | {v.declaration.file for v in objects}
+        for file in self.files:
             for declared in declarations(file):
                 if declared.word == "unit":
                     self._read_declaration(declared, functions, objects)
+        self._members = members(self.files)
+        #: Objects and members that the program converts where they are: their names are right at one time only.
+        self._converted = {
+            _name(target) for function in functions for target, value in _assignments(function)
+            if _scales_itself(target, value)
+        }  # fmt: skip
         for function in functions:
             self._infer(function)
 
@@ -93,7 +143,8 @@ class _Units:
         words = declared.text.split()
         if not 1 <= len(words) <= 2:
             raise declared.wrong(f"{declared.text!r} is not a unit" if words else "the unit is missing")
-        name, unit = (words[0] if len(words) == 2 else ""), words[-1]
+        name, text = (words[0] if len(words) == 2 else ""), words[-1]
+        unit = Measured(replace(unit_of_text(text) or PhysicalUnit(text), name=text))
         function = next((f for f in functions if declared.is_about(f.where)), None)
         if function is not None and not name:
             self.results[function.path] = unit
@@ -110,91 +161,273 @@ class _Units:
 
     def _infer(self, function: Function) -> None:
         """Give a unit to locals that take only values of this unit."""
-        taken: dict[Variable, set[str]] = {}
+        taken: dict[Variable, list[Measured | None]] = {}
         for target, value in _assignments(function):
             root = target.root
-            if isinstance(root, Variable) and root.kind == "local" and root not in self.variables:
-                taken.setdefault(root, set()).add(self._unit(value))
-        self.variables.update({v: units.pop() for v, units in taken.items() if len(units) == 1 and "" not in units})
+            if isinstance(root, Variable) and root.kind == "local" and self._of_lvalue(target) is None:
+                taken.setdefault(root, []).append(self._value(value))
+        for variable, values in taken.items():
+            first = values[0]
+            if first is not None and not variable.escapes and all(
+                v is not None and v.factor == 1.0 and v.unit == first.unit for v in values
+            ):  # fmt: skip
+                stated_by = first.by if not first.by or first.by.startswith("value's") else f"value's {first.by}"
+                self.variables[variable] = replace(first, by=stated_by, of="")
 
     def of(self, function: Function) -> list[UnitMismatch]:
         """The places in one function where units are mixed."""
         self._found = []
 
-        def report(where: Where, message: str, what: str) -> None:
+        def report(where: Where, message: str, what: str, certain: bool) -> None:
             place = Place(function.where.file, where.line, function.name, function.c_file, where.column)
-            self._found.append(UnitMismatch(place, message, what))
+            self._found.append(UnitMismatch(place, message, what, "unit" if certain else "unit-by-name"))
 
         for s in statements(function.body):
             for root in roots(s):
-                for part in parts(root):
-                    if isinstance(part, Expr):
-                        self._check_expression(part, part.where if part.where.line else s.where, report)
+                for part in _with_sources(root):
+                    self._check_expression(part, part.where if part.where.line else s.where, report)
             self._check_statement(s, function, report)
         return self._found
 
-    def _check_expression(self, e: Expr, where: Where, report: Callable[[Where, str, str], None]) -> None:
+    def _check_expression(self, e: Expr, where: Where, report: Report) -> None:
         match e:
             case Binary(op="+" | "-" as op, left=left, right=right) | Compare(op=op, left=left, right=right):
                 if isinstance(e, Binary):
                     left, right = _averaged(e) or (left, right)
-                one, other = self._unit(left), self._unit(right)
-                if _differ(one, other):
-                    what = f"{source_text(left)} {op} {source_text(right)}"
-                    report(where, f"{source_text(left)} is in {one}, {source_text(right)} in {other}", what)
+                one, other = self._value(left), self._value(right)
+                if one is not None and other is not None:
+                    turned = one.factor == 1.0 != other.factor
+                    message = (
+                        _mismatch(other, one, _text(other, right), _text(one, left)) if turned
+                        else _mismatch(one, other, _text(one, left), _text(other, right))
+                    )  # fmt: skip
+                    if message:
+                        what = f"{source_text(left)} {op} {source_text(right)}"
+                        report(where, message, what, _certain(one, other))
             case Call(function=callee, arguments=[value]) if callee.extern and callee.name in _OF_ANGLES:
-                self._check_target(value, RADIANS, where, report, f"the angle of {callee.name}")
+                self._check_target(value, Measured(RADIANS), where, report, f"the angle of {callee.name}")
             case Call(function=callee, arguments=arguments):
-                for parameter, value in zip(callee.parameters, arguments, strict=False):
-                    self._check_target(value, self.variables.get(parameter, ""), where, report,
-                               f"parameter {parameter.declaration.name} of {callee.name}")  # fmt: skip
+                for number, value in enumerate(arguments):
+                    wanted, name = self._of_parameter(callee, number)
+                    self._check_target(value, wanted, where, report, f"parameter {name} of {callee.name}")
 
-    def _check_statement(self, s: Stmt, function: Function, report: Callable[[Where, str, str], None]) -> None:
+    def _check_statement(self, s: Stmt, function: Function, report: Report) -> None:
         match s:
             case Return(value=Expr() as value):
-                self._check_target(
-                    value, self.results.get(function.path, ""), s.where, report, f"the result of {function.name}"
-                )
-            case Assign(target=LValue(root=Variable() as root) as target, value=value):
-                name = target.text or root.declaration.name
-                self._check_target(value, self.variables.get(root, ""), s.where, report, name)
+                self._check_target(value, self._of_result(function), s.where, report, f"the result of {function.name}")
+            case Assign(target=LValue() as target, value=value):
+                self._check_target(value, self._of_lvalue(target), s.where, report, target.text or _name(target))
             case Declare(variable=variable, value=Expr() as value):
-                self._check_target(value, self.variables.get(variable, ""), s.where, report, variable.declaration.name)
+                lvalue = LValue(variable.ctype, variable)
+                self._check_target(value, self._of_lvalue(lvalue), s.where, report, variable.declaration.name)
 
     def _check_target(
-        self, value: Expr, wanted: str, where: Where, report: Callable[[Where, str, str], None], target: str
+        self, value: Expr, wanted: Measured | None, where: Where, report: Report, target: str
     ) -> None:
-        unit = self._unit(value)
-        if _differ(wanted, unit):
-            report(where, f"{source_text(value)} is in {unit}, {target} in {wanted}", target)
+        given = self._value(value)
+        if wanted is not None and given is not None:
+            message = _mismatch(given, wanted, _text(given, value), target)
+            if message:
+                report(where, message, target, _certain(given, wanted))
 
-    def _unit(self, e: Expr) -> str:
-        """The unit of a value; empty if it is not known."""
+    def _value(self, e: Expr) -> Measured | None:
+        """The unit of a value; None if it is not known."""
         match e:
-            case Load(lvalue=LValue(root=Variable() as root)):
-                return self.variables.get(root, "")
+            case Const(source=Expr() as source):
+                return self._value(source)
+            case Const():
+                return _of_constant(e)
+            case Load(lvalue=lvalue) | AddressOf(lvalue=lvalue):
+                return self._of_lvalue(lvalue)
             case Call(function=function) if function.extern and function.name in _ANGLES:
-                return RADIANS
+                return Measured(RADIANS)
+            case Call(function=function, arguments=[value]) if function.extern and function.name in _SAME:
+                return self._value(value)
             case Call(function=function):
-                return self.results.get(function.path, "")
+                return self._of_result(function)
             case Convert(operand=operand) | Unary(op="-", operand=operand):
-                return self._unit(operand)
+                return self._value(operand)
             case Binary(op=op, left=left, right=right) if op in _KEEPS:
                 left, right = _averaged(e) or (left, right)
-                return self._unit(left) or self._unit(right)
+                one, other = self._value(left), self._value(right)
+                return one if one is not None and (one.factor == 1.0 or other is None) else other
+            case Binary():
+                return self._scaled(e)
             case Conditional(then=then, otherwise=otherwise):
-                one, other = self._unit(then), self._unit(otherwise)
-                return one if one == other else ""
+                one, other = self._value(then), self._value(otherwise)
+                return one if one is not None and other is not None and one.unit == other.unit else None
+        return None
+
+    def _scaled(self, e: Binary) -> Measured | None:
+        """The unit of a product or a quotient of one value with constants."""
+        left, right = bare(e.left), bare(e.right)
+        if e.op == "*" and _plain(left) is not None:
+            left, right = right, left
+        factor, value = _plain(right), self._value(left)
+        if factor is None or value is None or not factor:
+            return None
+        match e.op:
+            case "*":
+                return _times(value, factor, left)
+            case "/":
+                return _times(value, 1 / factor, left)
+            case "<<" | ">>":
+                return _times(value, 2.0 ** (factor if e.op == "<<" else -factor), left)
+        return None
+
+    def _of_lvalue(self, lvalue: LValue) -> Measured | None:
+        """The unit of an object, or of a member, element or target."""
+        root = lvalue.root
+        whole = isinstance(root, Variable) and _is_whole(lvalue)
+        if isinstance(root, Variable) and root in self.variables:
+            return self.variables[root]
+        name = _name(lvalue)
+        if not name or not _is_number(lvalue.ctype) or name in self._converted:
+            return None
+        if isinstance(root, Variable) and isinstance(root.ctype, StructType | PointerType):
+            struct = root.ctype.target if isinstance(root.ctype, PointerType) else root.ctype
+            if (struct.name, name) in _TICK_MEMBERS:
+                return Measured(self._tick)
+        if whole and isinstance(root, Variable):
+            found = stated(name, comment_beside(root.declaration.where, name))
+            self.variables[root] = found
+            return found
+        return stated(name, self._members.get(name, UnitRemark()))
+
+    def _of_result(self, function: Function) -> Measured | None:
+        """The unit of a function's result."""
+        if function.path in self.results:
+            return self.results[function.path]
+        if function.extern and function.name in _TICKS:
+            return Measured(self._tick)
+        first = first_word(function.name)
+        if first in _TAKING or first in _ASKING or not _is_number(function.ctype.result):
+            return None
+        return stated(function.name, UnitRemark())
+
+    def _of_parameter(self, function: Function, number: int) -> tuple[Measured | None, str]:
+        """The unit of a parameter, and its name."""
+        known = _PARAMETERS.get(function.name, ()) if function.extern else ()
+        if number < len(known) and known[number]:
+            names = [parameter.declaration.name for parameter in function.parameters]
+            unit = self._tick if known[number] == "tick" else unit_of_text(known[number]) or PhysicalUnit(known[number])
+            return Measured(unit), names[number] if number < len(names) else str(number + 1)
+        if number >= len(function.parameters):
+            return None, ""
+        parameter = function.parameters[number]
+        own = self._of_lvalue(LValue(parameter.ctype, parameter))
+        if own is None and len(function.parameters) == 1 and first_word(function.name) in _TAKING:
+            own = stated(function.name, UnitRemark(), "function's name") if _is_number(parameter.ctype) else None
+        return own, parameter.declaration.name
+
+
+def _mismatch(given: Measured, wanted: Measured, value: str, target: str) -> str:
+    """The message about a value that goes to a target of another unit; "": it may go there."""
+    one, other = given.unit, wanted.unit
+    if one == other or wanted.factor != 1.0:
         return ""
+    ratio, factor = one.ratio(other), given.factor
+    if RADIANS in (one, other) and not (one.scale and other.scale):
+        return ""  # declared by a name that may be another one for radians
+    if not ratio:
+        declared = _certain(given, wanted)
+        if factor != 1.0 or not (declared or {one.quantity, other.quantity} in _FOREIGN):
+            return ""
+        if not declared and "rad" in (one.name[-3:], other.name[-3:]):
+            return ""  # which can be a radius
+    elif isclose(factor, ratio, rel_tol=_ALMOST):
+        return ""
+    if factor == 1.0:
+        return f"{value} is in {given}, {target} in {wanted}"
+    if not _contradicts(factor, ratio):
+        return ""
+    return (
+        f"{value} is {given.of} ({given}) times {factor:.4g}, {target} is in {wanted}: "
+        f"from {one.name} to {other.name} the factor is {ratio:.4g}"
+    )
 
 
-def _differ(one: str, other: str) -> bool:
-    """Whether two units are known and not the same.  Those of the C library may be declared by any name but degrees."""
-    if not one or not other or one == other:
+def _contradicts(factor: float, ratio: float) -> bool:
+    """Whether a factor can neither convert nor be meant as a part or a multiple of the converted value."""
+    if ratio == 1.0:
         return False
-    if RADIANS in (one, other):
-        return (other if one == RADIANS else one) in _DEGREES
-    return True
+    if isclose(factor * ratio, 1.0, rel_tol=1e-3):
+        return True
+    power, wanted = _power_of_ten(factor), _power_of_ten(ratio)
+    if power is None or wanted is None:
+        return False
+    return power * wanted < 0 or abs(power - wanted) >= _NO_PART
+
+
+def _power_of_ten(number: float) -> int | None:
+    power = round(log10(number)) if number > 0 else 0
+    return power if power and isclose(number, 10.0**power, rel_tol=1e-6) else None
+
+
+def _certain(one: Measured, other: Measured) -> bool:
+    """Whether both units are declared, or those of a library."""
+    return not one.by and not other.by
+
+
+def _times(value: Measured, factor: float, e: Expr) -> Measured:
+    return replace(value, factor=value.factor * factor, of=value.of or source_text(e))
+
+
+def _text(given: Measured, value: Expr) -> str:
+    """The text of a value: the name of a constant, if it is one."""
+    return given.of if given.of and given.factor == 1.0 and isinstance(bare(value), Const) else source_text(value)
+
+
+def _plain(e: Expr) -> float | None:
+    """The value of a constant without a unit; None: it is not one."""
+    if not isinstance(e, Const) or any(_of_constant(c) is not None for c in _with_sources(e) if isinstance(c, Const)):
+        return None
+    return float(e.value)
+
+
+def _of_constant(e: Const) -> Measured | None:
+    """The unit of a number that a definition names."""
+    if e.where.macro is None or e.source is not None or not e.value:
+        return None
+    return of_definition(e.where.macro, float(e.value))
+
+
+def _name(lvalue: LValue) -> str:
+    """The name of the object or member that an lvalue ends in."""
+    text = lvalue.text
+    while _SUBSCRIPT.search(text):
+        text = _SUBSCRIPT.sub("", text)
+    if not text:
+        return lvalue.root.declaration.name if isinstance(lvalue.root, Variable) and _is_whole(lvalue) else ""
+    match = _LAST.search(text)
+    return match[1] if match is not None and "(" not in text else ""
+
+
+def _is_whole(lvalue: LValue) -> bool:
+    """Whether an lvalue is an object itself, or an element of one that is an array."""
+    root = lvalue.root
+    if not isinstance(root, Variable):
+        return False
+    ctype = root.ctype
+    while isinstance(ctype, ArrayType):
+        ctype = ctype.element
+    return not isinstance(ctype, StructType)
+
+
+def _is_number(ctype: CType) -> bool:
+    """Whether a type is a number, or an array of numbers or a pointer to them."""
+    while isinstance(ctype, ArrayType | PointerType):
+        ctype = ctype.element if isinstance(ctype, ArrayType) else ctype.target
+    return isinstance(ctype, IntType | FloatType)
+
+
+def _scales_itself(target: LValue, value: Expr) -> bool:
+    """Whether an assignment gives an object its own value times a constant."""
+    match bare(value):
+        case Binary(op="*" | "/" | "<<" | ">>", left=left, right=right):
+            loads = [e for side in (left, right) if isinstance(e := bare(side), Load)]
+            return any(_name(load.lvalue) == _name(target) for load in loads)
+    return False
 
 
 def _averaged(e: Binary) -> tuple[Expr, Expr] | None:
@@ -214,6 +447,15 @@ def _weighted(e: Expr) -> tuple[float, Expr] | None:
                 if isinstance(constant, Const) and isinstance(constant.value, float) and 0 < constant.value < 1:
                     return constant.value, value
     return None
+
+
+def _with_sources(e: object) -> Iterator[Expr]:
+    """The parts of an expression, with those that a constant was folded from."""
+    for part in parts(e):
+        if isinstance(part, Expr):
+            yield part
+            if isinstance(part, Const) and part.source is not None:
+                yield from _with_sources(part.source)
 
 
 def _assignments(function: Function) -> Iterator[tuple[LValue, Expr]]:

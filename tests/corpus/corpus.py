@@ -24,7 +24,7 @@ from hil.reports.policy import Policy
 DRIVERS: Final = Path(__file__).parent / "drivers"
 #: Classes of defects, as the documentation lists them.
 CLASSES: Final = (
-    "race", "printf", "conversion", "object", "configuration", "kernel", "time-and-link",
+    "race", "printf", "conversion", "object", "configuration", "kernel", "time-and-link", "unit",
 )  # fmt: skip
 
 

@@ -671,6 +671,21 @@ def test_the_bus_has_400_khz_at_most(iccl: int, found: list[str]) -> None:
     assert bench.rules() == found
 
 
+@pytest.mark.parametrize(("dividers", "found"), [(495, []), (496, ["i2c-slow"])])
+def test_a_bus_below_10_khz_is_told(dividers: int, found: list[str]) -> None:
+    # 10 MHz / (495 + 495 + 2 * 5) = 10 kHz.
+    bench = Bench(iccl=dividers, icch=dividers)
+    bench.send(1)
+    assert bench.rules() == found
+
+
+def test_a_module_clock_that_is_too_slow_is_told_alone() -> None:
+    # 200 MHz / 256 = 0.78 MHz, and SCL follows from it.
+    bench = Bench(ipsc=255, iccl=40, icch=40)
+    bench.send(1)
+    assert bench.rules() == ["i2c-clock"]
+
+
 @pytest.mark.parametrize("which", ["iccl", "icch"])
 def test_a_divider_of_0_is_told(which: str) -> None:
     bench = Bench(**{"iccl": 25, "icch": 25, which: 0})

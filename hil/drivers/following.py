@@ -1,0 +1,121 @@
+"""Checks values that follow another one in steps, as a ramp does: does each step go towards it?
+
+    if (target > value + step)
+        value += step;
+    else if (target < value - step)
+        value -= step;                // += would never come back
+    else
+        value = target;
+
+The chain of tests says what follows what: one of its ways sets the value to the target.  A step is told only if its own
+test compares the target with the value a step away, on this side: then the test stays true after the step, for ever.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from emulator.c28x.sites import Place
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import Assign, Binary, Compare, Expr, Function, If, Load, LValue, Stmt
+from emulator.c28x.tree_queries import OBSERVABLE, bare, parts, source_text, statements
+
+#: A comparison -> the one with its sides changed.
+_TURNED: Final = {"<": ">", ">": "<", "<=": ">=", ">=": "<="}
+
+
+@dataclass(frozen=True, slots=True)
+class WrongStep:
+    """A step that goes away from the value that it follows."""
+
+    place: Place
+    message: str
+    object: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """`value += by`, or `value -= by` (`down`)."""
+
+    value: Expr
+    by: Expr
+    down: bool
+
+
+def wrong_steps(modules: Iterable[Module]) -> Iterator[WrongStep]:
+    """The steps of `modules` that go away from what they follow."""
+    for module in modules:
+        for function in module.functions:
+            inner: set[int] = set()
+            for s in statements(function.body):
+                if isinstance(s, If) and id(s) not in inner:
+                    ways = list(_ways(s, inner))
+                    yield from _wrong(ways, function)
+
+
+def _ways(s: If, inner: set[int]) -> Iterator[tuple[Expr | None, list[Stmt]]]:
+    """The ways of an `if ... else if ... else`, each with its test; the later tests of it go to `inner`."""
+    while True:
+        yield s.test, s.then
+        if len(s.otherwise) != 1 or not isinstance(s.otherwise[0], If):
+            yield None, s.otherwise
+            return
+        s = s.otherwise[0]
+        inner.add(id(s))
+
+
+def _wrong(ways: list[tuple[Expr | None, list[Stmt]]], function: Function) -> Iterator[WrongStep]:
+    arrivals = [(s.target, bare(s.value)) for _, body in ways for s in body if isinstance(s, Assign)]
+    for test, body in ways:
+        if not isinstance(test, Compare) or test.op not in _TURNED:
+            continue
+        for s in body:
+            step = _step(s)
+            if step is None or not isinstance(s, Assign) or not isinstance(step.value, Load):
+                continue
+            for target, below in _compared(test, step):
+                arrives = any(to == step.value.lvalue and value == target for to, value in arrivals)
+                if arrives and below == step.down and not _acts(test):
+                    name = source_text(step.value)
+                    yield WrongStep(
+                        Place(function.where.file, s.where.line, function.name, function.c_file, s.where.column),
+                        f"{name} follows {source_text(target)}: where {source_text(test)}, {name} "
+                        f"{'-=' if step.down else '+='} {source_text(step.by)} goes away from it",
+                        name,
+                    )
+
+
+def _compared(test: Compare, step: _Step) -> Iterator[tuple[Expr, bool]]:
+    """What a test compares the value of a step with, this step away; whether the value is below it where it holds."""
+    for one, op, other in ((test.left, test.op, test.right), (test.right, _TURNED[test.op], test.left)):
+        far = _moved(other)
+        if far is None or far.by != step.by:
+            continue
+        greater = op in (">", ">=")
+        if far.value == step.value and greater != far.down:  # target > value + step, target < value - step
+            yield bare(one), greater
+        elif bare(one) == step.value and greater != far.down:  # value < target - step, value > target + step
+            yield far.value, not greater
+
+
+def _step(s: Stmt) -> _Step | None:
+    """The step that a statement makes."""
+    if not isinstance(s, Assign) or not isinstance(s.target, LValue):
+        return None
+    moved = _moved(s.value)
+    return moved if moved is not None and isinstance(moved.value, Load) and moved.value.lvalue == s.target else None
+
+
+def _moved(e: Expr) -> _Step | None:
+    """An expression `value + by` or `value - by`."""
+    match bare(e):
+        case Binary(op="+" | "-" as op, left=left, right=right) if isinstance(bare(left), Load):
+            return _Step(bare(left), bare(right), op == "-")
+    return None
+
+
+def _acts(e: Expr) -> bool:
+    """Whether evaluating an expression has an effect: it reads a register or calls a function."""
+    return any(isinstance(part, OBSERVABLE) for part in parts(e))

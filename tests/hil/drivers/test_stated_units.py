@@ -1,0 +1,237 @@
+"""Units that names and comments state, steps of values that follow others, and programs that are right."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from hil.cli import invoke
+from hil.drivers.check import DriverFiles, check_files
+from hil.drivers.unit_names import remark, unit_of_name, unit_of_text
+
+
+@pytest.mark.parametrize(("name", "unit"), [
+    ("tickMs", "ms"), ("SAMPLE_US", "us"), ("supply_mV", "mV"), ("vMin_mV", "mV"), ("TiltDegrees", "degree"),
+    ("rawRpm", "rpm"), ("f_kHz", "kHz"), ("battMilliVolts", "mV"), ("tempTenthsDeg", "1/10 degree"),
+    ("angle_deg_x100", "1/100 degree"), ("setpointMilli", "thousandths of a unit"), ("mv", "mV"), ("adc_to_mV", "mV"),
+    # Ends that mean other things too, with and without a word for the quantity.
+    ("timeout_s", "s"), ("config_s", ""), ("temperatureDc", "decidegree Celsius"), ("BUS_DC", ""),
+    ("motorCurrent_A", "A"), ("PORT_A", ""), ("heading_rad", "rad"),
+    ("wheel_rad", ""), ("chargeMa", "mA"), ("PHASE_MA", "mA"), ("ma", ""),
+    # No units: other words, rates, amounts, mega or milli.
+    ("items", ""), ("params", ""), ("VRMS", ""), ("max_min", ""), ("filterDegree", ""), ("powerMeter", ""),
+    ("RAMP_RPM_PER_MS", ""), ("RATE_6400_HZ", ""), ("timeout500Ms", ""), ("power_MW", ""), ("speed_mm_s", ""), ("", ""),
+])  # fmt: skip
+def test_the_end_of_a_name_states_a_unit(name: str, unit: str) -> None:
+    found = unit_of_name(name)
+    assert (found.name if found is not None else "") == unit
+
+
+@pytest.mark.parametrize(("comment", "unit", "unclear", "amount"), [
+    ("mm", "mm", False, None), ("rpm, filtered", "rpm", False, None), ("the set point [mV]", "mV", False, None),
+    ("tenths of a degree", "1/10 degree", False, None), ("0.1 degree", "1/10 degree", False, None),
+    ("in V", "V", False, None), ("°C", "degree Celsius", False, None), ("85 degrees", "degree", False, 85.0),
+    ("85.0 degrees, in tenths", "degree", True, 85.0),
+    # One letter can be a channel; a scale that is not understood says that the name is not to be trusted.
+    ("A", "", False, None), ("last edge", "", False, None), ("mV per count", "", True, None),
+    ("ms * 10", "", True, None), ("12 V in 48 ms", "", False, None), ("nothing", "", False, None),
+])  # fmt: skip
+def test_a_comment_states_a_unit(comment: str, unit: str, unclear: bool, amount: float | None) -> None:
+    said = remark(comment)
+    assert (said.unit.name if said.unit is not None else "", said.unclear, said.amount) == (unit, unclear, amount)
+
+
+@pytest.mark.parametrize(("one", "other", "ratio"), [
+    ("ms", "us", 1000.0), ("mm", "cm", 0.1), ("rpm", "hz", 1 / 60), ("deg", "degrees celsius", 1.0), ("ms", "mm", 0.0),
+    ("0.1 degree", "degree", 0.1), ("permille", "percent", 0.1),
+])  # fmt: skip
+def test_units_of_one_quantity_have_a_ratio(one: str, other: str, ratio: float) -> None:
+    first, second = unit_of_text(one), unit_of_text(other)
+    assert first is not None
+    assert second is not None
+    assert first.ratio(second) == pytest.approx(ratio)
+
+
+HEAD = """#include <math.h>
+#include <stdint.h>
+#define POLL_US     500L
+#define POLL_MS     5
+#define LIMIT_MV    3000
+#define NOTHING_MS  0
+#define RATE_6400_HZ 3
+typedef struct {
+    int16_t angle;          // 0.1 degree
+    float   yaw_rad;        // after the filter
+    int16_t pair[2];        // mV
+} Pose;
+Pose pose;
+int16_t gapMm, gapCm;
+uint16_t tickMs;
+uint32_t stamp_us, gone_s;
+int16_t temperature;        /* tenths of a degree */
+int16_t temp_c;
+int16_t levelMv;            // mV per count
+uint32_t age_us;
+float tilt_deg, tilt_rad;
+uint16_t rateKhz;
+int16_t voltage_mV, duty_percent;
+void delay_ms(uint16_t n) { tickMs = n; }
+uint32_t elapsed_us(void) { return stamp_us; }
+int16_t greater(int16_t a, int16_t b) { return a > b ? a : b; }
+"""
+
+
+def told(folder: Path, text: str, rule: str, name: str = "a.c") -> list[str]:
+    file = folder / name
+    file.write_text(text, encoding="utf-8")
+    return [f.message for f in check_files(DriverFiles([file], calls=1)).findings if f.rule == rule]
+
+
+MIXED = [
+    ("gapCm = gapMm;", "gapMm is in mm by its name, gapCm in cm by its name"),
+    ("gapCm = gapMm * 10;",
+     "gapMm * 10 is gapMm (mm by its name) times 10, gapCm is in cm by its name: from mm to cm the factor is 0.1"),
+    ("gapMm = gapCm / 10;",
+     "gapCm / 10 is gapCm (cm by its name) times 0.1, gapMm is in mm by its name: from cm to mm the factor is 10"),
+    ("int16_t d = gapMm; gapCm = d;", "d is in mm by its value's name, gapCm in cm by its name"),
+    ("stamp_us = POLL_MS;", "POLL_MS is in ms by its name, stamp_us in us by its name"),
+    ("stamp_us += tickMs;", "stamp_us is in us by its name, tickMs in ms by its name"),
+    ("if (elapsed_us() > tickMs) tickMs = 0;", "elapsed_us(...) is in us by its name, tickMs in ms by its name"),
+    ("delay_ms(POLL_US);", "POLL_US is in us by its name, parameter n of delay_ms in ms by its function's name"),
+    ("if (pose.angle > temp_c) temp_c = 0;",
+     "pose.angle is in 1/10 degree by its comment, temp_c in degree Celsius by its name"),
+    ("if (temperature > temp_c) temp_c = 0;",
+     "temperature is in 1/10 degree by its comment, temp_c in degree Celsius by its name"),
+    ("if (pose.pair[1] > POLL_US) tickMs = POLL_US;", "POLL_US is in us by its name, tickMs in ms by its name"),
+    ("tilt_deg = pose.yaw_rad;", "pose.yaw_rad is in rad by its name, tilt_deg in degree by its name"),
+    ("tilt_deg = atan2f(1.0f, tilt_rad);", "atan2(...) is in radians of the C library, tilt_deg in degree by its name"),
+    ("tilt_rad = sinf(tilt_deg);", "tilt_deg is in degree by its name, the angle of sin in radians of the C library"),
+    ("tilt_deg = tilt_rad * 0.01745329f;",
+     "tilt_rad * 0.0174533 is tilt_rad (rad by its name) times 0.01745, tilt_deg is in degree by its name: from rad to "
+     "degree the factor is 57.3"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("body", "message"), MIXED)
+def test_a_value_in_another_unit_is_told(tmp_path: Path, body: str, message: str) -> None:
+    assert told(tmp_path, f"{HEAD}void f(void)\n{{\n    {body}\n}}\n", "unit-by-name") == [message]
+
+
+@pytest.mark.parametrize("body", [
+    "gapCm = gapMm / 10; gapMm = gapCm * 10;",
+    "stamp_us = POLL_MS * 1000L; stamp_us = tickMs * 1000UL; stamp_us += 1000UL * tickMs;",
+    "stamp_us = NOTHING_MS;",
+    "tickMs = (uint16_t)(elapsed_us() / 1000); tickMs = (uint16_t)(stamp_us >> 10);",
+    "delay_ms(POLL_MS); delay_ms((uint16_t)(POLL_US / 100));",
+    "tilt_deg = tilt_rad * 57.3f; tilt_rad = tilt_deg * (3.14159f / 180.0f);",
+    # Half of it, a tenth of it in microseconds: it can be meant so.
+    "stamp_us = tickMs * 500UL; stamp_us = tickMs * 100UL; gapMm = gapCm * 2;",
+    # Converted where it is; a comment about a scale; an amount in the name; a function of any unit; another quantity.
+    "age_us = stamp_us; age_us /= 1000; tickMs = (uint16_t)age_us;",
+    "levelMv = POLL_MS; rateKhz = RATE_6400_HZ; gapCm = greater(gapMm, 3);",
+    "temp_c = voltage_mV; duty_percent = voltage_mV; gapMm = POLL_MS;",
+    "pose.angle = temperature; tilt_deg = temp_c;",
+])  # fmt: skip
+def test_a_converted_value_is_not_told(tmp_path: Path, body: str) -> None:
+    assert told(tmp_path, f"{HEAD}void f(void)\n{{\n    {body}\n}}\n", "unit-by-name") == []
+
+
+def test_python_states_units_in_the_same_way(tmp_path: Path) -> None:
+    text = (
+        "from emulator.c28x.language import *\n\nPOLL_US = 500\nlast: int16 = 0  # ms\nlevel_mV: int16 = 0\n\n\n"
+        "def mixed() -> None:\n    global last\n    last = POLL_US\n\n\ndef right() -> None:\n    global last\n"
+        "    last = POLL_US / 1000 + level_mV\n"
+    )
+    assert told(tmp_path, text, "unit-by-name", "a.py") == ["POLL_US is in us by its name, last in ms by its comment"]
+
+
+KERNEL = """#include <xdc/std.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/knl/Clock.h>
+#include <ti/sysbios/knl/Task.h>
+#define PERIOD_US   2000
+#define PERIOD_MS   2
+UInt16 calls = 0;
+Void Tick(UArg a) { calls++; }
+Void Work(UArg a, UArg b) { for (;;) Task_sleep(%s); }
+Int main(void)
+{
+    Clock_Params params;
+    Clock_Params_init(&params);
+    params.period = %s;
+    params.startFlag = TRUE;
+    Clock_create(Tick, %s, &params, NULL);
+    Task_create(Work, NULL, NULL);
+    BIOS_start();
+    return 0;
+}
+"""
+
+
+@pytest.mark.parametrize(("times", "messages"), [
+    (("PERIOD_MS", "PERIOD_MS", "PERIOD_MS"), []),
+    (("PERIOD_US / 1000", "PERIOD_US / 1000", "3"), []),
+    (("PERIOD_US", "PERIOD_MS", "2"),
+     ["PERIOD_US is in us by its name, parameter nticks of Task_sleep in ticks of 1 ms"]),
+    (("1", "PERIOD_US", "PERIOD_US"), [
+        "PERIOD_US is in us by its name, params.period in ticks of 1 ms",
+        "PERIOD_US is in us by its name, parameter timeout of Clock_create in ticks of 1 ms",
+    ]),
+])  # fmt: skip
+def test_times_of_the_kernel_are_in_ticks(tmp_path: Path, times: tuple[str, str, str], messages: list[str]) -> None:
+    assert told(tmp_path, KERNEL % times, "unit-by-name") == messages
+
+
+@pytest.mark.parametrize(("line", "message"), [
+    ("#define LIMIT_MS 5  // 5 s", "LIMIT_MS is 5 in ms by its name, and 5 s in its comment"),
+    ("#define HOT_TEMP_DC (85)  /* 85 degrees */",
+     "HOT_TEMP_DC is 85 in decidegree Celsius by its name, and 85 degree in its comment"),
+    ("#define LIMIT_MS 5000U // 5 s", ""),
+    ("#define HOT_TEMP_DC 850 // 85.0 degrees, in tenths", ""),
+    ("#define LIMIT_MS 5 // 20 ms, less the margin", ""),
+    ("#define LIMIT_MS 5 // 5 V", ""),
+    ("#define LIMIT_MS 5 // write cycle: 5 s at most", ""),
+])  # fmt: skip
+def test_a_name_and_a_comment_that_contradict_each_other_are_told(tmp_path: Path, line: str, message: str) -> None:
+    text = f"{line}\nint limit(void) {{ return {line.split()[1]}; }}\n"
+    assert told(tmp_path, text, "unit-in-comment") == ([message] if message else [])
+
+
+RAMP = """typedef struct { float value, rise, fall; } Ramp;
+int reference = 0;
+int wanted = 0;
+#define STEP 5
+"""
+
+WAYS = [
+    ("void f(Ramp *r, float to) { if (to > r->value + r->rise) r->value += r->rise; "
+     "else if (to < r->value - r->fall) r->value += r->fall; else r->value = to; }",
+     "r->value follows to: where to < r->value - r->fall, r->value += r->fall goes away from it"),
+    ("void f(void) { if (reference < wanted - STEP) reference -= STEP; else if (reference > wanted + STEP) "
+     "reference -= STEP; else reference = wanted; }",
+     "reference follows wanted: where reference < wanted - 5, reference -= 5 goes away from it"),
+    ("void f(void) { if (reference + STEP < wanted) reference += STEP; else if (wanted <= reference - STEP) "
+     "reference += STEP; else reference = wanted; }",
+     "reference follows wanted: where wanted <= reference - 5, reference += 5 goes away from it"),
+    ("void f(Ramp *r, float to) { if (to > r->value + r->rise) r->value += r->rise; "
+     "else if (to < r->value - r->fall) r->value -= r->fall; else r->value = to; }", ""),
+    ("void f(void) { if (reference < wanted - STEP) reference += STEP; else if (reference > wanted + STEP) "
+     "reference -= STEP; else reference = wanted; }", ""),
+    # A threshold that is lowered when it is passed follows nothing; nor does a value that turns at its limit.
+    ("void f(void) { if (wanted > reference + STEP) reference -= STEP; else wanted = 0; }", ""),
+    ("void f(void) { if (reference > wanted + STEP) reference += STEP; else if (wanted > 3) reference = 0; }", ""),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("function", "message"), WAYS)
+def test_a_step_away_from_what_a_value_follows_is_told(tmp_path: Path, function: str, message: str) -> None:
+    assert told(tmp_path, f"{RAMP}{function}\n", "step-away") == ([message] if message else [])
+
+
+def test_a_unit_can_be_accepted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    body = "stamp_us = tickMs;  // hil: allow unit-by-name, the register counts halves"
+    file = tmp_path / "a.c"
+    file.write_text(f"{HEAD}void f(void)\n{{\n    {body}\n}}\n", encoding="utf-8")
+    assert invoke(["check", "--calls", "1", str(file), "--fail-on", "warning"]) == 0
+    assert "the register counts halves" in capsys.readouterr().out
