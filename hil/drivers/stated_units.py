@@ -21,6 +21,8 @@ _DEFINITION: Final = re.compile(rf"^\s*(?:#\s*define\s+(\w+)\s+|(\w+)\s*(?::\s*\
 #: Members of a structure, or another declaration without a value.
 _NAMES: Final = r"\w+(?:\s*\[[^\]]*\])*(?:\s*:\s*\d+)?"
 _MEMBERS: Final = re.compile(rf"^\s*(?:\w+\s+)+[*\s]*({_NAMES}(?:\s*,[\s*]*{_NAMES})*)\s*;\s*$")
+#: A macro with one parameter.
+_MACRO: Final = re.compile(r"^\s*#\s*define\s+(\w+)\(\s*\w+\s*\)")
 _IDENTIFIER: Final = re.compile(r"[A-Za-z_]\w*")
 _SUBSCRIPT: Final = re.compile(r"\[[^\[\]]*\]")
 #: A number in a comment may be rounded by this.
@@ -35,6 +37,8 @@ class Measured:
     #: What states it: a name, or a comment.  Empty: a declaration, or what is known of a library.
     by: str = ""
     factor: float = 1.0
+    #: The factor is, or comes from, a constant with a name, which may convert from and to anything.
+    named: bool = False
     #: The object or constant that has the unit; empty: the value itself.
     of: str = ""
 
@@ -77,6 +81,12 @@ def of_definition(where: Where, value: float) -> Measured | None:
         said = UnitRemark(said.unit, said.unclear)
     found = stated(name, said)
     return replace(found, of=name) if found is not None else None
+
+
+def macro_name(where: Where) -> str:
+    """The name of the macro with one parameter that is defined at a place; "": it is another text."""
+    match = _MACRO.match(_line(where)[0])
+    return match[1] if match is not None else ""
 
 
 def comment_beside(where: Where, name: str) -> UnitRemark:

@@ -129,7 +129,7 @@ _PARTS: Final = {
 _ALONE: Final = frozenset(("ms", "us", "mv", "mm", "rpm", "hz", "khz", "degrees", "millivolts", "celsius"))
 #: An amount in a name: `RATE_6400_Hz` and `TIMEOUT_500MS` need not be numbers of this unit.
 _AMOUNT: Final = re.compile(r"(?:_|^)\d+_?[A-Za-z]+$|[a-z]\d+[A-Z][a-z]+$")
-_HUMPS: Final = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
+_HUMPS: Final = re.compile(r"[A-Z]{2,}s(?![a-z])|[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 #: What a comment says about a value that is not in the unit of its name.
 _SCALED: Final = re.compile(
     r"\b(?:per|tenths?|hundredths?|thousandths?|scaled?|fixed|counts?|ticks?|lsbs?|raw|digits?|codes?|units?|times|"
@@ -213,7 +213,6 @@ def remark(comment: str) -> UnitRemark:
     return UnitRemark(unclear=_SCALED.search(text) is not None)
 
 
-def first_word(name: str) -> str:
-    """The first word of an identifier, in small letters."""
-    words = _HUMPS.findall(name)
-    return words[0].lower() if words else ""
+def words_of(name: str) -> list[str]:
+    """The words of an identifier, in small letters."""
+    return [word.lower() for part in name.split("_") for word in _HUMPS.findall(part)]

@@ -50,8 +50,8 @@ from emulator.c28x.tree import (
     Where,
 )
 from emulator.c28x.tree_queries import bare, parts, roots, source_text, statements
-from hil.drivers.stated_units import Measured, comment_beside, members, misnamed, of_definition, stated
-from hil.drivers.unit_names import PhysicalUnit, UnitRemark, first_word, unit_of_text
+from hil.drivers.stated_units import Measured, comment_beside, macro_name, members, misnamed, of_definition, stated
+from hil.drivers.unit_names import PhysicalUnit, UnitRemark, unit_of_text, words_of
 
 #: Operators whose operands must have the same unit; the result has this unit too.
 _KEEPS: Final = ("+", "-")
@@ -73,6 +73,8 @@ _TICK_MEMBERS: Final = (("Clock_Params", "period"),)
 #: First words of functions whose result is not in the unit of their name, which is that of what they take.
 _TAKING: Final = ("delay", "wait", "sleep", "pause", "set", "write", "send", "start", "run")
 _ASKING: Final = ("is", "has", "check", "was", "can")
+#: Words of functions with numbers for parameters whose result is in the unit of their name.
+_GIVING: Final = {"get", "read", "measure", "calc", "calculate", "compute", "convert", "elapsed", "to", "in", "as"}
 #: Quantities of which no common sensor makes another one without a factor.
 _FOREIGN: Final = ({"length", "temperature"}, {"length", "angle"}, {"length", "power"}, {"length", "energy"},
                    {"angle", "power"}, {"angle", "energy"}, {"time", "frequency"})  # fmt: skip
@@ -187,6 +189,7 @@ class _Units:
                 for part in _with_sources(root):
                     self._check_expression(part, part.where if part.where.line else s.where, report)
             self._check_statement(s, function, report)
+            self._check_macro(s, report)
         return self._found
 
     def _check_expression(self, e: Expr, where: Where, report: Report) -> None:
@@ -220,6 +223,20 @@ class _Units:
             case Declare(variable=variable, value=Expr() as value):
                 lvalue = LValue(variable.ctype, variable)
                 self._check_target(value, self._of_lvalue(lvalue), s.where, report, variable.declaration.name)
+
+    def _check_macro(self, s: Stmt, report: Report) -> None:
+        """Check the argument of a macro whose name states its unit, as in `DEVICE_DELAY_US(time)`."""
+        if s.where.macro is None or not (name := macro_name(s.where.macro)) or not _takes(words_of(name)):
+            return
+        wanted = stated(name, UnitRemark(), "macro's name")
+        # What the macro itself contains stands where its name stands.
+        given = [
+            part for root in roots(s) for part in _with_sources(root)
+            if isinstance(part, Load | Const | Call) and part.where.line == s.where.line
+            and part.where.column not in (0, s.where.column) and (isinstance(part, Load | Call) or part.source is None)
+        ]  # fmt: skip
+        if wanted is not None and len(given) == 1:
+            self._check_target(given[0], wanted, s.where, report, f"the argument of {name}")
 
     def _check_target(
         self, value: Expr, wanted: Measured | None, where: Where, report: Report, target: str
@@ -266,14 +283,13 @@ class _Units:
         factor, value = _plain(right), self._value(left)
         if factor is None or value is None or not factor:
             return None
-        match e.op:
-            case "*":
-                return _times(value, factor, left)
-            case "/":
-                return _times(value, 1 / factor, left)
-            case "<<" | ">>":
-                return _times(value, 2.0 ** (factor if e.op == "<<" else -factor), left)
-        return None
+        if e.op in ("<<", ">>"):
+            factor = 2.0**factor
+        elif e.op not in ("*", "/"):
+            return None
+        named = value.named or any(part.where.macro is not None for part in _with_sources(right))
+        of = value.of or source_text(left)
+        return replace(value, factor=value.factor * (factor if e.op in ("*", "<<") else 1 / factor), named=named, of=of)
 
     def _of_lvalue(self, lvalue: LValue) -> Measured | None:
         """The unit of an object, or of a member, element or target."""
@@ -300,10 +316,11 @@ class _Units:
             return self.results[function.path]
         if function.extern and function.name in _TICKS:
             return Measured(self._tick)
-        first = first_word(function.name)
-        if first in _TAKING or first in _ASKING or not _is_number(function.ctype.result):
-            return None
-        return stated(function.name, UnitRemark())
+        words = words_of(function.name)
+        takes = words[:1] == [] or words[0] in _TAKING or words[0] in _ASKING or "from" in words
+        # `period_hz(rate)` need not be in Hz, but `get_hz(channel)` and `ticks_to_ms(n)` say what they give.
+        takes |= any(_is_number(p.ctype) for p in function.parameters) and not _GIVING.intersection(words)
+        return None if takes or not _is_number(function.ctype.result) else stated(function.name, UnitRemark())
 
     def _of_parameter(self, function: Function, number: int) -> tuple[Measured | None, str]:
         """The unit of a parameter, and its name."""
@@ -316,7 +333,7 @@ class _Units:
             return None, ""
         parameter = function.parameters[number]
         own = self._of_lvalue(LValue(parameter.ctype, parameter))
-        if own is None and len(function.parameters) == 1 and first_word(function.name) in _TAKING:
+        if own is None and len(function.parameters) == 1 and _takes(words_of(function.name)[:1]):
             own = stated(function.name, UnitRemark(), "function's name") if _is_number(parameter.ctype) else None
         return own, parameter.declaration.name
 
@@ -324,7 +341,7 @@ class _Units:
 def _mismatch(given: Measured, wanted: Measured, value: str, target: str) -> str:
     """The message about a value that goes to a target of another unit; "": it may go there."""
     one, other = given.unit, wanted.unit
-    if one == other or wanted.factor != 1.0:
+    if one == other or wanted.factor != 1.0 or given.named or wanted.named:
         return ""
     ratio, factor = one.ratio(other), given.factor
     if RADIANS in (one, other) and not (one.scale and other.scale):
@@ -369,13 +386,14 @@ def _certain(one: Measured, other: Measured) -> bool:
     return not one.by and not other.by
 
 
-def _times(value: Measured, factor: float, e: Expr) -> Measured:
-    return replace(value, factor=value.factor * factor, of=value.of or source_text(e))
-
-
 def _text(given: Measured, value: Expr) -> str:
     """The text of a value: the name of a constant, if it is one."""
     return given.of if given.of and given.factor == 1.0 and isinstance(bare(value), Const) else source_text(value)
+
+
+def _takes(words: list[str]) -> bool:
+    """Whether one of the words of a name says that it takes what its unit is about."""
+    return any(word in _TAKING for word in words)
 
 
 def _plain(e: Expr) -> float | None:

@@ -20,8 +20,8 @@ from hil.drivers.unit_names import remark, unit_of_name, unit_of_text
     ("motorCurrent_A", "A"), ("PORT_A", ""), ("heading_rad", "rad"),
     ("wheel_rad", ""), ("chargeMa", "mA"), ("PHASE_MA", "mA"), ("ma", ""),
     # No units: other words, rates, amounts, mega or milli.
-    ("items", ""), ("params", ""), ("VRMS", ""), ("max_min", ""), ("filterDegree", ""), ("powerMeter", ""),
-    ("RAMP_RPM_PER_MS", ""), ("RATE_6400_HZ", ""), ("timeout500Ms", ""), ("power_MW", ""), ("speed_mm_s", ""), ("", ""),
+    ("items", ""), ("params", ""), ("VRMS", ""), ("motorRPMs", ""), ("max_min", ""), ("filterDegree", ""),
+    ("powerMeter", ""), ("RAMP_RPM_PER_MS", ""), ("RATE_6400_HZ", ""), ("timeout500Ms", ""), ("power_MW", ""), ("speed_mm_s", ""), ("", ""),
 ])  # fmt: skip
 def test_the_end_of_a_name_states_a_unit(name: str, unit: str) -> None:
     found = unit_of_name(name)
@@ -60,6 +60,8 @@ HEAD = """#include <math.h>
 #define LIMIT_MV    3000
 #define NOTHING_MS  0
 #define RATE_6400_HZ 3
+#define SIDES       10
+#define PAUSE_US(n) pause((n) * 40L)
 typedef struct {
     int16_t angle;          // 0.1 degree
     float   yaw_rad;        // after the filter
@@ -77,7 +79,11 @@ float tilt_deg, tilt_rad;
 uint16_t rateKhz;
 int16_t voltage_mV, duty_percent;
 void delay_ms(uint16_t n) { tickMs = n; }
+void pause(int32_t loops) { stamp_us += loops; }
 uint32_t elapsed_us(void) { return stamp_us; }
+uint32_t period_hz(uint16_t n) { return 1000000UL / n; }
+uint32_t Get_ms(uint16_t n) { return n; }
+uint32_t rpmFromMs(uint16_t n) { return 60000UL / n; }
 int16_t greater(int16_t a, int16_t b) { return a > b ? a : b; }
 """
 
@@ -99,6 +105,9 @@ MIXED = [
     ("stamp_us += tickMs;", "stamp_us is in us by its name, tickMs in ms by its name"),
     ("if (elapsed_us() > tickMs) tickMs = 0;", "elapsed_us(...) is in us by its name, tickMs in ms by its name"),
     ("delay_ms(POLL_US);", "POLL_US is in us by its name, parameter n of delay_ms in ms by its function's name"),
+    ("PAUSE_US(POLL_MS);", "POLL_MS is in ms by its name, the argument of PAUSE_US in us by its macro's name"),
+    ("PAUSE_US(tickMs);", "tickMs is in ms by its name, the argument of PAUSE_US in us by its macro's name"),
+    ("stamp_us = Get_ms(3);", "Get_ms(...) is in ms by its name, stamp_us in us by its name"),
     ("if (pose.angle > temp_c) temp_c = 0;",
      "pose.angle is in 1/10 degree by its comment, temp_c in degree Celsius by its name"),
     ("if (temperature > temp_c) temp_c = 0;",
@@ -132,6 +141,9 @@ def test_a_value_in_another_unit_is_told(tmp_path: Path, body: str, message: str
     "levelMv = POLL_MS; rateKhz = RATE_6400_HZ; gapCm = greater(gapMm, 3);",
     "temp_c = voltage_mV; duty_percent = voltage_mV; gapMm = POLL_MS;",
     "pose.angle = temperature; tilt_deg = temp_c;",
+    # A factor with a name; a function that is named after what it takes; a macro that takes a product.
+    "gapCm = gapMm * SIDES; stamp_us = period_hz(3); stamp_us = rpmFromMs(3);",
+    "PAUSE_US(POLL_US); PAUSE_US(tickMs * 1000L); PAUSE_US(tickMs + POLL_MS);",
 ])  # fmt: skip
 def test_a_converted_value_is_not_told(tmp_path: Path, body: str) -> None:
     assert told(tmp_path, f"{HEAD}void f(void)\n{{\n    {body}\n}}\n", "unit-by-name") == []
@@ -230,8 +242,9 @@ def test_a_step_away_from_what_a_value_follows_is_told(tmp_path: Path, function:
 
 
 def test_a_unit_can_be_accepted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    body = "stamp_us = tickMs;  // hil: allow unit-by-name, the register counts halves"
+    text = "#include <stdint.h>\nuint16_t tickMs = 0;\nuint32_t stamp_us = 0;\nvoid f(void)\n{\n"
     file = tmp_path / "a.c"
-    file.write_text(f"{HEAD}void f(void)\n{{\n    {body}\n}}\n", encoding="utf-8")
+    line = "stamp_us = tickMs;  // hil: allow unit-by-name, the register counts halves"
+    file.write_text(f"{text}    {line}\n}}\n", encoding="utf-8")
     assert invoke(["check", "--calls", "1", str(file), "--fail-on", "warning"]) == 0
     assert "the register counts halves" in capsys.readouterr().out
