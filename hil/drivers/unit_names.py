@@ -88,7 +88,8 @@ def _units() -> Iterator[tuple[PhysicalUnit, tuple[str, ...], tuple[str, ...]]]:
             texts = more if not letter else (f"{prefix}{more[1]}",) if len(more) > 1 else ()
             yield PhysicalUnit(name, quantity, power * size, power), tuple(ends), texts
     yield PhysicalUnit("MHz", "frequency", 1e6, 1e6), ("mhz", "megahertz"), ()
-    yield PhysicalUnit("rpm", "frequency", 1 / 60), ("rpm",), ()
+    # Not in Hz: of a wheel with sixty teeth, the frequency in Hz is the speed in rpm.
+    yield PhysicalUnit("rpm", "rotation", 1.0), ("rpm",), ()
     yield PhysicalUnit("percent", "ratio", 1e-2), ("percent", "pct"), ("%",)
     yield PhysicalUnit("permille", "ratio", 1e-3), ("permille", "promille"), ()
     for size, words in ((1e-1, ("tenths",)), (1e-2, ("hundredths",)), (1e-3, ("milli", "thousandths"))):
