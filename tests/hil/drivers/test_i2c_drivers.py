@@ -322,6 +322,16 @@ def test_a_module_clock_is_told_where_its_prescaler_is_set(prescaler: str, told:
     assert at == set(told)
 
 
+@pytest.mark.parametrize(("divider", "told"), [("400", []), ("30000", ["    I2caRegs.I2CCLKH = 30000;"])])
+def test_a_slow_bus_is_told_where_its_dividers_are_set(divider: str, told: list[str], tmp_path: Path) -> None:
+    text = OPEN.replace("I2CCLKL = 10", f"I2CCLKL = {divider}").replace("I2CCLKH = 5", f"I2CCLKH = {divider}")
+    text += "void main(void)\n{\n    InitSysCtrl();\n    Open();\n    I2caRegs.I2CSAR.all = 0x50;\n"
+    text += "    I2caRegs.I2CCNT = 1;\n    I2caRegs.I2CMDR.all = 0x6E20;\n    for (;;) ;\n}\n"
+    (tmp_path / "slow.c").write_text(text, encoding="utf-8")
+    found = check_files(DriverFiles([tmp_path / "slow.c"], calls=1, seconds=0.002)).findings
+    assert [text.splitlines()[f.place.line - 1] for f in found if f.rule == "i2c-slow" and f.place] == told
+
+
 BOARD = """from emulator.devices.l3g4200d import L3G4200D
 from hil.board import Board
 
