@@ -10,11 +10,12 @@ Nothing here knows the robot's firmware: an image is the board (chip, parts, ker
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
 from emulator.c28x.compile import compile_program
-from emulator.c28x.compiled_program import CompileOptions
+from emulator.c28x.compiled_program import Compiled, CompileOptions
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import BlockType
 from emulator.c28x.findings import Finding
@@ -96,9 +97,16 @@ class Build:
             residue=fill == "stack", watch=True, static=True, entries=entries, calibration=dict(calibration or {}),
             coverage=coverage is not None, float_division=float_division,
         )  # fmt: skip
-        self.compiled = compile_program(
-            self.program, options, lambda block, name: chip.register(block, name).looked_at
-        )  # fmt: skip
+        #: The blocks with all registers of the chip.
+        self.register_blocks = (*chip.blocks.values(), chip.vectors.registers)
+        self._options = options
+        self._looked_at = lambda block, name: chip.register(block, name).looked_at
+        self.compiled = compile_program(self.program, options, self._looked_at)
+
+    def followed(self) -> Compiled:
+        """The same program, which reports each statement before it begins (`Position.follow`)."""
+        options = replace(self._options, follow=True, static=False, coverage=False)
+        return compile_program(self.program, options, self._looked_at)
 
     @property
     def others(self) -> frozenset[str]:
@@ -110,22 +118,25 @@ class Build:
         """The modules that define functions or objects."""
         return [module for module in self.program.modules.values() if module.functions or module.variables]
 
-    def image(self, *, driven: Callable[[], bool] | None = None) -> Image:
+    def image(self, *, driven: Callable[[], bool] | None = None, compiled: Compiled | None = None) -> Image:
         """A fresh board with the files linked to it.  Raises LinkError for a name that nothing defines.
 
-        `driven` is that of `runtime_of`.
+        `driven` is that of `runtime_of`; `compiled` replaces the program (`followed`).
         """
-        return Image(self, driven)
+        return Image(self, driven, compiled)
 
 
 class Image:
     """One board with the files of a build: call its functions, run its kernel, look at its findings."""
 
-    def __init__(self, build: Build, driven: Callable[[], bool] | None = None) -> None:
+    def __init__(
+        self, build: Build, driven: Callable[[], bool] | None = None, compiled: Compiled | None = None
+    ) -> None:  # fmt: skip
         with uncollected():
             self.board = board = build.board(seed=build.seed)
             runtime = runtime_of(board, fill=build.fill, driven=driven)
-            self.linked = bind(board, build.compiled, runtime, coverage=build.coverage)
+            coverage = build.coverage if compiled is None else None
+            self.linked = bind(board, compiled or build.compiled, runtime, coverage=coverage)
         self._build = build
         machine = BoardTarget(board, lambda: Firmware(self.linked)) if build.fired else None
         self._faults = [mount(fired.fault, machine) for fired in build.fired] if machine is not None else []

@@ -79,7 +79,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
             writer = PythonWriter(
                 function, FunctionNames(owner, looked_at), costs=costs, factor=factor, watch=options.watch,
                 residue=options.residue, keep_locals=options.keep_locals, coverage=options.coverage,
-                steps=options.steps, charge_by_call=options.charge_by_call,
+                steps=options.steps, follow=options.follow, charge_by_call=options.charge_by_call,
             )  # fmt: skip
             functions.append(CompiledFunction(function, function.where.file, writer.write()))
     return Compiled(program, options, functions, objects, findings)

@@ -39,6 +39,8 @@ class CompileOptions:
     coverage: bool = False
     #: Call `Position.hold`, if it is set, before each statement.
     steps: bool = False
+    #: Call `Position.follow`, if it is set, with each statement before it begins, and with the locals.
+    follow: bool = False
     #: Charge time by a call and not in line: faster with a compiled clock, slower without.
     charge_by_call: bool = CHARGE_BY_CALL
     #: Report what the typed tree shows without running it.

@@ -17,6 +17,10 @@ Calls = tuple[Any, ...]
 INTERRUPT: Final = "interrupt"
 
 
+def _nobody(statement: Any, values: Mapping[str, Any]) -> None:
+    """Nobody follows the statements."""
+
+
 class Position:
     """Where one CPU is in its firmware.
 
@@ -26,7 +30,7 @@ class Position:
     routine that the kernel does not manage.  The code that switches threads sets it.
     """
 
-    __slots__ = ("at", "calls", "hold", "who")
+    __slots__ = ("at", "calls", "follow", "hold", "who")
 
     def __init__(self) -> None:
         self.at = 0
@@ -34,6 +38,8 @@ class Position:
         self.who = "main"
         #: Called with the locals before each statement, in an image linked with `CompileOptions.steps`.
         self.hold: Callable[[Mapping[str, Any]], None] | None = None
+        #: Called with each statement before it begins, and the locals, in an image linked with `CompileOptions.follow`.
+        self.follow: Callable[[Any, Mapping[str, Any]], None] = _nobody
 
     def innermost(self) -> int:
         """The statement that executes; if none does, the innermost one that was interrupted or has called; 0: none."""

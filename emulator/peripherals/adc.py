@@ -126,6 +126,7 @@ class Adc:
         "_unlatched",
         "_vreflo_v",
         "conversions",
+        "converted_at",
         "pulsed",
     )  # fmt: skip
 
@@ -185,6 +186,8 @@ class Adc:
         self._obeyed: frozenset[int] = frozenset()
         #: Conversions ended since the object was made.
         self.conversions = 0
+        #: For each SOC, when its last conversion ended; 0: never.
+        self.converted_at = [0] * 16
         self._socs = Socs(regs, cpu.findings, converter, self._results, any_write_resets_pointer)
         #: The SOCs that begin at once if they are forced while no conversion is under way.
         self._ready: list[Soc] = []
@@ -417,6 +420,7 @@ class Adc:
             self._latch_at = self._clock.now + self._latch_delay
             self._unlatched = result.value
             self.conversions += 1
+            self.converted_at[soc.n] = self._clock.now
             if self._code is not None:
                 result.value = self._processed(soc.n, self._code)
                 self._code = None

@@ -83,6 +83,7 @@ class ECap:
         "_shadows",
         "_since",
         "_sync_out",
+        "captured_at",
         "cleared_in_vain",
         "output",
     )  # fmt: skip
@@ -99,6 +100,8 @@ class ECap:
         self._control1, self._control2 = registers["ECCTL1"], registers["ECCTL2"]
         self._enabled, self._flags = registers["ECEINT"], registers["ECFLG"]
         self._listening = False
+        #: When an edge last loaded CAP1 to CAP4; 0: never.
+        self.captured_at = 0
         self._event: ClockEvent | None = None
         self._next_check: ClockEvent | None = None
         #: ECAPn.OUT
@@ -176,6 +179,7 @@ class ECap:
         self._catch_up()
         if control & ECCTL1.CAPLDEN.mask:
             self._caps[n].value = self._counter.value
+            self.captured_at = self._clock.now
         control2 = self._control2.value
         if n == (control2 & ECCTL2.STOP_WRAP.mask) >> ECCTL2.STOP_WRAP.lo:
             self._next = 0

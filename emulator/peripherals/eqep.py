@@ -131,6 +131,12 @@ class EQep:
 
     # -- for the world -------------------------------------------------------------------------------------------
 
+    @property
+    def captured_at(self) -> int:
+        """When the capture unit last measured a period."""
+        self.quadrature.sync()
+        return self._capture.captured_at
+
     def set_clock(self, on: bool) -> None:
         """PCLKCR4 switched the module's clock: registers keep their state, counters freeze."""
         self.quadrature.sync()

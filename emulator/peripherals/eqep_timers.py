@@ -214,6 +214,11 @@ class Capture:
             self._zero = ticks
         self._edges = (self._edges + steps) % unit
 
+    @property
+    def captured_at(self) -> int:
+        """When QCPRD was last loaded."""
+        return self._origin + (self._zero << self._shift)
+
     def direction_changed(self) -> None:
         """QEPSTS.CDEF, if a period is being measured."""
         if self.running:

@@ -7,6 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Final
 
+from emulator.c28x.compiled_program import Compiled
 from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
 from emulator.c28x.tree import Function
@@ -17,7 +18,9 @@ from emulator.registers.i2c import I2CSTR
 from hil.drivers.budget import RUN, TimeBudget, computed
 from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
-from hil.drivers.stale import AgeWatch, buses, cut_off, silent_sources, watched
+from hil.drivers.sources import ArrivalWatch
+from hil.drivers.stale import AgeWatch, watched
+from hil.drivers.used_sources import buses, cut_off, silent_sources
 from hil.drivers.waiting import (
     EndedParties,
     in_last_loop,
@@ -73,6 +76,8 @@ class ProgramOutcome:
     cut: str = ""
     #: Its sources that have not fallen silent, because nobody asked for it (`--silence`).
     not_silenced: tuple[str, ...] = ()
+    #: Whether one of its sources was lost for a while.
+    lost: bool = False
 
 
 def run_program(
@@ -93,14 +98,16 @@ def run_program(
     if silence:
         known = {(finding.rule, finding.place) for finding in kept}
         hung = _without_parts(build, roles, for_s, board_named=board_named)
-        kept = (*kept, *(f for f in hung if (f.rule, f.place) not in known), *_stale(build, roles, for_s))
-    left = () if silence or roles.main is None else silent_sources(roles)
+        kept = (*kept, *(f for f in hung if (f.rule, f.place) not in known))
+    if roles.main is not None and (silence or ran.lost):  # without it, it is not known what releases its tasks
+        kept = (*kept, *_stale(build, roles, for_s, asked=silence))
+    left = () if silence or roles.main is None else silent_sources(build, roles)
     return replace(ran, findings=kept, not_silenced=left)
 
 
 def _without_parts(build: Build, roles: Roles, for_s: float, *, board_named: bool) -> list[Finding]:
     """The loops that wait without a limit when no part on an I2C or a CAN answers, from the middle of a run on."""
-    used = buses(roles)
+    used = buses(build)
     if not used:
         return []
     ran = _run(build, roles, for_s, lambda fraction: None, patient=True, board_named=board_named, parts_s=for_s / 2)
@@ -112,33 +119,37 @@ def _without_parts(build: Build, roles: Roles, for_s: float, *, board_named: boo
     ]  # fmt: skip
 
 
-def _stale(build: Build, roles: Roles, for_s: float) -> list[Finding]:
-    """Outputs of a whole program that follow values that are too old, found by a longer run that follows ages."""
-    if roles.main is None:
-        return []  # it is not known what releases its tasks
+def _stale(build: Build, roles: Roles, for_s: float, *, asked: bool) -> list[Finding]:
+    """Outputs of a whole program that follow values that are too old, found by a run that follows ages.
 
-    def run(prepare: Callable[[Image], AgeWatch]) -> None:
-        image = _begin(build, roles)
+    `asked`: it is longer, and what can be cut off falls silent.
+    """
+
+    def run(prepare: Callable[[Image], AgeWatch]) -> bool:
+        image = _begin(build, roles, build.followed())
         watch = prepare(image)
         began, usual = image.board.clock.now, round(for_s * SYSCLK_HZ)
         image.allow_loops(2 * _LONGER * usual + SYSCLK_HZ)
+        whole = False
         with suppress(*STOPS):
             _go(
                 image, roles, lambda: watch.until(began + usual, began + _LONGER * usual), TimeBudget(_OBSERVED),
                 lambda fraction: None,
             )  # fmt: skip
+            whole = True
         with suppress(*STOPS):
             image.close()
+        return whole
 
-    seen = (anchored(finding, build.files, build.others) for finding in watched(build, roles, run))
+    seen = (anchored(finding, build.files, build.others) for finding in watched(build, roles, run, asked=asked))
     return [finding for finding in seen if finding is not None]
 
 
-def _begin(build: Build, roles: Roles) -> Image:
-    """A fresh image for the program."""
+def _begin(build: Build, roles: Roles, compiled: Compiled | None = None) -> Image:
+    """A fresh image for the program, or for another translation of it."""
     bare = roles.main is not None and not roles.begins_kernel
     # A `main` without a kernel need not return: `_bare` ends it.
-    image = build.image(driven=(lambda: True) if bare else None)
+    image = build.image(driven=(lambda: True) if bare else None, compiled=compiled)
     image.skip_turns()
     return image
 
@@ -161,6 +172,7 @@ def _run(
     image = _begin(build, roles)
     if parts_s is not None:
         image.board.clock.after(round(parts_s * SYSCLK_HZ), lambda: cut_off(image.board))
+    arrivals = ArrivalWatch(image.board) if roles.main is not None and parts_s is None else None
     budget = TimeBudget(RUN)
     stop: BaseException | None = None
     stood = EndPosition()
@@ -213,7 +225,10 @@ def _run(
     cut = ""
     if image.board.clock.now < end and budget.over:
         cut = "this machine took too long" if budget.cut else "it has computed as much as a run may"
-    return ProgramOutcome(rated, seconds(min(image.board.clock.now, end)), "" if said else str(stop), cut)
+    return ProgramOutcome(
+        rated, seconds(min(image.board.clock.now, end)), "" if said else str(stop), cut,
+        lost=arrivals is not None and arrivals.is_lost(),
+    )  # fmt: skip
 
 
 def _retried(image: Image, stood: EndPosition, roles: Roles) -> None:

@@ -119,7 +119,7 @@ class PythonWriter:
 
     def __init__(
         self, function: Function, names: FunctionNames, *, costs: Costs, factor: float, watch: bool, residue: bool,
-        keep_locals: bool, coverage: bool, steps: bool, charge_by_call: bool,
+        keep_locals: bool, coverage: bool, steps: bool, follow: bool, charge_by_call: bool,
     ) -> None:  # fmt: skip
         self.function = function
         self.names = names
@@ -130,6 +130,7 @@ class PythonWriter:
         self.keep_locals = keep_locals
         self.coverage = coverage
         self.steps = steps
+        self.follow = follow
         self.charge_by_call = charge_by_call
         self.items: list[Item] = []
         self.depth = 0
@@ -214,6 +215,10 @@ class PythonWriter:
         if self.steps and isinstance(what, Stmt):
             self.stored_place = self.statement_at(where)
             texts += [f"_p.at = {self.stored_place}", "if _p.hold: _p.hold(locals())"]
+        if self.follow and isinstance(what, Stmt):
+            self.stored_place = self.statement_at(where)
+            followed = self.names.constant("t", what, ("followed", id(what)))
+            texts += [f"_p.at = {self.stored_place}", f"_p.follow({followed}, locals())"]
         if texts:
             self.items.append(Begin(self.depth, where.line, tuple(texts)))
 
@@ -262,7 +267,7 @@ class PythonWriter:
             if variable.in_memory:
                 count = variable.ctype.leaves
                 self.put(f"{name} = [None] * {count}" if count > 1 else f"{name} = [None]")
-            elif variable.unwritten or self.residue or self.keep_locals or self.steps:
+            elif variable.unwritten or self.residue or self.keep_locals or self.steps or self.follow:
                 # A look at the locals, at a return or at any statement, must find all of them.
                 self.put(f"{name} = None")
         for variable in f.live:
