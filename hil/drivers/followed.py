@@ -178,7 +178,9 @@ class ValueFollower:
         for s in body:
             nodes = [p for root in roots(s) for p in parts(root)]
             calls = tuple(p for p in nodes if isinstance(p, Call) and p.function.path in self._functions)
-            idle = not isinstance(s, Assign | Declare | CopyStruct | Return | For | Evaluate) and not calls
+            idle = not isinstance(s, Assign | Declare | CopyStruct | For | Evaluate) and not calls
+            if isinstance(s, Return) and s.value is not None and not isinstance(bare(s.value), Const):
+                idle = False
             self.known[id(s)] = FollowedStatement(
                 f, around, loops, calls, tuple(self._choices(s, nodes)), _limits(s, around), self._acts(s), idle
             )  # fmt: skip
@@ -216,6 +218,9 @@ class ValueFollower:
     # The calls ------------------------------------------------------------------------------------------------------
 
     def _follow(self, s: Stmt, values: Mapping[str, Any]) -> None:
+        known = self.known[id(s)]
+        if known.idle and not known.choices:
+            return
         who, calls = self._position.who, self._position.calls
         if who != self._who:
             self._leave_interrupt(who, calls)
@@ -226,7 +231,6 @@ class ValueFollower:
         elif call.pending:
             self._end(call)
         call.statement, call.values = s, values
-        known = self.known[id(s)]
         self._began(s, known, call)
         if known.calls:
             call.pending = True

@@ -22,6 +22,7 @@ Not modelled
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
@@ -42,6 +43,7 @@ from emulator.c28x.tree import (
 from emulator.c28x.tree_queries import register_text, source_text, statements
 from emulator.c28x.watcher import CallingWatcher
 from emulator.clock import CYCLES_PER_MS
+from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.registers.cell import Cell
 from hil.drivers.followed import NO_AGES, TEXTS, TIME, Ages, FollowedCall, FollowedStatement, ValueFollower, newest
 from hil.drivers.outputs import LEVEL, PIN
@@ -60,6 +62,8 @@ class DrivenOutput:
     within: str = ""
     task: str = ""
     text: str = ""
+    #: `block.register`; empty for a text.
+    register: str = ""
     value: int = 0
     ages: Ages = field(default_factory=dict)
     written: int = 0
@@ -70,6 +74,8 @@ class DrivenOutput:
     by_pin: bool = False
     #: Source -> how old its data was at most when it was used while the source was alive.
     usual: dict[str, int] = field(default_factory=dict)
+    #: Its ePWM has had pulses at a pin.
+    pulsed: bool = False
     #: How often it was written since the present data came in.
     uses: int = 0
 
@@ -79,8 +85,10 @@ class SilentSource:
     """A source, and what the program does with and without it."""
 
     arrivals: InputSource
-    #: What has run while it was alive: statements, with the outcomes of their tests.
+    #: What has run while it was alive, since the last silence: statements, with the outcomes of their tests.
     ran: set[Any] = field(default_factory=set)
+    #: When something ran for the first time that can be a decision to stop.
+    decided: int = -1
     #: What has run besides during the present silence, and is no notice.
     ignored: set[Any] = field(default_factory=set)
     noticed: bool = False
@@ -141,6 +149,8 @@ class AgeWatch:
             source.arrivals.arrived(at)
             source.noticed = False
             source.ignored.clear()
+            if source.arrivals.since == at:
+                source.ran.clear()
             if source.arrivals.count == NEW and source not in self._known:
                 self._known.append(source)
 
@@ -158,7 +168,10 @@ class AgeWatch:
         for source in self._known:
             arrivals = source.arrivals
             if now - arrivals.last <= LOST * arrivals.pace:
-                source.ran.add(key)
+                if key not in source.ran:
+                    source.ran.add(key)
+                    if self._notices(s, known, call, source):
+                        source.decided = now
             elif not source.noticed and key not in source.ran and key not in source.ignored:
                 if self._notices(s, known, call, source):
                     source.noticed = True
@@ -166,17 +179,25 @@ class AgeWatch:
                     source.ignored.add(key)
 
     def _notices(self, s: Stmt, known: FollowedStatement, call: FollowedCall, source: SilentSource) -> bool:
-        """Whether what runs now, and did not while a source was alive, is due to its silence and has an effect."""
+        """Whether what runs now for the first time has an effect, and may be due to a silence, or the reason for it.
+
+        What a sensor measures is neither.  A silence of a partner has its reason in what the partner has said.
+        """
         follower = self._follower
-        decided = follower.control(s, call)
+        deciding = follower.control(s, call)
         timed = False
         for choice in known.choices:
             ages = follower.ages(choice, call)
-            decided = newest(decided, ages)
+            deciding = newest(deciding, ages)
             timed = timed or TIME in ages
-        name, last = source.arrivals.name, source.arrivals.last
-        if TIME not in decided and name not in decided and any(birth > last for birth in decided.values()):
-            return False  # other data has decided
+        arrivals = source.arrivals
+        alive = arrivals.last + LOST * arrivals.pace
+        if arrivals.name not in deciding:
+            if self._clock.now <= alive and not SENSOR.match(arrivals.name):
+                return False
+            sensors = [birth for name, birth in deciding.items() if SENSOR.match(name)]
+            if len(sensors) == len(deciding) and any(birth > alive - 2 * LOST * arrivals.pace for birth in sensors):
+                return False
         if isinstance(s, If):
             taken = follower.value(s.test, call)
             left = [*s.then, *s.otherwise] if taken is None else s.otherwise if taken else s.then
@@ -197,11 +218,11 @@ class AgeWatch:
             key = (pin[1], level or mask)
             if pin[2] == "CLEAR":
                 level = 0
-        self._output(key, text, values, level, call, by_pin=pin is not None)
+        self._output(key, text, values, level, call, by_pin=pin is not None, register=cell.path)
 
     def _output(
         self, key: Any, text: str, values: tuple[Expr, ...], level: int, call: FollowedCall, *, by_pin: bool = False,
-        tells: bool = False,
+        register: str = "", tells: bool = False,
     ) -> None:  # fmt: skip
         follower, now = self._follower, self._clock.now
         assert call.statement is not None
@@ -215,7 +236,8 @@ class AgeWatch:
         fresh = any(birth > output.ages.get(source, -1) for source, birth in ages.items() if source != TIME)
         output.uses = 1 if fresh else output.uses + 1
         output.text, output.value, output.ages, output.written, output.tells = text, level, ages, now, tells
-        output.by_pin = by_pin
+        output.by_pin, output.register = by_pin, register
+        output.pulsed = output.pulsed or self._pulses(output)
         for source, birth in ages.items():
             known = self._sources.get(source)
             if known is not None and now - known.arrivals.last <= LOST * known.arrivals.pace:
@@ -232,9 +254,10 @@ class AgeWatch:
     def _judge(self, source: SilentSource, now: int, *, ended: bool) -> None:
         """A silence has ended, or the run has."""
         arrivals = source.arrivals
-        silence = arrivals.silent_for(now)
-        if not silence or source.noticed:
+        if not arrivals.silent_for(now) or source.noticed:
             return
+        if source.decided >= arrivals.last - LOST * arrivals.pace:
+            return  # the program stopped something, and so the source
         natural = arrivals.was_lost(now) and (ended or self._lasting)
         for output in self._outputs.values():
             birth = output.ages.get(arrivals.name)
@@ -264,11 +287,17 @@ class AgeWatch:
     def _drives(self, output: DrivenOutput, arrivals: InputSource) -> bool:
         """Whether an output goes on as before in a silence."""
         late = arrivals.last + LOST * arrivals.pace
-        if not output.value or output.ages.get(TIME, 0) > late:
-            return False
+        if not output.value or output.ages.get(TIME, 0) > late or (output.pulsed and not self._pulses(output)):
+            return False  # it is off: by a trip zone, a forced level, another function of the pin
         if output.tells:
             return SENSOR.match(arrivals.name) is not None and output.written > late
         return output.written > late or not output.by_pin
+
+    def _pulses(self, output: DrivenOutput) -> bool:
+        """Whether a pin has pulses of the ePWM that an output belongs to."""
+        match = re.fullmatch(r"EPwm(\d+)Regs\.CMP([AB])", output.register)
+        pins = PIN_FUNCTIONS[f"EPWM{match[1]}{match[2]}"] if match is not None else ()
+        return any(self._board.pwm_outputs[f"GPIO{pin}"].duty for pin in pins)
 
     def until(self, usual: int, latest: int) -> int:
         """The end of the run.  It is later than usual while an output follows a source that is silent, or may be.
