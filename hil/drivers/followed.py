@@ -449,16 +449,18 @@ class ValueFollower:
             found = newest(found, self.ages(e, call, own=own))
         return found
 
-    def chosen(self, used: tuple[Expr, ...], call: FollowedCall) -> int:
-        """How many calls up a value is chosen.  Functions in between only pass it on."""
-        depth, at = 0, call
-        while not self.all_ages(used, at, own=True):
+    def chosen(self, used: tuple[Expr, ...], call: FollowedCall) -> tuple[int, tuple[Expr, ...], FollowedCall]:
+        """Where a value is chosen: how many calls up, from what, and in which call.  Functions in between only pass it
+        on.
+        """
+        depth, values, at = 0, used, call
+        while not self.all_ages(values, at, own=True):
             caller = at.caller
             if caller is None or caller.statement is None:
-                return 0
-            used = tuple(a for made in self._made(caller.statement, at.function) for a in made.arguments)
+                return 0, used, call
+            values = tuple(a for made in self._made(caller.statement, at.function) for a in made.arguments)
             depth, at = depth + 1, caller
-        return depth
+        return depth, values, at
 
     def carriers(self, used: Iterable[Expr], call: FollowedCall) -> tuple[str, ...]:
         """The objects at file scope from which expressions take values with an age, in their function."""

@@ -27,8 +27,8 @@ SENSOR: Final = re.compile(r"I2c|Spi|Adc|ECap|EQep|XINT")
 PIN_INTERRUPTS: Final = {
     vector.id: f"XINT{n}" for n in range(1, 6) if (vector := getattr(PieVectTable, f"XINT{n}_INT"))
 }  # fmt: skip
-#: What comes within this time belongs together: the characters of a message, the words of a burst.
-TOGETHER: Final = 2 * CYCLES_PER_MS
+#: What comes within this time counts as one: the characters of a message, the words of a burst.
+TOGETHER: Final = 4 * CYCLES_PER_MS
 #: A source is silent after this many times its longest recent interval.  A program that tolerates two or three lost
 #: values waits for a shorter time.
 PACES: Final = 10
@@ -45,36 +45,40 @@ _RECENT: Final = 32
 class InputSource:
     """The arrivals of one source, in cycles."""
 
-    __slots__ = ("_gaps", "count", "last", "name", "pace", "since")
+    __slots__ = ("_counted", "_gaps", "count", "last", "name", "pace", "since")
 
     def __init__(self, name: str, now: int) -> None:
         self.name = name
-        #: The last arrival; the first since the last silence; how many there were since.
-        self.last = self.since = now
+        #: The last arrival; the first since the last silence; how many there were since, apart from each other.
+        self.last = self.since = self._counted = now
         self.count = 1
         #: The longest recent interval between two.
         self.pace = TOGETHER
         self._gaps: deque[int] = deque(maxlen=_RECENT)
 
     def silent_for(self, now: int) -> int:
-        """How long nothing has come, if it is silent; else 0."""
-        silence = now - self.last
-        return silence if self.count >= NEW and silence >= PACES * self.pace else 0
+        """How long nothing has come, if it is silent; else 0.  It must have been there for some time before."""
+        silence, least = now - self.last, PACES * self.pace
+        return silence if self.count >= NEW and silence >= least and self.last - self.since >= least // 2 else 0
+
+    def was_there_longer(self, now: int) -> bool:
+        """Whether it gave something before for as long as it has been silent now."""
+        return now - self.last <= self.last - self.since
 
     def was_lost(self, now: int) -> bool:
-        """Whether it is silent, has been regular for at least as long, and so has most likely failed."""
-        return self.count >= REGULAR and 0 < self.silent_for(now) <= self.last - self.since
+        """Whether it is silent, was regular for at least as long, and so has most likely failed."""
+        return self.count >= REGULAR and self.silent_for(now) > 0 and self.was_there_longer(now)
 
     def arrived(self, now: int) -> None:
         """Something new has come."""
-        gap = now - self.last
         if self.silent_for(now):
-            self.since, self.count, self.pace = now, 1, TOGETHER
+            self.since, self._counted, self.count, self.pace = now, now, 1, TOGETHER
             self._gaps.clear()
-        elif gap >= TOGETHER:
-            self._gaps.append(gap)
-            self.count += 1
+        elif now - self._counted >= TOGETHER:
+            self._gaps.append(max(now - self.last, TOGETHER))
             self.pace = max(self._gaps)
+            self.count += 1
+            self._counted = now
         self.last = now
 
 

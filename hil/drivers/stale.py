@@ -48,7 +48,7 @@ from emulator.registers.cell import Cell
 from hil.drivers.followed import NO_AGES, TEXTS, TIME, Ages, FollowedCall, FollowedStatement, ValueFollower, newest
 from hil.drivers.outputs import LEVEL, PIN
 from hil.drivers.roles import Roles
-from hil.drivers.sources import LOST, NEW, PACES, PIN_INTERRUPTS, SENSOR, InputSource, of_mailbox, source_of
+from hil.drivers.sources import LOST, NEW, PACES, PIN_INTERRUPTS, SENSOR, TOGETHER, InputSource, of_mailbox, source_of
 from hil.drivers.used_sources import cut_off
 from hil.image import Build, Image
 
@@ -72,7 +72,7 @@ class DrivenOutput:
     #: It is a text for a reader; it is a pin.
     tells: bool = False
     by_pin: bool = False
-    #: Source -> how old its data was at most when it was used while the source was alive.
+    #: Source -> how old its data was at most when it was used before the source gave something new.
     usual: dict[str, int] = field(default_factory=dict)
     #: Its ePWM has had pulses at a pin.
     pulsed: bool = False
@@ -109,12 +109,17 @@ class AgeWatch:
         #: Those whose interval is known.
         self._known: list[SilentSource] = []
         self._outputs: dict[Any, DrivenOutput] = {}
+        #: When a statement began last: a program that hangs is told by other rules.
+        self._ran = 0
+        #: The watchdog has reset the device: it begins anew, which is not modelled.
+        self._over = False
         #: When the sources were cut off.
         self._cut = 0
         image.linked.watch_with(CallingWatcher(lambda obj, word, write: None))
         self._follower = ValueFollower(image, functions, self._reading, self._began)
         board.kernel.mailboxes.taken.connect(self._taken)
         board.vectors.began.connect(self._interrupted)
+        self._findings.found.connect(self._found)
         for block in board.blocks.values():
             for cell in block:
                 if LEVEL.match(cell.path) or PIN.match(cell.path):
@@ -145,7 +150,13 @@ class AgeWatch:
         if source is None:
             self._sources[name] = SilentSource(InputSource(name, at))
         elif at > source.arrivals.last:
-            self._judge(source, at, ended=True)
+            if source.arrivals.silent_for(at):
+                self._judge(source, at, ended=True)
+            elif at - source.arrivals.last >= TOGETHER:
+                for output in self._outputs.values():
+                    if name in output.ages:
+                        age = output.written - output.ages[name]
+                        output.usual[name] = max(output.usual.get(name, 0), age)
             source.arrivals.arrived(at)
             source.noticed = False
             source.ignored.clear()
@@ -154,10 +165,13 @@ class AgeWatch:
             if source.arrivals.count == NEW and source not in self._known:
                 self._known.append(source)
 
+    def _found(self, finding: Finding) -> None:
+        self._over = self._over or finding.rule == "watchdog-reset"
+
     # What the program does ------------------------------------------------------------------------------------------
 
     def _began(self, s: Stmt, known: FollowedStatement, call: FollowedCall) -> None:
-        now = self._clock.now
+        now = self._ran = self._clock.now
         key: Any = id(s)
         if known.choices and self._known:
             key = (key, *(self._follower.value(choice, call) for choice in known.choices))
@@ -238,13 +252,9 @@ class AgeWatch:
         output.text, output.value, output.ages, output.written, output.tells = text, level, ages, now, tells
         output.by_pin, output.register = by_pin, register
         output.pulsed = output.pulsed or self._pulses(output)
-        for source, birth in ages.items():
-            known = self._sources.get(source)
-            if known is not None and now - known.arrivals.last <= LOST * known.arrivals.pace:
-                output.usual[source] = max(output.usual.get(source, 0), now - birth)
         position = self._findings.position
         path = self._findings.path(position.at, position.calls)
-        depth = follower.chosen(used, call) if ages else 0
+        depth, used, call = follower.chosen(used, call)
         output.path, output.task = path[depth:] or path, self._findings.context()
         output.within = f" in {path[0]}" if depth else ""
         output.objects = follower.carriers(used, call)
@@ -254,7 +264,11 @@ class AgeWatch:
     def _judge(self, source: SilentSource, now: int, *, ended: bool) -> None:
         """A silence has ended, or the run has."""
         arrivals = source.arrivals
-        if not arrivals.silent_for(now) or source.noticed:
+        if not arrivals.silent_for(now) or source.noticed or self._over:
+            return
+        if self._ran <= arrivals.last + LOST * arrivals.pace:
+            return
+        if ended and not arrivals.was_there_longer(now):
             return
         if source.decided >= arrivals.last - LOST * arrivals.pace:
             return  # the program stopped something, and so the source
@@ -305,7 +319,7 @@ class AgeWatch:
         After the usual time all sources that can be cut off are silent.
         """
         now = self._clock.now
-        if now < usual or not self._asked:
+        if now < usual or not self._asked or self._over:
             return usual
         if not self._cut:
             self._cut = now
@@ -314,7 +328,7 @@ class AgeWatch:
                 line.disturb(lambda frame: ())
         for source in self._known:
             arrivals = source.arrivals
-            quiet = arrivals.silent_for(now) or now - self._cut <= LOST * arrivals.pace
+            quiet = arrivals.silent_for(now) or now - self._cut < PACES * arrivals.pace
             if quiet and not source.noticed and any(
                 arrivals.name in output.ages and self._drives(output, arrivals) for output in self._outputs.values()
             ):
