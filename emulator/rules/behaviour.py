@@ -242,21 +242,30 @@ input whose result can be computed by hand, and it returns something else.
 The machine continues with an old value after its source is silent: a motor follows an order of a link that is lost, a
 heater follows a sensor that is dead.
 
-The variable keeps its last value, and nothing in it says how old it is. `hil check FILE... --silence` finds this; a
-check without it names what could fall silent. It
-runs a whole program a second time, three times as long as usual, and cuts off serial lines, I2C parts and the other
-nodes of a CAN; a source may also be silent by itself. It follows each value with its time of arrival from the register
-or mailbox where it came in, through objects, parameters and results, also to an object through a pointer, to the
-statement that writes the output (a compare value, a DAC, a pin that is switched under a test of the value or by
-`GPIO_WritePin`).
+The variable keeps its last value, and nothing in it says how old it is. `hil check` runs a whole program once more and
+follows each value with its time of arrival: from a register, a mailbox or the interrupt of a pin, through objects,
+pointers, parameters and results, to a compare value, a DAC, or a pin that is switched under a test of the value. It
+knows registers by their names and those that a library reaches by numbers.
 
-It reports the statement that still writes a value other than 0 when the source has been silent for at least ten of its
-longest intervals so far, until the end of the silence or of the run. A value of a part on the I2C is also reported if
-it is used again after a pause: then no test of its age made the pause. If that statement only passes on a parameter, it
-reports the call that chooses the value. An object that has got a constant no longer contains an old value.
+It always looks at a source that pauses in the run and comes back: a master, a tachometer, an unplugged sensor, an ADC
+that nothing triggers. With `--silence` it also cuts off serial lines, I2C parts and the other nodes of a CAN when the
+usual time is over; that run is three times as long. A check without `--silence` names what could fall silent.
 
-A program that tests the age with a limit longer than the run is reported too: run it longer (`--for`). If it is right
-to keep the last value, for example a set point, write `hil: allow stale-value, ...` at the statement.
+A source is silent after ten of its longest recent intervals, which are at least 4 ms. The finding is at the statement
+that drives the output, or the call that chooses its value, if the output keeps a value other than 0 that comes from
+that source. A pause that nobody asked for must come after a time at least as long in which the source was regular, and
+the value must be ten times older than it ever was when it was used. It may last to the end only if a fault was
+declared (`--fault`). For a sensor, a text that is still made of its last value counts as an output.
+
+A program that has noticed the silence is told nothing, whatever it does then: during the silence a statement has run,
+or a test has decided otherwise, that did not while the source was alive, and a state or an output depends on it. So it
+does not matter whether it counts passes, looks at a timer, a Clock or a status, lets the value decay, switches the
+output off or only reports. What another sensor decides is no notice. A stop that the program orders is the reason of a
+silence that follows. An output that a trip zone or a pin's function has switched off drives nothing. An object that
+has got a constant no longer contains an old value.
+
+A program that tests the age with a limit longer than the silence is reported too: run it longer (`--for`). If it is
+right to keep the last value, for example a set point, write `hil: allow stale-value, ...` at the statement.
 
 **Fix:** store the time with the value, and test the age where you use it. Beyond the age that the machine can
 tolerate, do what is safe: stop, or report that there is no value.

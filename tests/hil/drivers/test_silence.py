@@ -123,7 +123,10 @@ class Away(Board):
     ends = 900
 
     def solder(self) -> None:
-        """Send the orders and turn the wheel."""
+        """Send the orders and turn the wheel, and an encoder with an edge every 0.5 ms."""
+        for half in range(40, 2 * self.ends):
+            if not 2 * self.pause[0] <= half < 2 * self.pause[1]:
+                self.clock.after(half * CYCLES_PER_MS // 2, self._edge)
         self.pacer = LinePacer(self.clock, self.serial_pins[85], 115200)
         for ms in range(20, self.ends, 10):
             if not self.pause[0] <= ms < self.pause[1]:
@@ -133,6 +136,11 @@ class Away(Board):
             if not self.pause[0] <= ms < self.pause[1]:
                 self.clock.after(ms * CYCLES_PER_MS, lambda: self.pins[24].drive("wheel", 1))
                 self.clock.after((ms + 2) * CYCLES_PER_MS, lambda: self.pins[24].drive("wheel", 0))
+
+
+    def _edge(self) -> None:
+        now = self.clock.now
+        self.encoder_pins[20, 21].move(1, now - CYCLES_PER_MS // 2, now)
 
 
 class Stays(Away):
@@ -348,3 +356,75 @@ def test_a_wheel_that_stands_because_the_program_stopped_it_is_right(tmp_path: P
 }
 """
     assert not stale(tmp_path, on_a_pin(stop))
+
+
+#: What is measured is looked at each millisecond, whether it is new or not.
+CAPTURED = """static void Drive(void)
+{
+CHECK
+    EPwm1Regs.CMPA.bit.CMPA = ECap1Regs.CAP1 >> 8;
+}
+"""
+CAPTURE = START.replace("SETTINGS", """    InputXbarRegs.INPUT7SELECT = 24;
+    ECap1Regs.ECCTL1.bit.CTRRST1 = 1;
+    ECap1Regs.ECCTL1.bit.CAPLDEN = 1;
+    ECap1Regs.ECCTL2.bit.CONT_ONESHT = 0;
+    ECap1Regs.ECCTL2.bit.STOP_WRAP = 0;
+    ECap1Regs.ECCTL2.bit.TSCTRSTOP = 1;""")
+STANDS = """    if (ECap1Regs.TSCTR > 4000000ul) {
+        EPwm1Regs.CMPA.bit.CMPA = 0;
+        return;
+    }"""
+
+
+def test_a_capture_that_is_read_again_and_again_is_as_old_as_its_edge(tmp_path: Path) -> None:
+    (finding,) = stale(tmp_path, HEAD + CAPTURED.replace("CHECK", "") + CAPTURE)
+    assert finding.object == "ECap1Regs.CAP1"
+    assert not stale(tmp_path, HEAD + CAPTURED.replace("CHECK", STANDS) + CAPTURE)
+
+
+ENCODER = START.replace("SETTINGS", """    GPIO_SetupPinMux(20, GPIO_MUX_CPU1, 1);
+    GPIO_SetupPinMux(21, GPIO_MUX_CPU1, 1);
+    EQep1Regs.QPOSMAX = 0xFFFFFFFFul;
+    EQep1Regs.QEPCTL.bit.QPEN = 1;
+    EQep1Regs.QCAPCTL.bit.CCPS = 3;
+    EQep1Regs.QCAPCTL.bit.UPPS = 0;
+    EQep1Regs.QCAPCTL.bit.CEN = 1;""")
+TURNS = """static void Drive(void)
+{
+    if (CHECK EQep1Regs.QCPRD != 0)
+        EPwm1Regs.CMPA.bit.CMPA = EQep1Regs.QCPRD;
+    else
+        EPwm1Regs.CMPA.bit.CMPA = 0;
+}
+"""
+
+
+def test_a_period_of_an_encoder_is_as_old_as_its_edge(tmp_path: Path) -> None:
+    (finding,) = stale(tmp_path, HEAD + TURNS.replace("CHECK", "") + ENCODER)
+    assert finding.object == "EQep1Regs.QCPRD"
+    assert not stale(tmp_path, HEAD + TURNS.replace("CHECK", "EQep1Regs.QCTMR < 50000 &&") + ENCODER)
+
+
+TOLD = """#include <stdio.h>
+char Line[32];
+static void Drive(void)
+{
+    if (Ticks % 90 == 0) {
+        sprintf(Line, "%ld", (long)Period);
+CHECK
+    }
+}
+"""
+
+
+def test_a_text_with_the_last_value_of_a_sensor_is_told(tmp_path: Path) -> None:
+    (finding,) = stale(tmp_path, on_a_pin(TOLD.replace("CHECK", "")))
+    assert finding.place is not None
+    assert "drv.Period" in finding.message
+    lost = '        if ((Uint16)(Ticks - Came) > 50)\n            sprintf(Line, "lost");'
+    assert not stale(tmp_path, on_a_pin(TOLD.replace("CHECK", lost)))
+
+
+def test_a_text_with_the_last_order_of_a_partner_is_right(tmp_path: Path) -> None:
+    assert not stale(tmp_path, on_a_line(TOLD.replace("Period", "Order").replace("CHECK", "")))
