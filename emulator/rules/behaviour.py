@@ -264,6 +264,11 @@ output off or only reports. What another sensor decides is no notice. A stop tha
 silence that follows. An output that a trip zone or a pin's function has switched off drives nothing. An object that
 has got a constant no longer contains an old value.
 
+In the same run, a receiver is reported that goes on in the middle of a message: its state is still the one of a message
+whose end never came, after ten times the longest pause within any message before, and it takes the beginning of the
+next one for the rest. A start character that is known in any state, or a limit for the time between two characters,
+ends it.
+
 A program that tests the age with a limit longer than the silence is reported too: run it longer (`--for`). If it is
 right to keep the last value, for example a set point, write `hil: allow stale-value, ...` at the statement.
 

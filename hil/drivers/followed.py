@@ -100,7 +100,7 @@ class FollowedStatement:
     limits: bool
     #: It changes what others can see: an object, a register, what another function does.
     acts: bool
-    #: It changes no ages.
+    #: It changes no ages, and no state is tested.
     idle: bool
 
 
@@ -179,6 +179,9 @@ class ValueFollower:
             nodes = [p for root in roots(s) for p in parts(root)]
             calls = tuple(p for p in nodes if isinstance(p, Call) and p.function.path in self._functions)
             idle = not isinstance(s, Assign | Declare | CopyStruct | For | Evaluate) and not calls
+            match s:
+                case Switch(subject=subject) if any(isinstance(p, Load) and not _plain(p) for p in parts(subject)):
+                    idle = False
             if isinstance(s, Return) and s.value is not None and not isinstance(bare(s.value), Const):
                 idle = False
             self.known[id(s)] = FollowedStatement(
@@ -449,6 +452,13 @@ class ValueFollower:
             found = newest(found, self.ages(e, call, own=own))
         return found
 
+    def given(self, call: FollowedCall) -> Ages:
+        """The ages of all locals and parameters of a function."""
+        found = NO_AGES
+        for ages in call.locals.values():
+            found = newest(found, ages)
+        return found
+
     def chosen(self, used: tuple[Expr, ...], call: FollowedCall) -> tuple[int, tuple[Expr, ...], FollowedCall]:
         """Where a value is chosen: how many calls up, from what, and in which call.  Functions in between only pass it
         on.
@@ -646,6 +656,10 @@ class ValueFollower:
             bits = lvalue.bits
             return data >> bits.lo & (1 << bits.width) - 1 if isinstance(data, int) else None
         return data
+
+
+def _plain(e: Load) -> bool:
+    return isinstance(e.lvalue.root, Variable) and e.lvalue.root.plain
 
 
 def _address(value: Any) -> int | None:

@@ -47,6 +47,7 @@ from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.registers.cell import Cell
 from hil.drivers.followed import NO_AGES, TEXTS, TIME, Ages, FollowedCall, FollowedStatement, ValueFollower, newest
 from hil.drivers.outputs import LEVEL, PIN
+from hil.drivers.receivers import CutMessage, Receivers
 from hil.drivers.roles import Roles
 from hil.drivers.sources import LOST, NEW, PACES, PIN_INTERRUPTS, SENSOR, TOGETHER, InputSource, of_mailbox, source_of
 from hil.drivers.used_sources import cut_off
@@ -109,6 +110,7 @@ class AgeWatch:
         #: Those whose interval is known.
         self._known: list[SilentSource] = []
         self._outputs: dict[Any, DrivenOutput] = {}
+        self._receivers = Receivers()
         #: When a statement began last: a program that hangs is told by other rules.
         self._ran = 0
         #: The watchdog has reset the device: it begins anew, which is not modelled.
@@ -179,6 +181,11 @@ class AgeWatch:
             case Evaluate(value=Call(function=Function(extern=True, name=name), arguments=arguments, extra=extra)):
                 if TEXTS.match(name):
                     self._output(id(s), name, (*arguments[1:], *extra), 1, call, tells=True)
+            case Switch(subject=subject):
+                given = {name: birth for name, birth in self._follower.given(call).items() if name != TIME}
+                cut = self._receivers.take(id(s), self._follower.value(subject, call), given)
+                if cut is not None and not self._over:
+                    self._tell_cut(cut, source_text(subject))
         for source in self._known:
             arrivals = source.arrivals
             if now - arrivals.last <= LOST * arrivals.pace:
@@ -191,6 +198,18 @@ class AgeWatch:
                     source.noticed = True
                 else:
                     source.ignored.add(key)
+
+    def _tell_cut(self, cut: CutMessage, state: str) -> None:
+        position = self._findings.position
+        path = self._findings.path(position.at, position.calls)
+        message = (
+            f"{state} was still {cut.state} when {cut.source} went on after {_ms(cut.pause)}, and takes the new "
+            f"message for the rest of the old one: in this state nothing came later than after {_ms(cut.longest)} before"
+        )
+        self._findings.report_at(
+            path[0], "stale-value", message, object=cut.source, how="dynamic", value=cut.state, call_path=path,
+            task=self._findings.context(),
+        )  # fmt: skip
 
     def _notices(self, s: Stmt, known: FollowedStatement, call: FollowedCall, source: SilentSource) -> bool:
         """Whether what runs now for the first time has an effect, and may be due to a silence, or the reason for it.

@@ -428,3 +428,66 @@ def test_a_text_with_the_last_value_of_a_sensor_is_told(tmp_path: Path) -> None:
 
 def test_a_text_with_the_last_order_of_a_partner_is_right(tmp_path: Path) -> None:
     assert not stale(tmp_path, on_a_line(TOLD.replace("Period", "Order").replace("CHECK", "")))
+
+
+#: A receiver of frames: 0xA5, a length, so many characters.  What comes in a frame drives ePWM1.
+FRAMED = HEAD + """
+volatile Uint16 Length, Filled;
+static void Take(Uint16 c)
+{
+KNOWN
+    switch (State) {
+    case 0:
+        if (c == 0xA5)
+            State = 1;
+        break;
+    case 1:
+        Length = c;
+        Filled = 0;
+        State = 2;
+        break;
+    default:
+        Order = c;
+        if (++Filled >= Length)
+            State = 0;
+        break;
+    }
+}
+interrupt void Received(void)
+{
+    while (Sci_waiting(SCI_A) > 0) {
+        Came = Ticks;
+        Take(Sci_take(SCI_A));
+    }
+    SciaRegs.SCIFFRX.bit.RXFFINTCLR = 1;
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP9;
+}
+static void Drive(void)
+{
+LIMIT
+    Pwm_compare(EPWM_1, Order * 100u);
+}
+"""
+
+
+class CutOff(Board):
+    """A frame every 20 ms, one of which is cut off."""
+
+    def solder(self) -> None:
+        """Send them."""
+        pacer = LinePacer(self.clock, self.serial_pins[85], 115200)
+        for ms in range(20, 400, 20):
+            frame = bytes([0xA5, 3, 10, 11, 12][: 3 if ms == 200 else 5])
+            self.clock.after(ms * CYCLES_PER_MS, lambda frame=frame: pacer.send(frame))
+
+
+@pytest.mark.parametrize(("known", "limit", "told"), [
+    ("", "", True),
+    ("", "    if (State != 0 && (Uint16)(Ticks - Came) > 5)\n        State = 0;", False),
+    ("    if (c == 0xA5)\n        State = 0;", "", False),
+])  # fmt: skip
+def test_a_receiver_that_waits_for_the_rest_of_a_frame(tmp_path: Path, known: str, limit: str, told: bool) -> None:
+    text = FRAMED.replace("KNOWN", known).replace("LIMIT", limit) + ON_A_LINE
+    found = stale(tmp_path, text, CutOff, silence=True, seconds=0.4)
+    at = [text.splitlines()[f.place.line - 1].strip() for f in found if f.place is not None]
+    assert ("switch (State) {" in at) is told
