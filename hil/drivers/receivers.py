@@ -2,7 +2,7 @@
 
 A receiver for characters has a state that a `switch` tests for each of them.  Within a message the characters come one
 after the other.  If much more time passes there than ever before, and the state has not changed when the next one
-comes, nothing looks at the time.  That alone is no defect: another character may begin a message in any state.  It is one if
+comes, nothing looks at the time.  That alone is no defect: a character may begin a message in any state.  It is one if
 the receiver does not go on as it always has after the first character of a message.
 """
 

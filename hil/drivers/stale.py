@@ -9,8 +9,9 @@ A program notices a silence if, during it, a statement runs or a test gives what
 source was alive, and if that changes an object, a register or an output.  What only other data decides is no notice.
 
 Two silences count:
-    one that was asked for (`--silence`): ten times the longest interval of the source.  What has stopped by then counts
-    even if the output does not change with each message.
+    one that was asked for (`--silence`): ten times the longest interval of the source.  The value of the output need
+    not have come with its last data; if it has, an output that is still written with it is told even if something in
+    the program has noticed the silence.
     one in the run itself: it must have ended or be due to a declared fault, the source must have been regular before
     for at least as long, and the value of the output ten times older than it ever was when it was used.
 Modelled
@@ -204,7 +205,7 @@ class AgeWatch:
         path = self._findings.path(position.at, position.calls)
         message = (
             f"{state} was still {cut.state} when {cut.source} went on after {_ms(cut.pause)}, and takes the new "
-            f"message for the rest of the old one: in this state nothing came later than after {_ms(cut.longest)} before"
+            f"message for the rest of the old one: in this state nothing came after more than {_ms(cut.longest)} before"
         )
         self._findings.report_at(
             path[0], "stale-value", message, object=cut.source, how="dynamic", value=cut.state, call_path=path,
@@ -283,22 +284,22 @@ class AgeWatch:
     def _judge(self, source: SilentSource, now: int, *, ended: bool) -> None:
         """A silence has ended, or the run has."""
         arrivals = source.arrivals
-        if not arrivals.silent_for(now) or source.noticed or self._over:
+        if not arrivals.silent_for(now) or self._over or (ended and not arrivals.was_there_longer(now)):
             return
-        if self._ran <= arrivals.last + LOST * arrivals.pace:
-            return
-        if ended and not arrivals.was_there_longer(now):
-            return
-        if source.decided >= arrivals.last - LOST * arrivals.pace:
-            return  # the program stopped something, and so the source
-        natural = arrivals.was_lost(now) and (ended or self._lasting)
+        late = arrivals.last + LOST * arrivals.pace
+        # The program stopped something, and so the source; or it hangs, which other rules tell.
+        explained = source.decided >= arrivals.last - LOST * arrivals.pace or self._ran <= late
+        unnoticed = not source.noticed and not explained
+        natural = unnoticed and arrivals.was_lost(now) and (ended or self._lasting)
         for output in self._outputs.values():
             birth = output.ages.get(arrivals.name)
             if birth is None or not output.path or not self._drives(output, arrivals):
                 continue
             age = (output.written if output.tells else now) - birth
             aged = age >= PACES * max(arrivals.pace, output.usual.get(arrivals.name, 0))
-            if (self._asked and not output.tells) or (natural and aged):
+            used_on = output.uses > LOST and now - output.written <= LOST * arrivals.pace
+            asked = self._asked and not output.tells and (unnoticed or (aged and used_on))
+            if asked or (natural and aged):
                 self._tell(output, arrivals, age)
 
     def _tell(self, output: DrivenOutput, arrivals: InputSource, age: int) -> None:
@@ -313,7 +314,6 @@ class AgeWatch:
             call_path=output.path, task=output.task,
             details=(
                 f"written{output.within} {output.uses} times since, at last {output.value:#x} at {_ms(output.written)}",
-                "meanwhile no test of a time or of a status has changed a state or an output",
             ),
         )  # fmt: skip
 
@@ -348,7 +348,7 @@ class AgeWatch:
         for source in self._known:
             arrivals = source.arrivals
             quiet = arrivals.silent_for(now) or now - self._cut < PACES * arrivals.pace
-            if quiet and not source.noticed and any(
+            if quiet and any(
                 arrivals.name in output.ages and self._drives(output, arrivals) for output in self._outputs.values()
             ):
                 return latest

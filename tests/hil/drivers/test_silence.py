@@ -275,6 +275,16 @@ static void Drive(void)
     }}
 }}""",
 }
+#: The same, as a program that is to stop.
+REPORTED = {
+    way: text.replace("Order * 100u", "(Ticks - Came > 40 ? 0u : Order * 100u)")
+    for way, text in NOTICED.items() if way in ("a report", "a state that is only reported", "a state that stays away")
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("way", REPORTED)
+def test_a_silence_that_is_only_reported_is_told_if_it_is_asked_for(tmp_path: Path, way: str) -> None:
+    assert len(stale(tmp_path, on_a_line(NOTICED[way]), silence=True)) == 1
 
 
 def test_a_master_that_is_away_is_told_without_any_option(tmp_path: Path) -> None:
@@ -291,7 +301,7 @@ def test_a_master_that_is_away_is_told_without_any_option(tmp_path: Path) -> Non
 @pytest.mark.parametrize("way", NOTICED)
 def test_a_program_that_notices_it_is_told_nothing(tmp_path: Path, way: str) -> None:
     assert not stale(tmp_path, on_a_line(NOTICED[way]))
-    assert not stale(tmp_path, on_a_line(NOTICED[way]), silence=True)
+    assert not stale(tmp_path, on_a_line(REPORTED.get(way, NOTICED[way])), silence=True)
 
 
 @pytest.mark.parametrize("board", [Stays, Short, Seldom])
