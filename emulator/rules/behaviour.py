@@ -261,9 +261,9 @@ Without `--silence`, a program that has noticed the silence is told nothing, wha
 a statement has run, or a test has decided otherwise, that did not while the source was alive, and a state or an output
 depends on it. So it does not matter whether it counts passes, looks at a timer, a Clock or a status, lets the value
 decay, switches the output off or only reports. With `--silence`, an output is told, too, that is still written with the
-last value although the program has noticed. What another sensor decides is no notice. A stop that the program orders is the
-reason of a silence that follows. An output that a trip zone or a pin's function has switched off drives nothing. An
-object that has got a constant no longer contains an old value.
+last value although the program has noticed. What another sensor decides is no notice. A stop that the program orders
+is the reason of a silence that follows. An output that a trip zone or a pin's function has switched off drives
+nothing. An object that has got a constant no longer contains an old value.
 
 In the same run, a receiver is reported that goes on in the middle of a message: its state is still the one of a message
 whose end never came, after ten times the longest pause within any message before, and it takes the beginning of the

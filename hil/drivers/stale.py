@@ -78,8 +78,8 @@ class DrivenOutput:
     usual: dict[str, int] = field(default_factory=dict)
     #: Its ePWM has had pulses at a pin.
     pulsed: bool = False
-    #: How often it was written since the present data came in.
-    uses: int = 0
+    #: Source -> how often it was written with the present data.
+    uses: dict[str, int] = field(default_factory=dict)
 
 
 @dataclass(eq=False)
@@ -267,8 +267,10 @@ class AgeWatch:
         used = (*values, *tests)
         ages = follower.all_ages(used, call)
         output = self._outputs.setdefault(key, DrivenOutput())
-        fresh = any(birth > output.ages.get(source, -1) for source, birth in ages.items() if source != TIME)
-        output.uses = 1 if fresh else output.uses + 1
+        output.uses = {
+            source: output.uses.get(source, 0) + 1 if output.ages.get(source) == birth else 1
+            for source, birth in ages.items()
+        }
         output.text, output.value, output.ages, output.written, output.tells = text, level, ages, now, tells
         output.by_pin, output.register = by_pin, register
         output.pulsed = output.pulsed or self._pulses(output)
@@ -297,7 +299,7 @@ class AgeWatch:
                 continue
             age = (output.written if output.tells else now) - birth
             aged = age >= PACES * max(arrivals.pace, output.usual.get(arrivals.name, 0))
-            used_on = output.uses > LOST and now - output.written <= LOST * arrivals.pace
+            used_on = output.uses[arrivals.name] > LOST and now - output.written <= LOST * arrivals.pace
             asked = self._asked and not output.tells and (unnoticed or (aged and used_on))
             if asked or (natural and aged):
                 self._tell(output, arrivals, age)
@@ -313,7 +315,7 @@ class AgeWatch:
             output.path[0], "stale-value", message, object=name, how="dynamic", value=output.value,
             call_path=output.path, task=output.task,
             details=(
-                f"written{output.within} {output.uses} times since, at last {output.value:#x} at {_ms(output.written)}",
+                f"written{output.within} {output.uses[name]} times since, at last {output.value:#x} at {_ms(output.written)}",
             ),
         )  # fmt: skip
 
@@ -348,9 +350,7 @@ class AgeWatch:
         for source in self._known:
             arrivals = source.arrivals
             quiet = arrivals.silent_for(now) or now - self._cut < PACES * arrivals.pace
-            if quiet and any(
-                arrivals.name in output.ages and self._drives(output, arrivals) for output in self._outputs.values()
-            ):
+            if quiet and any(output.value and arrivals.name in output.ages for output in self._outputs.values()):
                 return latest
         return now
 
