@@ -58,8 +58,9 @@ class InputSource:
 
     def silent_for(self, now: int) -> int:
         """How long nothing has come, if it is silent; else 0.  It must have been there for some time before."""
-        silence, least = now - self.last, PACES * self.pace
-        return silence if self.count >= NEW and silence >= least and self.last - self.since >= least // 2 else 0
+        silence, was_there = now - self.last, self.last - self.since
+        known = self.count >= NEW and was_there >= (NEW - 1) * self.pace
+        return silence if known and silence >= PACES * self.pace else 0
 
     def was_there_longer(self, now: int) -> bool:
         """Whether it gave something before for as long as it has been silent now."""

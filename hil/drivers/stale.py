@@ -315,7 +315,8 @@ class AgeWatch:
             output.path[0], "stale-value", message, object=name, how="dynamic", value=output.value,
             call_path=output.path, task=output.task,
             details=(
-                f"written{output.within} {output.uses[name]} times since, at last {output.value:#x} at {_ms(output.written)}",
+                f"written{output.within} {output.uses[name]} times since, at last {output.value:#x} at "
+                f"{_ms(output.written)}",
             ),
         )  # fmt: skip
 
