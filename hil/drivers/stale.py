@@ -116,6 +116,8 @@ class AgeWatch:
         self._ran = 0
         #: The watchdog has reset the device: it begins anew, which is not modelled.
         self._over = False
+        #: The places and sources of findings.
+        self._told: set[tuple[Place, str]] = set()
         #: When the sources were cut off.
         self._cut = 0
         image.linked.watch_with(CallingWatcher(lambda obj, word, write: None))
@@ -306,6 +308,7 @@ class AgeWatch:
 
     def _tell(self, output: DrivenOutput, arrivals: InputSource, age: int) -> None:
         name = arrivals.name
+        self._told.add((output.path[0], name))
         carried = " and ".join(output.objects) or name
         message = (
             f"{output.text} follows {carried}, whose value is {_ms(age)} old: nothing new has come from "
@@ -351,7 +354,10 @@ class AgeWatch:
         for source in self._known:
             arrivals = source.arrivals
             quiet = arrivals.silent_for(now) or now - self._cut < PACES * arrivals.pace
-            if quiet and any(output.value and arrivals.name in output.ages for output in self._outputs.values()):
+            if quiet and any(
+                output.value and arrivals.name in output.ages and (output.path[0], arrivals.name) not in self._told
+                for output in self._outputs.values() if output.path
+            ):
                 return latest
         return now
 
