@@ -126,7 +126,6 @@ class Adc:
         "_unlatched",
         "_vreflo_v",
         "conversions",
-        "converted_at",
         "pulsed",
     )  # fmt: skip
 
@@ -186,8 +185,6 @@ class Adc:
         self._obeyed: frozenset[int] = frozenset()
         #: Conversions ended since the object was made.
         self.conversions = 0
-        #: For each SOC, when its last conversion ended; 0: never.
-        self.converted_at = [0] * 16
         self._socs = Socs(regs, cpu.findings, converter, self._results, any_write_resets_pointer)
         #: The SOCs that begin at once if they are forced while no conversion is under way.
         self._ready: list[Soc] = []
@@ -253,6 +250,10 @@ class Adc:
         """
         self._converter.force_codes(codes)
         self._configure()
+
+    def converted_at(self, soc: int) -> int:
+        """When the last conversion of an SOC (0..15) ended; 0: never."""
+        return self._socs.every[soc].converted_at
 
     def inject_fault(self, by: Callable[[int, int, int], int]) -> Callable[[], None]:
         """Inject a fault: each code becomes `by(soc, channel, code)`.  Returns a function that ends the fault."""
@@ -420,7 +421,7 @@ class Adc:
             self._latch_at = self._clock.now + self._latch_delay
             self._unlatched = result.value
             self.conversions += 1
-            self.converted_at[soc.n] = self._clock.now
+            soc.converted_at = self._clock.now
             if self._code is not None:
                 result.value = self._processed(soc.n, self._code)
                 self._code = None

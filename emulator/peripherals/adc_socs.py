@@ -24,7 +24,7 @@ ADCEXTSOC: Final = 4
 class Soc:
     """The decoded settings of one SOC.  They are updated at every write, so that a conversion decodes nothing."""
 
-    __slots__ = ("adcint1", "bit", "channel", "cycles", "n", "pin", "result", "window")
+    __slots__ = ("adcint1", "bit", "channel", "converted_at", "cycles", "n", "pin", "result", "window")
 
     def __init__(self, n: int, pin: AnalogWire, result: Cell) -> None:
         self.n, self.pin, self.result = n, pin, result
@@ -34,6 +34,8 @@ class Soc:
         self.window = self.cycles = 1
         #: The value of INT1E and INT1SEL if the EOC of this SOC drives ADCINT1, and nothing drives ADCINT2.
         self.adcint1 = 0x20 | n
+        #: When the last conversion ended; 0: never.
+        self.converted_at = 0
 
 
 class Socs:

@@ -91,7 +91,7 @@ def source_of(board: Board, cell: Cell) -> tuple[str, int] | None:
     block, register = cell.block.name, cell.name
     now = board.clock.now
     if block.startswith("Adc"):
-        return path, board.adc[block[3].upper()].converted_at[int(register[9:])]
+        return path, board.adc[block[3].upper()].converted_at(int(register[9:]))
     if block.startswith("ECap"):
         return path, board.ecap[int(block[4])].captured_at
     if block.startswith("EQep"):
