@@ -16,7 +16,7 @@ from random import Random
 from typing import Any, Final
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from emulator import compiled, image
@@ -147,6 +147,7 @@ PATHS: Final = [f"{module}.{name}" for module, file in FILES.items() for name in
 
 @pytest.mark.slow
 @pytest.mark.parametrize("path", PATHS)
+@settings(max_examples=settings.default.max_examples // 4)
 @given(given_=st.builds(
     Given, st.integers(0, 9999), st.lists(st.integers(-70_000, 70_000) | st.floats(width=32), max_size=4)
 ))  # fmt: skip
