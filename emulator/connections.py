@@ -1098,9 +1098,12 @@ class Connections:
         self._report(self._wanting(control, "Init"), f"{block} receives nothing", missing, can.port.name)
 
     def _messages(self, block: str, letter: str, commands: list[str]) -> None:
-        """Messages that are written and never sent, or that are taken again and again."""
+        """Messages that are written and never sent, or that are taken again and again.
+
+        With RmtEn, the remote frame of another node sends them.
+        """
         asks = any(self._requests(command, writing=True) for command in commands) or any(
-            self._could(f"{block}.CAN_IF{n}MCTL", bool, "TxRqst") for n in (1, 2)
+            self._could(f"{block}.CAN_IF{n}MCTL", bool, name) for n in (1, 2) for name in ("TxRqst", "RmtEn")
         )
         filled = [f"{block}.CAN_IF{n}CMD" for n in (1, 2) if self._writes(f"{block}.CAN_IF{n}DATA")]
         transmits = any(self._could(f"{block}.CAN_IF{n}ARB", bool, "Dir") for n in (1, 2))

@@ -515,6 +515,13 @@ def test_a_can_controller_that_is_not_set_up_whole(tmp_path: Path, was: str, now
         assert [f.place and "IE0 = 1" in text.splitlines()[f.place.line - 1] for f in found] == [True]
 
 
+@pytest.mark.parametrize(("control", "told_"), [("0x0088uL", True), ("0x0288uL", False)])
+def test_a_message_object_may_wait_for_a_remote_frame(tmp_path: Path, control: str, told_: bool) -> None:
+    text = CAN.replace("0x00870003uL", "0x00830003uL").replace("IF1MCTL.all = 0x0088uL", f"IF1MCTL.all = {control}")
+    found = told(tmp_path, text, "not-connected", seconds=0.01)
+    assert any("no statement sets TxRqst" in f.message for f in found) == told_
+
+
 #: A node that sends 0x123 each millisecond, with 500 kbit/s.
 MASTER = """
 from emulator.can_bus import CanFrame, CanPart
