@@ -67,6 +67,8 @@ _TELLING: Final = re.compile(r"Clock_getTicks|Timestamp_get\w*|Timer_getCount|\w
 _COPIES: Final = {
     "memcpy": (0, 1, 2), "memmove": (0, 1, 2), "strcpy": (0, 1, None), "strncpy": (0, 1, 2), "strcat": (0, 1, None),
 }  # fmt: skip
+#: The most words of a local that a function of a library fills or copies.
+_LOCAL_WORDS: Final = 64
 #: Functions that write a text.
 TEXTS: Final = re.compile(r"(System_)?v?sn?printf$|ltoa$")
 _OPERATORS: Final[dict[str, Callable[[Any, Any], Any]]] = {
@@ -376,21 +378,26 @@ class ValueFollower:
             if target is None or not isinstance(words, int):
                 return
             if source is not None:
-                self._copy(target, source, words or len(self._words.get(source.path, ())) or 1)
+                words = words or len(self._words.get(source.path, ())) or 1
+                self._copy(target, source, min(words, self._room(target), self._room(source)))
         elif name == "memset":
             target, words = self._pointed(arguments[0], call), self.value(arguments[2], call)
-            for n in range(words if target is not None and isinstance(words, int) else 0):
-                assert target is not None
-                self.set(MemoryWord(target.path, target.word + n), NO_AGES)
+            if target is not None and isinstance(words, int):
+                for n in range(min(words, self._room(target))):
+                    self.set(MemoryWord(target.path, target.word + n), NO_AGES)
         elif TEXTS.match(name) and arguments:
             target = self._pointed(arguments[0], call)
             ages = NO_AGES
             for argument in arguments[1:]:
                 ages = newest(ages, self.ages(argument, call))
             if target is not None:
-                obj = self._objects.get(target.path)
-                for n in range(obj.words if obj is not None else 64):
+                for n in range(self._room(MemoryWord(target.path, 0))):
                     self.set(MemoryWord(target.path, n), ages)
+
+    def _room(self, word: MemoryWord) -> int:
+        """The words from one to the end of its object: what a wrong count adds belongs to other rules."""
+        obj = self._objects.get(word.path)
+        return max(0, (obj.words if obj is not None else _LOCAL_WORDS) - word.word)
 
     def _only_time(self, target: LValue, value: Expr) -> bool:
         """Whether a value is made of the old one and constants: a counter, a value that decays."""

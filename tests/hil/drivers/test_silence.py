@@ -298,6 +298,12 @@ def test_a_master_that_is_away_is_told_without_any_option(tmp_path: Path) -> Non
     assert "at least every 10 ms" in finding.message
 
 
+@pytest.mark.parametrize("call", ["memset(text, 0, 300u)", "memcpy(text, text + 2, 300u)"])
+def test_a_count_beyond_the_object_is_followed_to_its_end(tmp_path: Path, call: str) -> None:
+    drive = f"void Drive(void) {{ char text[8]; {call}; EPwm1Regs.CMPA.bit.CMPA = Order * 100; }}"
+    assert len(stale(tmp_path, on_a_line(drive))) == 1
+
+
 @pytest.mark.parametrize("way", NOTICED)
 def test_a_program_that_notices_it_is_told_nothing(tmp_path: Path, way: str) -> None:
     assert not stale(tmp_path, on_a_line(NOTICED[way]))
