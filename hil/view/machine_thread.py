@@ -149,7 +149,8 @@ class MachineThread:
         if run.stage is None:
             self.line.log.ends = LINE_ENDS
         self._take(run)
-        if self._end_wanted.is_set():
+        if self._end_wanted.is_set():  # nothing runs that was never powered up
+            self.end()
             return
         self._reach(run.bench.start_up_cycles, "start-up")
         self.run.plan(self._orders)

@@ -400,6 +400,7 @@ def test_a_machine_that_is_still_being_linked_is_left_and_ends_by_itself(monkeyp
     assert not engine.ready.is_set()
     linked.set()
     engine.ready.wait()
+    engine.close()  # waits for its end
     assert engine.error is None
     assert engine.snapshot.time_s == 0.0
 
