@@ -2,7 +2,8 @@
 
 A statement counts each time the firmware reaches it; a loop counts each evaluation of its test (a `do` at the line of
 the test).  The `break` that ends a case does not count as a statement.
-A loop that only polls counts once each time the firmware reaches it, because its turns are not run one by one.
+A loop that only polls counts once each time the firmware reaches it, and turns that change nothing do not count where
+time skips them (`Linked.skip_turns`): neither are run one by one.
 """
 
 from __future__ import annotations

@@ -148,8 +148,8 @@ class PythonWriter:
         self.stored_place = 0
         self.fresh = 0
         self.around: list[_Breakable] = []
-        #: The loops with turns that time may skip, and what ends the idleness of a turn.  Nobody counts or stops there.
-        self.idle_loops, self.busy = idle_turns(function) if watch and not (coverage or steps) else ({}, {})
+        #: The loops with turns that time may skip, and what ends the idleness of a turn.  Nobody stops there.
+        self.idle_loops, self.busy = idle_turns(function) if watch and not steps else ({}, {})
         #: Identity of a loop -> the variable with the beginning of its turn, and the text of its time limit.
         self.turn_of: dict[int, str] = {}
         self.limits: dict[int, str] = {}

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from emulator.c28x.coverage import Coverage
 from tests.emulator.c28x.workshop import Workshop
 
 #: Each function ends after eight changes of Ticks.
@@ -89,9 +90,9 @@ SKIPPED = ("tested", "continued", "waited", "emptied", "chosen")
 EXECUTED = ("counted", "told")
 
 
-def run(name: str, gaps: list[int], *, skips: bool) -> tuple[Any, int]:
+def run(name: str, gaps: list[int], *, skips: bool, coverage: Coverage | None = None) -> tuple[Any, int]:
     """What a function gives and leaves while Ticks changes after each of `gaps`; the cycles that were executed."""
-    firmware = Workshop(SOURCE, watch=True)
+    firmware = Workshop(SOURCE, watch=True, coverage=coverage)
     if skips:
         firmware.linked.skip_turns()
     ticks = firmware.linked.objects["drv.Ticks"].data
@@ -121,6 +122,19 @@ def test_idle_turns_are_not_executed(name: str) -> None:
     outcome, executed = run(name, [10_000] * 8, skips=True)
     assert outcome[1] >= 80_000
     assert executed < 5_000
+
+
+@pytest.mark.parametrize("name", SKIPPED)
+def test_who_counts_lines_sees_those_of_a_run_that_does_not_skip(name: str) -> None:
+    """A limit of what is computed then ends neither run earlier."""
+    lines = []
+    for skips in (True, False):
+        coverage = Coverage()
+        _, executed = run(name, [10_000] * 8, skips=skips, coverage=coverage)
+        assert (executed < 5_000) == skips
+        ((_, counted),) = coverage.files().items()
+        lines.append({line for line, hits in counted.lines.items() if hits})
+    assert lines[0] == lines[1]
 
 
 @pytest.mark.parametrize("name", EXECUTED)
