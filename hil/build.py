@@ -104,10 +104,20 @@ KEPT: Final = "translated"
 #: Within that, the objects of mypyc's own library, which every library here contains.
 OBJECTS: Final = "objects"
 
-#: How the file with a part's functions begins, and how it is compiled.  With -O2 a mission takes 3 % fewer
-#: instructions, and the compiler 1.6 to 1.8 times the CPU time.
-PART_C: Final = "__native_part_"
-PART_FLAGS: Final = ("-O1",)
+#: Compiled with `-O2`, as mypyc's own library: each has 0.4 % or more of a mission's instructions, ideal, realistic or
+#: watched.  All else, parts of firmware too, has `-O1`: it takes the compiler 0.6 of the CPU time.
+HOT: Final = (
+    "emulator/clock.py", "emulator/noise.py", "emulator/signals.py", "emulator/trace.py",
+    "emulator/c28x/arithmetic.py", "emulator/c28x/memory.py", "emulator/c28x/runtime.py",
+    "emulator/registers/cell.py", "emulator/registers/taps.py",
+    "emulator/peripherals/adc.py", "emulator/peripherals/pie.py", "emulator/peripherals/spi.py",
+    "emulator/devices/lv_maxsonar_analog.py", "emulator/devices/nxt_motor.py",
+    "emulator/sysbios/handles.py", "emulator/sysbios/scheduler.py", "emulator/sysbios/stack.py",
+    "emulator/sysbios/watch/accesses.py", "emulator/sysbios/watch/calls.py", "emulator/sysbios/watch/gates.py",
+    "emulator/sysbios/watch/kernel_watch.py", "emulator/sysbios/watch/races.py",
+    "emulator/sysbios/watch/threads.py", "emulator/sysbios/watch/transactions.py",
+)  # fmt: skip
+HOT_LEVEL: Final = "-O2"
 
 
 class BuildError(ValueError):
@@ -219,7 +229,7 @@ def translate(root: Path, target: Path, parts: Mapping[str, ProgramPart]) -> lis
     setup_mypycify_vars()
     library = [str(Path(include_dir(), name)) for name in (*RUNTIME_C_FILES, *(each.path for each in more))]
     folders = sorted({str(Path(include_dir(), folder)) for each in more for folder in each.include_dirs})
-    flags = get_cflags(opt_level="2", debug_level="0", multi_file=True)
+    flags = get_cflags(opt_level="1", debug_level="0", multi_file=True)
     return [
         extension
         for (sources, name), (files, headers) in zip(groups, made, strict=True)
@@ -389,6 +399,7 @@ def _compile(extensions: list[Any], work: Path, made: Path, progress: Callable[[
 
     class SideBySide(build_ext):
         def build_extensions(self) -> None:
+            more: dict[str, list[str]] = {}
             if self.compiler.compiler_type == "unix":
                 for extension in extensions:  # else a product and a sum become one operation where there is one (ARM)
                     extension.extra_compile_args.append("-ffp-contract=off")
@@ -396,7 +407,8 @@ def _compile(extensions: list[Any], work: Path, made: Path, progress: Callable[[
                     extension.extra_compile_args.append("-Wno-all")
                     # Each C file of a library defines the table of the other one that it uses: one table for all.
                     extension.extra_compile_args.append("-fcommon")
-            _build_extensions(self, work, progress)
+                    more |= _read_headers_once(self.compiler, extension, work)
+            _build_extensions(self, work, progress, more)
 
     command = SideBySide(Distribution({"name": GROUP, "ext_modules": extensions}))
     command.build_lib, command.build_temp = str(made), str(work / "objects")
@@ -408,24 +420,45 @@ def _compile(extensions: list[Any], work: Path, made: Path, progress: Callable[[
         raise BuildError(f"the C compiler failed: {error}") from None
 
 
-def _build_extensions(command: Any, work: Path, progress: Callable[[float], None]) -> None:
+def _read_headers_once(compiler: Any, extension: Any, work: Path) -> dict[str, list[str]]:
+    """C file of the emulator's library -> flags with which it gets that library's headers as read already.
+
+    They are two megabytes, and there are 160 files.
+    """
+    if extension.name != f"{GROUP}__mypyc":
+        return {}
+    header = work / f"{GROUP}.h"
+    header.write_text(f'#include "__native_{GROUP}.h"\n#include "__native_internal_{GROUP}.h"\n', "ascii")
+    folders = [f"-I{folder}" for folder in (*extension.include_dirs, *compiler.include_dirs)]
+    flags = [*compiler.compiler_so, *folders, *extension.extra_compile_args]
+    compiler.spawn([*flags, "-x", "c-header", str(header), "-o", f"{header}.gch"])
+    return {source: ["-include", str(header)] for source in extension.sources if Path(source).is_relative_to(work)}
+
+
+def _build_extensions(
+    command: Any, work: Path, progress: Callable[[float], None], more: Mapping[str, list[str]]
+) -> None:  # fmt: skip
     """Compile one C file a core, each once, though libraries share some; setuptools does one after the other.
 
-    Those that are not in `work` are mypyc's own: their objects are kept, and not made again if they are there.
+    Those that are not in `work` are mypyc's own: their objects are kept, and not made again if they are there.  `more`
+    is flags for files that are not `HOT`.
     """
     library = str(kept(work) / OBJECTS)
     total, done = len({source for extension in command.extensions for source in extension.sources}), 0
     compile_in_turn = command.compiler.compile
     objects: dict[str, Future[list[str]]] = {}
+    hot = {f"__native_{name.removesuffix('.py').replace('/', '___')}.c" for name in HOT}
 
     def compiled(source: str, options: dict[str, Any]) -> list[str]:
         nonlocal done
         made: list[str] = []
-        if Path(source).name.startswith(PART_C):
-            options = {**options, "extra_postargs": [*options["extra_postargs"], *PART_FLAGS]}
-        elif not Path(source).is_relative_to(work):
+        ours = Path(source).is_relative_to(work)
+        if not ours:
             options = {**options, "output_dir": library}
             made = command.compiler.object_filenames([source], output_dir=library)
+        # gcc takes headers that it has read for another level, too, and fails later.
+        flags = [HOT_LEVEL] if Path(source).name in hot or not ours else more.get(source, [])
+        options = {**options, "extra_postargs": [*options["extra_postargs"], *flags]}
         if not made or not all(map(os.path.exists, made)):
             made = compile_in_turn([source], **options)
         with one_at_a_time:

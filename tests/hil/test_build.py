@@ -248,7 +248,7 @@ def test_no_compiler_makes_one_operation_of_a_product_and_a_sum(
     setuptools = pytest.importorskip("setuptools", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
     seen: list[tuple[str, list[str]]] = []
 
-    def seen_by(command: Any, _work: Path, _progress: object) -> None:
+    def seen_by(command: Any, _work: Path, _progress: object, _more: object) -> None:
         seen.extend((command.compiler.compiler_type, each.extra_compile_args) for each in command.extensions)
 
     monkeypatch.setattr(build, "_build_extensions", seen_by)
@@ -497,23 +497,30 @@ class Command:
         self._objects = str(objects)
 
     def build_extension(self, extension: SimpleNamespace) -> None:
-        made = self.compiler.compile(extension.sources, output_dir=self._objects, extra_postargs=["-O2"])
+        made = self.compiler.compile(extension.sources, output_dir=self._objects, extra_postargs=["-O1"])
         self.linked.append(made)
 
 
 def test_files_are_compiled_side_by_side_each_once_and_linked_in_their_order(tmp_path: Path) -> None:
     names = [str(tmp_path / f"{number}.c") for number in range(8)]
-    part, told = str(tmp_path / f"{build.PART_C}1.c"), list[float]()
+    part, hot = str(tmp_path / "__native_part_1.c"), str(tmp_path / "__native_emulator___clock.c")
+    told = list[float]()
     objects = tmp_path / "objects"
-    command = Command(objects, names, [part, *names])
+    command = Command(objects, names, [part, hot, *names])
     compiler = command.compiler
-    build._build_extensions(command, tmp_path, told.append)
-    made = [str(objects / f"{Path(name).name}.o") for name in (part, *names)]
-    assert sorted(command.linked, key=len) == [made[1:], made]
-    assert compiler.options == {name: ["-O2"] for name in names} | {part: ["-O2", *build.PART_FLAGS]}
-    assert told == pytest.approx([number / 9 for number in range(1, 10)])
+    more = {name: ["-include", "read.h"] for name in (*names, hot)}
+    build._build_extensions(command, tmp_path, told.append, more)
+    made = [str(objects / f"{Path(name).name}.o") for name in (part, hot, *names)]
+    assert sorted(command.linked, key=len) == [made[2:], made]
+    cold = {name: ["-O1", "-include", "read.h"] for name in names} | {part: ["-O1"]}
+    assert compiler.options == cold | {hot: ["-O1", build.HOT_LEVEL]}
+    assert told == pytest.approx([number / 10 for number in range(1, 11)])
     with pytest.raises(OSError, match=r"bad\.c"):
-        build._build_extensions(Command(objects, [*names, str(tmp_path / "bad.c")], [part]), tmp_path, told.append)
+        build._build_extensions(Command(objects, [*names, str(tmp_path / "bad.c")], [part]), tmp_path, told.append, {})
+
+
+def test_each_hot_source_is_compiled() -> None:
+    assert set(build.HOT) <= set(build.listed())
 
 
 def test_what_every_library_contains_is_compiled_once_and_kept(tmp_path: Path) -> None:
@@ -522,7 +529,7 @@ def test_what_every_library_contains_is_compiled_once_and_kept(tmp_path: Path) -
     compiled_then, linked = [], []
     for number in range(2):
         command = Command(objects, [str(work / f"{number}.c"), library])
-        build._build_extensions(command, work, lambda fraction: None)
+        build._build_extensions(command, work, lambda fraction: None, {})
         compiled_then.append({Path(source).name for source in command.compiler.options})
         linked.append(command.linked[0][1])
     assert compiled_then == [{"0.c", "int_ops.c"}, {"1.c"}]
