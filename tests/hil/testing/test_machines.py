@@ -6,6 +6,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, settings
 from hypothesis.stateful import run_state_machine_as_test
 
+from emulator import compiled
 from hil.robot.protocol_machine import ProtocolMachine, ProtocolModel, RobotUnderTest
 from hil.testing.machines.gates import GateMachine, GateModel, GateRig
 
@@ -15,6 +16,8 @@ FEW = settings(
 )
 #: To find something, not to show it at its smallest.
 SEEN = settings(FEW, max_examples=100, stateful_step_count=20, phases=[Phase.generate])
+
+changes_the_kernel = pytest.mark.skipif(compiled.MODE == "compiled", reason="a compiled kernel takes no other method")
 
 
 def test_gates_of_the_kernel_do_what_the_model_says() -> None:
@@ -30,6 +33,7 @@ class NoInheritance(GateRig):
         tasks.set_priority = lambda task, priority: task.priority  # type: ignore[method-assign]
 
 
+@changes_the_kernel
 def test_a_gate_without_inheritance_is_seen() -> None:
     class Machine(GateMachine):
         def open(self) -> GateRig:
@@ -39,6 +43,7 @@ def test_a_gate_without_inheritance_is_seen() -> None:
         run_state_machine_as_test(Machine, settings=SEEN)
 
 
+@changes_the_kernel
 def test_waiters_in_order_of_arrival_are_seen() -> None:
     class Machine(GateMachine):
         def open(self) -> GateRig:
