@@ -1,4 +1,4 @@
-"""Hypothesis profiles: `ci` is derandomised, `dev` explores, `thorough` explores for long.
+"""Hypothesis profiles: `ci` is derandomised and short, `dev` explores, `thorough` explores for long.
 
 Chosen by `HYPOTHESIS_PROFILE`; in CI (the variable `CI` is set) the default is `ci`.
 """
@@ -17,7 +17,9 @@ collect_rarely()
 #: Runs of pytest within a test, for the plugin of this project.
 pytest_plugins = ["pytester"]
 
-settings.register_profile("ci", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile(
+    "ci", derandomize=True, deadline=None, max_examples=50, suppress_health_check=[HealthCheck.too_slow]
+)
 settings.register_profile("dev", deadline=None)
 settings.register_profile("thorough", deadline=None, max_examples=2000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci" if os.environ.get("CI") else "dev"))
