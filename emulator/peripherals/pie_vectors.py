@@ -1,7 +1,8 @@
 """The vector table as firmware without a kernel uses it: routines written into `PieVectTable`.
 
 Modelled: an entry runs when its interrupt is taken, nested on the interrupted stack; EALLOW (by the register core).  An
-entry that the kernel took belongs to the kernel until firmware writes over it, as on silicon.
+entry that the kernel took belongs to the kernel until firmware writes over it, as on silicon.  IRET restores IER, so
+what a routine writes to it holds only until its end (SPRU430; the kernel's dispatcher keeps it).
 A C function without the keyword `interrupt` is told when it returns (`isr-keyword`).
 Not modelled: what such a function does to the registers of the interrupted code (CHOICE: it returns like a routine).
 Time: none of its own; the core accounts for entry and return, the routine for itself.
@@ -87,6 +88,7 @@ class VectorTable:
         cpu = self._cpu
         outer, cpu.isr = cpu.isr, f"Isr:{name}"
         who, cpu.position.who = cpu.position.who, cpu.isr
+        ier = cpu.ier
         for listener in self.began.listeners:
             listener(number, name)
         try:
@@ -96,6 +98,7 @@ class VectorTable:
                 listener(number, name)
             cpu.isr = outer
             cpu.position.who = who
+            cpu.ier = ier
         begins = self._returning.pop(number, None)
         if begins is not None:
             cpu.findings.report_at(

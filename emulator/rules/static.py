@@ -70,8 +70,8 @@ The check also reports a file-scope object that is set twice when nothing in bet
 or array (or one that was passed by value) of which no part is read after the last store.
 
 Constants, steps such as `p++`, and reads of registers or calls of kernel functions (made for their effect) are not
-reported. A constant that limits the variable is reported (`if (x > 300) x = 300;` when nothing reads `x`). It is enough
-that one half of an exchange (`t = a; a = b; b = t;`) is used.
+reported, nor are stores to a `volatile` local. A constant that limits the variable is reported (`if (x > 300) x =
+300;` when nothing reads `x`). It is enough that one half of an exchange (`t = a; a = b; b = t;`) is used.
 
 **Fix:** use the value, or remove the statement.
 """,

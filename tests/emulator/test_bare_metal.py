@@ -203,6 +203,18 @@ def test_routines_nest_only_where_they_allow_it(inside: str, order: str) -> None
     assert driver.board.cpu.ier == 0x2001
 
 
+@pytest.mark.parametrize("inside", ["    IER &= M_INT14", "    IER |= M_INT13", "    IER = 0"])
+def test_what_a_routine_writes_to_IER_holds_until_it_returns(inside: str) -> None:
+    driver = Driver(NESTED.format(inside=f"{inside}\n    EINT()"))
+    driver.Init()
+    driver.wait_ms(1.2)
+    text = driver.linked.objects["drv.Order"].data
+    assert "".join(chr(c) for c in text[:2]) == ("sS" if inside == "    IER = 0" else "sf")
+    driver.wait_ms(0.3)
+    assert "".join(chr(c) for c in text[:3]) == ("sSf" if inside == "    IER = 0" else "sfS")
+    assert driver.board.cpu.ier == 0x2001
+
+
 def test_an_interrupt_can_be_made_by_setting_its_bit_in_IFR() -> None:
     driver = Driver(
         "Runs: uint16 = 0\n\n# drv.c: Once\ndef Once() -> void:\n    Runs += 1\n\n"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from typing import Any, Final
 
-from emulator.c28x.ctypes import ArrayType, StructType
+from emulator.c28x.ctypes import ArrayType, IntType, StructType
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.values import volatile
 from emulator.c28x.symbols import Module
@@ -17,6 +17,7 @@ from emulator.c28x.tree import (
     Compare,
     Const,
     Continue,
+    Convert,
     CopyStruct,
     Declare,
     Expr,
@@ -190,6 +191,8 @@ class Liveness:
     def store(self, s: Assign | Declare, variable: Variable, value: Expr, live: Live) -> None:
         if not self.reporting or variable in live or (_harmless(variable, value) and id(s) not in self.limits):
             return
+        if variable.volatile:  # the store itself is an effect (ISO C 5.1.2.3 p2): a debugger shows the value
+            return
         if id(s) in self.halves or (isinstance(s, Assign) and self.says_unused(s, variable)):
             return
         declared = isinstance(s, Declare)
@@ -275,11 +278,28 @@ def _for_effect(value: Expr) -> bool:
 
 
 def _reads_device(value: Expr) -> bool:
+    """Whether a value is read from a device: from a register, by its name or by a number, or by a library function."""
     return any(
-        isinstance(p, RegisterLoad)
+        _reads_register(p)
         or (isinstance(p, Call) and p.function.extern and p.function.name not in _VALUES_ONLY)
+        or (isinstance(p, Call) and _gets_register(p.function.body))
         for p in parts(value)
     )
+
+
+def _reads_register(part: Any) -> bool:
+    """Whether a part of an expression is a register: `AdcaRegs.ADCCTL1`, or `HWREG(base + offset)`."""
+    if isinstance(part, LValue) and isinstance(part.root, Convert):
+        return isinstance(bare(part.root).ctype, IntType)
+    return isinstance(part, RegisterLoad | RegisterAt)
+
+
+def _gets_register(body: list[Stmt]) -> bool:
+    """Whether a function only returns what a register holds, as those of driverlib (`ADC_getInterruptStatus`)."""
+    match body:
+        case [Return(value=Expr() as value)]:
+            return any(map(_reads_register, parts(value)))
+    return False
 
 
 class Mentions:

@@ -10,7 +10,8 @@ import pytest
 from tests.emulator.c28x.readers.c.workshop import findings_of
 
 HEAD = (
-    "volatile int port = 0; int other = 3; struct P { int x, y; }; void take(struct P p) { port = p.x; }\n"
+    "volatile int port = 0; int other = 3; struct P { int x, y; }; void take(struct P p) { port = p.x; }"
+    " int flags(unsigned long base) { return *(volatile int *)(base + 2); }\n"
     "int f(int n)\n"
 )
 
@@ -103,6 +104,9 @@ PARTS = [
     "{ struct P p; p.x = n * 2; p.y = n; take(p); return 0; }",
     "{ n = n; return 0; }",
     "{ int was = port; return 0; }",  # read for its effect
+    "{ int was; was = *(volatile int *)0x5E00; was = port; return was; }",  # a register by its address
+    "{ int was; was = flags(0x5E00); was = flags(0x5E80); return was; }",
+    "{ volatile int seen; seen = n * 2; seen = n * 3; return n; }",  # a debugger shows each
 ]
 
 
