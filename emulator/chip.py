@@ -65,7 +65,7 @@ from emulator.registers.pie import PieCtrlRegs
 from emulator.registers.pie_vectors import PieVectTable
 from emulator.registers.sci import SciRegs
 from emulator.registers.spi import SpiRegs
-from emulator.registers.sysctrl import AnalogSubsysRegs, ClkCfgRegs, CpuSysRegs, DevCfgRegs
+from emulator.registers.sysctrl import LPMCR, AnalogSubsysRegs, ClkCfgRegs, CpuSysRegs, DevCfgRegs
 from emulator.registers.unmodelled import UnmodelledBlock
 from emulator.registers.watchdog import WdRegs
 from emulator.registers.xbar import XbarRegs
@@ -159,6 +159,8 @@ class Chip:
         self.pie = Pie(clock, cpu, self._block("PieCtrlRegs", PieCtrlRegs))
         core, vectors = CpuRegs("CPU", 0, cpu), made["PieVectTable"]
         assert isinstance(vectors, PieVectTable)
+        low_power = self.register("CpuSysRegs", "LPMCR")
+        cpu.deeper = lambda: bool(low_power.value & LPMCR.LPM.mask)
         core.bind("IER", read=lambda: cpu.ier, write=lambda word, _lanes: cpu.write_ier(word), steady=True)
         core.bind("IFR", read=lambda: cpu.ifr, write=lambda word, _lanes: cpu.write_ifr(word), steady=True)
         self.vectors = VectorTable(cpu, self.pie, vectors)

@@ -65,7 +65,7 @@ COMPARES: Final = {4: ("CMPA", DOWN), 5: ("CMPA", UP), 6: ("CMPB", DOWN), 7: ("C
 #: Functions and instructions that set INTM to 0, or go on when an interrupt waits although INTM is 1 (IDLE).
 LET_THROUGH: Final = (
     "EINT", "__enable_interrupts", "__restore_interrupts", "EnableInterrupts", "Hwi_enable", "Hwi_restore",
-    "BIOS_start", "IDLE", "STANDBY", "HALT", "HIB",
+    "BIOS_start", "IDLE", "__idle", "STANDBY", "HALT", "HIB",
 )  # fmt: skip
 #: Fields of AQCTLA and AQCTLB, and those of their values that do not toggle.
 AQ_EVENTS: Final = ("ZRO", "PRD", "CAU", "CAD", "CBU", "CBD")

@@ -4,6 +4,9 @@ SPRU430: on interrupt entry ST1 is pushed, then INTM and DBGM are set and EALLOW
 them.  An interrupt is taken between two charges of the CPU, runs as a nested call on the interrupted Python
 stack, and is masked while INTM is set.
 
+IDLE waits for an interrupt that IER lets through.  Not modelled: STANDBY, HALT and hibernation (LPMCR.LPM other than
+0); the program goes on at once.
+
 If interrupts follow each other for long, and the interrupted code does not get a single cycle, that is a storm.  It is
 a finding and ends the run, because nothing else would run any more.
 """
@@ -16,12 +19,14 @@ from typing import Final, NoReturn
 from emulator.c28x.findings import Findings
 from emulator.c28x.position import INTERRUPT
 from emulator.c28x.sites import Place
-from emulator.clock import CYCLES_PER_MS, Clock, ms
+from emulator.clock import CYCLES_PER_MS, NEVER, Clock, ms
 
 #: Cycles from recognition to the first instruction of the handler (SPRU430: 14 words saved, 14 cycles at least).
 INTERRUPT_ENTRY_CYCLES: Final = 14
 #: IRET restores the same context.
 INTERRUPT_EXIT_CYCLES: Final = 8
+#: IDLE up to the stop of the clock (SPRU430, "IDLE": 5 cycles).
+IDLE_CYCLES: Final = 5
 #: Words pushed on the interrupted stack by the core itself.
 INTERRUPT_CONTEXT_WORDS: Final = 14
 #: CHOICE: a storm is this many interrupts in a row, over at least this many cycles, while nothing else was executed.
@@ -36,6 +41,11 @@ LONG_STORM_CYCLES: Final = 750 * CYCLES_PER_MS
 
 #: The interrupt at a line of the CPU: its vector, its source, and where its routine begins.
 Description = Callable[[], tuple[str, str, Place | None]]
+
+
+def _never() -> bool:
+    """A core without LPMCR."""
+    return False
 
 
 class InterruptStorm(Exception):
@@ -58,8 +68,8 @@ class Cpu(Eallow):
     """
 
     __slots__ = (
-        "_began", "_described", "_forced", "_handlers", "_left", "_row", "clock", "dispatched", "findings", "ier",
-        "ifr", "in_interrupt", "intm", "isr", "position", "sp", "stack_limit",
+        "_began", "_described", "_forced", "_handlers", "_left", "_row", "_taken", "asleep", "clock", "deeper",
+        "dispatched", "findings", "ier", "ifr", "in_interrupt", "intm", "isr", "position", "sp", "stack_limit",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, findings: Findings) -> None:
@@ -73,6 +83,12 @@ class Cpu(Eallow):
         self.ier = 0
         self.ifr = 0
         self.in_interrupt = 0
+        #: How many interrupts were ever taken.
+        self._taken = 0
+        #: The core waits in IDLE.
+        self.asleep = False
+        #: Whether LPMCR selects a mode below IDLE.  Those are not modelled: the program goes on at once.
+        self.deeper: Callable[[], bool] = _never
         #: The routine of the vector table that runs, `Isr:name`; empty outside of one.
         self.isr = ""
         #: Stack pointer in words, and the word that it must not pass in a function.
@@ -134,6 +150,26 @@ class Cpu(Eallow):
         if not self.intm and self.ifr & self.ier:
             self.clock.request_attention()
 
+    def idle(self) -> bool:
+        """IDLE: wait until an interrupt comes that IER lets through.  Returns whether one can come.
+
+        With INTM = 0 its routine runs first; with INTM = 1 the program goes on without it (SPRU430, IDLE).
+        """
+        clock = self.clock
+        clock.charge(IDLE_CYCLES)
+        if self.deeper():
+            return True
+        taken = self._taken
+        self.asleep = True
+        try:
+            while self._taken == taken and not self.ifr & self.ier:
+                if clock.next >= NEVER:
+                    return False
+                clock.advance_to(clock.next)
+        finally:
+            self.asleep = False
+        return True
+
     def service(self) -> None:
         """Take every enabled interrupt that is latched, highest priority (lowest line) first.
 
@@ -182,6 +218,7 @@ class Cpu(Eallow):
         position = self.position
         position.calls = interrupted = (position.at, position.calls, INTERRUPT)
         position.at = 0
+        self._taken += 1
         self.intm = True
         self.eallow = False
         self.ier &= ~(1 << (line - 1))

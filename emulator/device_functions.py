@@ -23,6 +23,7 @@ from typing import Any, Final
 from emulator.c28x.arithmetic import f32
 from emulator.c28x.memory import Pointer
 from emulator.c28x.passes import costs
+from emulator.c28x.runtime import Idling
 from emulator.chip import ADC_PIE, ECAP_INPUT, XINT_INPUT, Chip, delay_us
 from emulator.clock import SYSCLK_HZ
 from emulator.peripherals.dma import CHANNELS, ERRCLR, HARDRESET, PERINTCLR, RUN
@@ -31,6 +32,7 @@ from emulator.peripherals.temperature_sensor import OFFSET, SLOPE_Q15
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL, LOW
 from emulator.registers.gpio import PIN_COUNT, PORTS
+from emulator.registers.sysctrl import LPMCR
 
 # Flags of GPIO_SetupPinOptions
 _PULLUP: Final = 1 << 0
@@ -126,7 +128,7 @@ class DeviceFunctions:
         for bank in (0, 1):
             functions[f"InitFlash_Bank{bank}"] = partial(self._flash_on, bank)
             functions[f"FlashOff_Bank{bank}"] = partial(self._flash_off, bank)
-        functions |= {name: partial(self._low_power, name) for name in ("IDLE", "STANDBY", "HALT", "HIB")}
+        functions |= {name: partial(self._low_power, name) for name in ("STANDBY", "HALT", "HIB")}
         self.externs = functions | timers | inputs | pins | without_effect | self._dma_functions()
 
     def _nothing(self, cycles: int, *_arguments: int) -> None:
@@ -259,6 +261,15 @@ class DeviceFunctions:
             self._clock.delay(_OSCILLATOR_DELAY)
             source = self._chip.register("ClkCfgRegs", "CLKSRCCTL1")
             source.value = source.value & ~3 | number
+
+    def IDLE(self) -> None:
+        """Wait for an interrupt that IER lets through."""
+        with self._unprotected():
+            self._clock.charge(_FIELD)
+            mode = self._chip.register("CpuSysRegs", "LPMCR")
+            mode.value = mode.value & ~LPMCR.LPM.mask
+        if not self._cpu.idle():
+            raise Idling("the CPU sleeps in IDLE(), and no event is left that could wake it")
 
     def _low_power(self, name: str) -> None:
         message = f"{name}(): low power is not modelled: the CPU goes on at once"

@@ -176,7 +176,7 @@ def SetDBGIER(dbgier: uint16) -> void:
 
 @extern
 def IDLE() -> void:
-    """Not modelled: the CPU continues."""
+    """Wait for an interrupt that IER lets through."""
 
 
 @extern

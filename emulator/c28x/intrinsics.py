@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any, Final, Protocol
 
 from emulator.c28x.arithmetic import divide_ieee, f32
+from emulator.c28x.runtime import Idling
 from emulator.clock import Clock
 
 
@@ -47,6 +48,9 @@ class InterruptMask(Protocol):
     def enable_interrupts(self) -> None:
         """Clear INTM."""
 
+    def idle(self) -> bool:
+        """Wait for an enabled interrupt; whether one can come."""
+
 
 def intrinsics(cpu: InterruptMask) -> dict[str, Callable[..., Any]]:
     """Name of each intrinsic -> its function.
@@ -73,7 +77,11 @@ def intrinsics(cpu: InterruptMask) -> dict[str, Callable[..., Any]]:
     def idle(cycles: int) -> None:
         cpu.clock.delay(cycles)
 
+    def sleep() -> None:
+        if not cpu.idle():
+            raise Idling("the CPU sleeps in IDLE, and no event is left that could wake it")
+
     return FLOATS | {
         "__disable_interrupts": disable, "__enable_interrupts": enable, "__restore_interrupts": restore,
-        "__idle_cycles": idle,
+        "__idle_cycles": idle, "__idle": sleep,
     }  # fmt: skip

@@ -164,6 +164,8 @@ class _CallWatch:
                 f"{call.path} idles for ever at {called[0]}, as it is written: no call of it returns; a main runs with "
                 "the fixture `kernel` (kernel.start(main)), time with advance() and until()"
             )
+        if self._core.asleep and not self._core.in_interrupt:
+            raise Idling(f"{call.path} sleeps in IDLE: no interrupt that IER lets through has come")
         self._stop(call, called, self._loop(call, called))
 
     def _stop(self, call: _Call, called: tuple[Place, ...], wait: PollingLoop | None) -> NoReturn:

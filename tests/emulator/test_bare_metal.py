@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from emulator.c28x.runtime import Idling
 from emulator.c28x.symbols import SourceError
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US
 from tests.emulator.drivers import Driver
@@ -78,6 +79,59 @@ def test_a_poll_of_what_the_routine_changes_ends() -> None:
     assert ticks(driver) == 3
     assert (driver.board.clock.now - began) // CYCLES_PER_MS == 3
     assert driver.rules() == []
+
+
+SLEEP = """
+# drv.c: Sleep
+def Sleep(turns: uint16) -> uint16:
+    while turns > 0:
+        {before}
+        IDLE()
+        {after}
+        turns -= 1
+    return Ticks
+
+# drv.c: Off
+def Off() -> void:
+    IER = {ier}
+"""
+
+
+@pytest.mark.parametrize(("before", "after"), [("pass", "pass"), ("DINT()", "EINT()")])
+def test_IDLE_ends_with_the_next_interrupt(before: str, after: str) -> None:
+    driver = timer(more=SLEEP.format(before=before, after=after, ier=0))
+    driver.wait_ms(0.5)
+    began = driver.board.clock.now
+    # With INTM = 1 the routine runs behind the EINT.
+    assert driver.Sleep(3) == 3
+    assert (driver.board.clock.now - began) // CYCLES_PER_US in range(2490, 2510)
+    assert not driver.board.cpu.asleep
+    assert driver.rules() == []
+
+
+@pytest.mark.parametrize("ier", ["0", "M_INT2 | M_INT13"])
+def test_IDLE_does_not_end_with_an_interrupt_that_IER_keeps_out(ier: str) -> None:
+    driver = timer(more=SLEEP.format(before="pass", after="pass", ier=ier))
+    driver.Off()
+
+    class Morning(Exception):
+        pass
+
+    def alarm() -> None:
+        assert driver.board.cpu.asleep
+        raise Morning
+
+    driver.board.clock.after(20 * CYCLES_PER_MS, alarm)
+    with pytest.raises(Morning):
+        driver.Sleep(1)
+    assert not driver.board.cpu.asleep
+    assert ticks(driver) == 0
+
+
+def test_IDLE_with_nothing_left_that_could_end_it_says_so() -> None:
+    driver = Driver("Ticks: uint16 = 0\n" + SLEEP.format(before="pass", after="pass", ier=0))
+    with pytest.raises(Idling, match="sleeps in IDLE"):
+        driver.Sleep(1)
 
 
 def test_a_routine_interrupts_a_function_that_computes() -> None:

@@ -25,7 +25,7 @@ _CORE: Final = {
     "EDIS": "EDIS", "ESTOP0": "ESTOP0",
 }  # fmt: skip
 #: Assembler text in a C file, stripped and in capitals -> the C name of what it does; empty: nothing.
-ASSEMBLER: Final = {text.upper(): name for name, text in _CORE.items()} | {"NOP": "", "IDLE": ""}
+ASSEMBLER: Final = {text.upper(): name for name, text in _CORE.items()} | {"NOP": ""}
 #: Type names (F2837xS_device.h).  CHOICE: `uint16` and `uint32` too, which the thesis' files use with this header.
 _TYPES: Final = (
     ("int", "int16"), ("long", "int32"), ("long long", "int64"), ("unsigned int", "Uint16"),

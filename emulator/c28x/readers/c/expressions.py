@@ -84,6 +84,8 @@ FIXED_POINT: Final = {
 }  # fmt: skip
 #: `RPT #n || NOP`: waits for this number of cycles.
 _IDLE_CYCLES: Final = _intrinsic("__idle_cycles", VOID, UINT)
+#: `IDLE`: waits for an interrupt.
+_IDLE: Final = _intrinsic("__idle", VOID)
 _MODES: Final = re.compile(r"(SETC|CLRC) ((?:INTM|DBGM)(?: ?, ?(?:INTM|DBGM))?)", re.IGNORECASE)
 _REPEATED: Final = re.compile(r"RPT #\(?(0x[0-9a-f]+|0|[1-9]\d*)\)? ?\|\| ?NOP", re.IGNORECASE)
 _MAX_REPEATED: Final = 255
@@ -452,13 +454,15 @@ class CExpressionReader:
         elif repeated is not None and int(repeated[1], 0) <= _MAX_REPEATED:
             times = Const(UINT, int(repeated[1], 0) + 1, where=where)
             build.evaluate(self.b, build.call(self.b, _IDLE_CYCLES, [times], where))
+        elif text.upper() == "IDLE":
+            build.evaluate(self.b, build.call(self.b, _IDLE, [], where))
         elif _KEPT.fullmatch(text) is not None:
             pass
         elif text.upper() in headers.ASSEMBLER:
             self.core(headers.ASSEMBLER[text.upper()], where)
         else:
             known = ", ".join(headers.ASSEMBLER)
-            message = f'asm("{text}") is not modelled: known are {known}, RPT #n || NOP'
+            message = f'asm("{text}") is not modelled: known are {known}, IDLE, RPT #n || NOP'
             raise SourceError.at(where, f"{message}; {_instead(text)}, or leave it out with #if and -D")
 
     def core(self, name: str, where: Where) -> None:
