@@ -180,3 +180,13 @@ BLOCKS: Final[dict[str, Instance]] = {
 }
 #: The names of those that are not.
 UNMODELLED: Final = tuple(name for name, kind in __annotations__.items() if kind == "unmodelled")
+#: Where what is not modelled lies, for programs that reach it by a number (driverlib): first and last address (DS,
+#: "Peripheral Registers Memory Map" and "EMIF Chip Select Memory Map").
+UNMODELLED_AT: Final = {
+    "Cla1Regs": (0x1400, 0x147F), "Clb1 to Clb4": (0x3000, 0x3FFF), "Sdfm1Regs": (0x5E00, 0x5E7F),
+    "Sdfm2Regs": (0x5E80, 0x5EFF), "McbspaRegs": (0x6000, 0x603F), "McbspbRegs": (0x6040, 0x607F),
+    "UppRegs": (0x6200, 0x62FF), "the message RAM of the uPP": (0x6C00, 0x6FFF), "NmiIntruptRegs": (0x7060, 0x706F),
+    "SyncSocRegs": (0x7940, 0x794F), "UsbaRegs": (0x40000, 0x40FFF), "Emif1Regs": (0x47000, 0x477FF),
+    "Emif2Regs": (0x47800, 0x47FFF), "memory at the EMIF2": (0x2000, 0x2FFF),
+    "memory at the EMIF1": (0x100000, 0x3DFFFF),
+}

@@ -12,7 +12,7 @@ from functools import partial
 from random import Random
 from typing import Any, Final, ParamSpec, TypeVar
 
-from emulator.blocks import BLOCKS, UNMODELLED
+from emulator.blocks import BLOCKS, UNMODELLED, UNMODELLED_AT
 from emulator.c28x.findings import Cause, Findings
 from emulator.c28x.memory import Memory
 from emulator.can_bus import CanBus, CanPort
@@ -168,6 +168,8 @@ class Chip:
         self._named: dict[str, Block] = {"CPU": core, "PieVectTable": vectors}
         #: Blocks that are not modelled; only those that have been used are created.
         self._unmodelled: dict[str, UnmodelledBlock] = {}
+        #: What is not modelled and was reached by a number.
+        self._told: set[str] = set()
         self.sysctrl = SysCtrl(
             cpu, self._block("CpuSysRegs", CpuSysRegs), self._block("ClkCfgRegs", ClkCfgRegs),
             self._block("DevCfgRegs", DevCfgRegs), self._block("AnalogSubsysRegs", AnalogSubsysRegs),
@@ -647,14 +649,20 @@ class Chip:
     def _read_word(self, addr: int) -> int | None:
         found = self._registers_at.get(addr)
         if found is None:
-            return self._read_vector(addr)
+            vector = self._read_vector(addr)
+            if vector is None:
+                self._note_unmodelled(addr)
+            return vector
         register, half = found
         return register.read() >> 16 * half & 0xFFFF
 
     def _write_word(self, addr: int, word: int) -> bool:
         found = self._registers_at.get(addr)
         if found is None:
-            return self._write_vector(addr, word)
+            written = self._write_vector(addr, word)
+            if not written:
+                self._note_unmodelled(addr)
+            return written
         register, half = found
         if register.bits == 16:
             register.write(word & 0xFFFF, ALL)
@@ -663,6 +671,14 @@ class Chip:
         else:
             register.write(register.value & HIGH | word & 0xFFFF, LOW)
         return True
+
+    def _note_unmodelled(self, addr: int) -> None:
+        """Report once that a word belongs to something that the chip has and the emulator does not model."""
+        for name, (first, last) in UNMODELLED_AT.items():
+            if first <= addr <= last and name not in self._told:
+                self._told.add(name)
+                message = f"{addr:#x} belongs to {name}, which is not modelled: writes have no effect, it reads 0"
+                self.findings.report("unmodelled", message, object=name)
 
     def _read_vector(self, addr: int) -> int | None:
         """Read half of an entry of the vector table: half of the address of its routine."""

@@ -202,6 +202,8 @@ def _parameter(
     function: Function, variable: Variable, own: Mapping[str, Function], blocks: Mapping[str, BlockType]
 ) -> Parameter:  # fmt: skip
     name, ctype = variable.declaration.name, variable.ctype
+    if isinstance(ctype, IntType) and _is_address(function, variable, _DEEPEST):
+        raise NotGenerated(f"parameter {name} is a number that is used as an address")
     if isinstance(ctype, IntType | FloatType):
         return Parameter(name, ctype, variable.constants, _compared(function, variable, ctype))
     if isinstance(ctype, StructType):
@@ -261,6 +263,20 @@ def _compared(function: Function, variable: Variable, ctype: CType) -> tuple[int
                         found.append(int(other.value))
     near = (value for number in found for value in (number, number + 1, number - 1))
     return tuple(dict.fromkeys(v for v in near if isinstance(ctype, IntType) and ctype.low <= v <= ctype.high))
+
+
+def _is_address(function: Function, variable: Variable, deep: int) -> bool:
+    """Whether a function, or one that it calls, makes a pointer of a number: no number but the caller's is right."""
+    for part in (part for s in statements(function.body) for root in roots(s) for part in parts(root)):
+        if isinstance(part, Convert) and isinstance(part.ctype, PointerType):
+            made = part.operand if isinstance(part.operand.ctype, IntType) else None
+            if any(isinstance(p, Load) and p.lvalue.root is variable for p in parts(made)):
+                return True
+        if isinstance(part, Call) and deep:
+            for argument, parameter in zip(part.arguments, part.function.parameters, strict=False):
+                if _is(bare(argument), variable) and _is_address(part.function, parameter, deep - 1):
+                    return True
+    return False
 
 
 def _row(element: CType, length: int) -> ArrayType:

@@ -9,6 +9,10 @@ constants and plain locals; a new value of such a local makes the element unknow
 remembered: "if `found` is not zero, `place` has been written" survives where paths join, so that a flag that guards a
 value is understood.  A loop whose condition first holds by constants runs at least once.
 
+Objects that can hold few values (a register's bit) are followed too: behind `if (d == 0) ... else if (d == 1) ...`
+without an `else` there is no path on which neither was true.  Objects in memory keep their values until a call of the
+program, or a store that may reach them.
+
 If a switch names every constant of an enumeration, the source intends no path past its cases, but the variable may hold
 another value.  Such a path is *unexpected*: static findings ignore it, run-time checks do not.
 """
@@ -28,6 +32,8 @@ from emulator.c28x.tree import (
     Assign,
     Binary,
     Break,
+    Call,
+    CallPointer,
     Compare,
     Conditional,
     Const,
@@ -45,6 +51,7 @@ from emulator.c28x.tree import (
     Logic,
     LValue,
     Not,
+    RegisterLoad,
     Return,
     Stmt,
     Switch,
@@ -54,12 +61,14 @@ from emulator.c28x.tree import (
     Where,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import assigned_variables, blocks, children, parts, roots, statements
+from emulator.c28x.tree_queries import assigned_variables, bare, blocks, children, parts, roots, statements
 
 #: After so many turns, the walk gives up what it knows at the head of a loop.
 _TURNS: Final = 8
 #: CHOICE: only the newest conditions are kept, so that a function with thousands of them is analysed quickly.
 _CONDITIONS: Final = 100
+#: CHOICE: objects with up to this many values are followed.
+_VALUES: Final = 16
 
 
 class Term(NamedTuple):
@@ -73,6 +82,14 @@ class Element(NamedTuple):
     """A scalar of an object in memory: the object, the place of the scalar in it, the locals in its subscripts."""
 
     root: Variable
+    place: Any
+    uses: frozenset[Variable]
+
+
+class Spot(NamedTuple):
+    """A scalar in memory: the object or pointer that leads to it, its place from there, the locals in the pointer."""
+
+    root: Any
     place: Any
     uses: frozenset[Variable]
 
@@ -97,6 +114,8 @@ class FlowState:
     known: Mapping[Variable, int] = field(default_factory=dict)
     #: Condition -> the plain locals that are written if it holds; None: it cannot hold here.
     implied: Mapping[Condition, frozenset[Variable] | None] = field(default_factory=dict)
+    #: The values that plain locals and scalars in memory can have here, where they are few; empty: no path leads here.
+    values: Mapping[Variable | Spot, frozenset[int]] = field(default_factory=dict)
     #: The plain locals that may be unwritten on an unexpected path.
     doubtful: frozenset[Variable] = frozenset()
     #: Only unexpected paths lead here.
@@ -154,12 +173,16 @@ class Flow:
         return state
 
     def statement(self, s: Stmt, state: FlowState) -> FlowState | None:
+        if state.values and _may_store(s):
+            state = replace(state, values={k: v for k, v in state.values.items() if isinstance(k, Variable)})
         match s:
             case If(test=test, then=then, otherwise=otherwise):
                 self.read(test, state)
+                passed = self.assumed(test, False, state)
+                if not otherwise and not all(passed.values.values()):
+                    passed = replace(passed, unexpected=True)
                 return self.join(
-                    self.block(then, self.assume(test, True, state)),
-                    self.block(otherwise, self.assume(test, False, state)),
+                    self.block(then, self.assume(test, True, state)), self.block(otherwise, possible(passed))
                 )
             case While():
                 return self.while_loop(s, state)
@@ -171,7 +194,7 @@ class Flow:
             self.read(root, state)
         match s:
             case Assign(target=LValue() as target, value=value):
-                return self.store(target, value, state)
+                return self.store(target, value, replace(state, values=after_store(target, value, state.values)))
             case Declare(variable=variable, value=None):
                 # A local of an inner block has no value at the beginning of each turn.
                 return self.begin(variable, state) if variable.nested and variable.plain else state
@@ -283,14 +306,17 @@ class Flow:
     def head(self, loop: While | For, state: FlowState, changed: Set[Variable]) -> FlowState:
         """The state at the head of a loop that is valid in every turn."""
         quiet, self.quiet = self.quiet, True
-        head = replace(state, known={v: c for v, c in state.known.items() if v not in changed})
+        head = replace(
+            state, known={v: c for v, c in state.known.items() if v not in changed},
+            values={k: v for k, v in state.values.items() if isinstance(k, Variable) and k not in changed},
+        )  # fmt: skip
         for _ in range(_TURNS):
             end, _ = self.turn(loop, head)
             if end is not None and isinstance(loop, While) and not loop.first:
                 end = self.assume(loop.test, True, end)
             following = self.join(head, end)
             assert following is not None
-            following = replace(following, known=head.known, touched=state.touched)
+            following = replace(following, known=head.known, values=head.values, touched=state.touched)
             if following == head:
                 break
             head = following
@@ -305,6 +331,7 @@ class Flow:
             state,
             stored=frozenset(),
             known={v: c for v, c in state.known.items() if v not in changed},
+            values={k: v for k, v in state.values.items() if isinstance(k, Variable) and k not in changed},
             implied={k: v for k, v in state.implied.items() if not changed & k.term.uses},
             doubtful=self.tracked - (state.written - state.doubtful),
         )
@@ -317,6 +344,9 @@ class Flow:
             return replace(state, stored=state.stored | {variable})
         known = {v: c for v, c in state.known.items() if v is not variable}
         implied = {k: v for k, v in state.implied.items() if variable not in k.term.uses}
+        values = {k: v for k, v in state.values.items() if variable not in (k.uses if isinstance(k, Spot) else (k,))}
+        if isinstance(value, Expr) and (few := few_values(value)):
+            values[variable] = few
         own = Term(variable, frozenset({variable}))
         source = term(true_part(value)) if isinstance(value, Expr) else None
         for holds in (True, False):  # a copy implies what the original implies
@@ -329,7 +359,7 @@ class Flow:
         return replace(
             state, written=state.written | {variable}, touched=state.touched | {variable},
             stored=frozenset(k for k in state.stored if not (isinstance(k, Element) and variable in k.uses)),
-            known=known, implied=implied, doubtful=state.doubtful - {variable},
+            known=known, implied=implied, values=values, doubtful=state.doubtful - {variable},
         )  # fmt: skip
 
     def begin(self, variable: Variable, state: FlowState) -> FlowState:
@@ -397,23 +427,29 @@ class Flow:
             self.read(inner, state)
 
     def assume(self, test: Expr, holds: bool, state: FlowState) -> FlowState:
-        """The state after `test` was true (or false)."""
+        """The state after `test` was true (or false).  A branch that cannot run may be there to be safe."""
+        return possible(self.assumed(test, holds, state))
+
+    def assumed(self, test: Expr, holds: bool, state: FlowState) -> FlowState:
+        """The state after `test` was true (or false).  If that cannot be, an object has no value there."""
         test = true_part(test)
+        if state.values:
+            state = replace(state, values=compared(test, holds, state.values))
         match test:
             case Not(operand=operand):
-                return self.assume(operand, not holds, state)
+                return self.assumed(operand, not holds, state)
             case Logic(op=op, operands=operands):
                 if (op == "and") == holds:
                     for operand in operands:
-                        state = self.assume(operand, holds, state)
+                        state = self.assumed(operand, holds, state)
                 return state
             case Compare(op="==" | "!=" as op, left=left, right=Const(value=value)):
                 if value == 0:
-                    return self.assume(left, (op == "!=") == holds, state)
+                    return self.assumed(left, (op == "!=") == holds, state)
                 if (op == "==") == holds:
-                    state = self.assume(left, True, state)
+                    state = self.assumed(left, True, state)
             case Compare(op=">", left=left, right=Const(value=value)) if holds and value >= 0:
-                state = self.assume(left, True, state)
+                state = self.assumed(left, True, state)
         of = term(test)
         if of is None or not of.uses:
             return state
@@ -461,6 +497,7 @@ def meet(one: FlowState, other: FlowState) -> FlowState:
     return FlowState(
         written, one.touched | other.touched, one.stored & other.stored,
         {v: c for v, c in one.known.items() if other.known.get(v) == c}, implied,
+        {k: v | other.values[k] for k, v in one.values.items() if k in other.values},
         one.doubtful | other.doubtful, one.unexpected,
     )  # fmt: skip
 
@@ -471,6 +508,91 @@ def copied(root: Variable, state: FlowState) -> FlowState:
         state,
         stored=frozenset(k for k in state.stored if k is not root and not (isinstance(k, Element) and k.root is root)),
     )
+
+
+# Objects with few values
+
+
+def few_values(value: Expr) -> frozenset[int]:
+    """The values that an integer expression can have, if they are few and not negative; else empty."""
+    inner = bare(value)
+    if not isinstance(value.ctype, IntType) or value.bounds is None:
+        return frozenset()
+    low, high = value.bounds
+    if isinstance(inner, RegisterLoad) and inner.register.field is not None:
+        low, high = 0, (1 << inner.register.field.width) - 1
+    return frozenset(range(low, high + 1)) if low >= 0 and high - low < _VALUES else frozenset()
+
+
+def spot(place: LValue) -> Variable | Spot | None:
+    """The identity of a scalar, or None: it is volatile, or it depends on more than plain locals."""
+    root, steps = place.root, []
+    if place.volatile or (isinstance(root, Variable) and root.volatile):
+        return None
+    for index in place.indices:
+        if not isinstance(index.expr, Const):
+            return None
+        steps.append((index.expr.value, index.leaves))
+    where = (place.leaf, tuple(steps), str(place.bits))
+    if isinstance(root, Variable):
+        return root if root.plain else Spot(root, where, frozenset())
+    pointer = term(root)
+    return None if pointer is None else Spot(pointer.shape, where, pointer.uses)
+
+
+def after_store(
+    target: LValue, value: Expr, values: Mapping[Variable | Spot, frozenset[int]]
+) -> Mapping[Variable | Spot, frozenset[int]]:
+    """The values after an assignment to `target`, if it is in memory."""
+    if isinstance(target.root, Variable) and target.root.plain:
+        return values
+    stored = spot(target)
+    kept = {k: v for k, v in values.items() if isinstance(k, Variable) or _beside(k, stored)}
+    if stored is not None and (few := few_values(value)):
+        kept[stored] = few
+    return kept
+
+
+def _beside(kept: Spot, stored: Variable | Spot | None) -> bool:
+    """Whether a store does not reach a scalar: it is in another object, or at another place behind the same pointer."""
+    if not isinstance(stored, Spot):
+        return False
+    if kept.root == stored.root:
+        return bool(kept.place != stored.place)
+    named = isinstance(kept.root, Variable) and isinstance(stored.root, Variable)
+    return named and not kept.uses and not stored.uses
+
+
+def _may_store(s: Stmt) -> bool:
+    """Whether a statement may store in any object of the program: it copies a structure, or calls a function."""
+    return isinstance(s, CopyStruct) or any(
+        isinstance(p, CallPointer) or (isinstance(p, Call) and not p.function.extern)
+        for root in roots(s) for p in parts(root)
+    )
+
+
+def compared(
+    test: Expr, holds: bool, values: Mapping[Variable | Spot, frozenset[int]]
+) -> Mapping[Variable | Spot, frozenset[int]]:
+    """The values where a comparison of an object with a constant, or the object as a condition, is true (or false)."""
+    match test:
+        case Compare(op=op, left=left, right=Const(value=int(number))):
+            subject = true_part(left)
+        case _:
+            op, subject, number = "!=", test, 0
+    if not isinstance(subject, Load):
+        return values
+    key = spot(subject.lvalue)
+    if key is None or key not in values:
+        return values
+    return {**values, key: frozenset(v for v in values[key] if COMPARE[op](v, number) == holds)}
+
+
+def possible(state: FlowState) -> FlowState:
+    """The state without what says that no path leads there."""
+    if all(state.values.values()):
+        return state
+    return replace(state, values={k: v for k, v in state.values.items() if v})
 
 
 # Expressions

@@ -246,3 +246,35 @@ def test_what_happens_in_a_header_of_a_library_is_told_at_the_call(tmp_path: Pat
     assert finding.place is not None
     assert finding.place.line == line_of(program, "Share(Ticks")
     assert any("ports.h" in detail for detail in finding.details)
+
+
+ELSEWHERE = """#include "F28x_Project.h"
+#define WORD(x) (*((volatile unsigned int *)(unsigned long)(x)))
+unsigned int Received = 0;
+
+void main(void)
+{
+    InitSysCtrl();
+    WORD(AT) |= 1u;
+    WORD(AT + 1) = 3u;
+    for (;;) {
+        Received += WORD(AT);
+        DELAY_US(10);
+    }
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("at", "whose"),
+    [
+        ("0x6004ul", "0x6004 belongs to McbspaRegs, which"), ("0x5E90ul", "0x5e90 belongs to Sdfm2Regs, which"),
+        ("0x47008ul", "0x47008 belongs to Emif1Regs, which"), ("0x100000ul", "0x100000 belongs to memory at the EMIF1"),
+        ("0x4048ul", ""), ("0x5000ul", ""),
+    ],
+)  # fmt: skip
+def test_what_is_not_modelled_and_reached_by_a_number_is_told_once(tmp_path: Path, at: str, whose: str) -> None:
+    (tmp_path / "program.c").write_text(ELSEWHERE.replace("AT", at), encoding="utf-8")
+    checked = check_files(DriverFiles([tmp_path / "program.c"], seconds=0.002))
+    told = [finding.message for finding in checked.findings if " belongs to " in finding.message]
+    assert [message.startswith(whose) for message in told] == ([True] if whose else [])

@@ -110,6 +110,8 @@ class TestPointers:
             ("struct S { int a; }; int F(void *p) { return ((struct S *)p)->a + *(long *)p; }", "has no size"),
             ("int F(int *(*p)(void)) { return *p(); }", "is a pointer to a function"),
             ("int F(int **p) { return **p; }", "has no size"),
+            ("int F(long at) { return *(volatile int *)(at + 2); }", "at is a number that is used as an address"),
+            ("int G(long to) { return *(int *)to; }\nint F(int *p, long at) { return *p + G(at); }", "as an address"),
         ],
     )
     def test_what_cannot_be_told_is_not_called(self, text: str, why: str, elements_of: object) -> None:

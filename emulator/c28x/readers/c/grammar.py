@@ -289,6 +289,8 @@ class Grammar(CParser):  # type: ignore[misc]
             # The missing text belongs to the end of the line before.
             column = last.column + (len(before.token.text) if last.macro is None else 0)
             rest = self._end() if found is None else f"found {_shown(found)} in line {found.token.where.line}"
+            if found is not None and found.token.where.macro is not None:
+                rest += f", out of the macro text at {found.token.where.macro}"
             at = Where(last.file, last.line, column, last.macro)
             return error_at(at, f"expected {what} after {_shown(before)}; {rest}")
         after = f" after {_shown(before)}, which the macro text at {last.macro} ends in" if last.macro else ""

@@ -1,8 +1,8 @@
-"""C files beside headers, such as those of driverlib: which of them defines a function.
+"""C files beside headers, such as those of driverlib: which of them defines a function or an object.
 
-If a program uses a function that none of its files defines, it is taken from such a file, as a linker takes it from a
+If a program uses a name that none of its files defines, it is taken from such a file, as a linker takes it from a
 library.  The search covers the folders of `-I`, and a folder `source` beside one called `include`.  This module only
-finds the starts of functions; the C reader reads the files.
+finds where functions and objects of a file begin; the C reader reads the files.
 """
 
 from __future__ import annotations
@@ -20,10 +20,15 @@ _SKIPPED: Final = re.compile(
 )
 #: Possessive, so that it never backtracks, however long a name is or however many parentheses are open.
 _HEAD: Final = re.compile(r"\b(\w++)\s*+\([^(){};]*+(?:\([^(){};]*+\)[^(){};]*+)*+\)\s*+$")
+#: What stands before the `=` or the `;` of a definition: type, name, lengths.
+_OBJECT: Final = re.compile(r"\b(\w++)\s*+(?:\[[^][]*+\]\s*+)*+$")
+#: The first words of what is no definition of an object that other files can use.
+_NO_OBJECT: Final = frozenset({"extern", "static", "typedef"})
+_TAGGED: Final = frozenset({"struct", "union", "enum"})
 
 
 class NeighbourFiles:
-    """The C files of some folders, by the functions that they define.  They are read at the first request."""
+    """The C files of some folders, by the names that they define.  They are read at the first request."""
 
     def __init__(self, folders: Iterable[str | Path]) -> None:
         self._folders = [Path(folder) for folder in folders]
@@ -35,16 +40,17 @@ class NeighbourFiles:
         sources = [folder.parent / "source" for folder in self._folders if folder.name == "include"]
         return [*self._folders, *(folder for folder in sources if folder.is_dir())]
 
-    def file(self, function: str) -> Path | None:
-        """The file that defines a function; None: there is none.  Of several, it is the first by folder and name."""
+    def file(self, name: str) -> Path | None:
+        """The file that defines a name; None: there is none.  Of several, it is the first by folder and name."""
         if self._found is None:
             self._found = {}
             for path in self._files():
-                names = list(functions(path.read_text(encoding="latin-1")))
+                text = path.read_text(encoding="latin-1")
+                names = list(functions(text))
                 if "main" not in names:  # it is another program, not a library
-                    for name in names:
-                        self._found.setdefault(name, path)
-        return self._found.get(function)
+                    for defined in (*names, *objects(text)):
+                        self._found.setdefault(defined, path)
+        return self._found.get(name)
 
     def _files(self) -> Iterator[Path]:
         for folder in self.folders:
@@ -69,3 +75,23 @@ def functions(text: str) -> Iterator[str]:
         elif brace[0] == "}":
             depth = max(depth - 1, 0)
         begun = brace.end() if depth == 0 else begun
+
+
+def objects(text: str) -> Iterator[str]:
+    """The names before `= ...;` or `;` outside of all braces that other files can use; of several in one, the first."""
+    depth, begun, initialised = 0, 0, False
+    plain = _SKIPPED.sub(" ", text)
+    for mark in re.finditer(r"[{};=]", plain):
+        if depth == 0 and mark[0] in ";=" and not initialised:
+            words = plain[begun : mark.start()].split(",")[0]
+            name = _OBJECT.search(words)
+            before = words[: name.start()].split() if name is not None else []
+            typed = bool(before) and before[0] not in _NO_OBJECT and before[-1] not in _TAGGED
+            if name is not None and typed and "(" not in words and not name[1][0].isdigit():
+                yield name[1]
+        if mark[0] == "=":
+            initialised = depth == 0 or initialised
+            continue
+        depth = max(depth + (mark[0] == "{") - (mark[0] == "}"), 0)
+        if depth == 0 and (mark[0] == ";" or not initialised):
+            begun, initialised = mark.end(), False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -71,6 +72,13 @@ class CFile:
         """Names that the file, or a header that is not ours, uses and that the file only declares."""
         used = {token.text for token in self.unit.tokens if not token.source.file.startswith("<")}
         return used & set(self.reader.linkage.declared)
+
+    def asked_names(self) -> set[str]:
+        """The undefined names without objects that the text only declares: a header may declare many."""
+        names = self.undefined_names()
+        objects = {name for name in names if isinstance(self.module.symbols.get(name), Variable)}
+        counted = Counter(token.text for token in self.unit.tokens if token.text in objects)
+        return names - {name for name, times in counted.items() if times == 1}
 
 
 @dataclass
@@ -171,7 +179,7 @@ class CFiles:
         asked: set[str] = set()
         while True:
             defined = {name for file in self.files.values() for name in file.reader.linkage.defined}
-            names = {name for file in self.files.values() for name in file.undefined_names()} - defined - asked
+            names = {name for file in self.files.values() for name in file.asked_names()} - defined - asked
             if not names:
                 return
             asked |= names

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from emulator.c28x.link import LinkError
-from emulator.c28x.readers.c.neighbour_files import NeighbourFiles, functions
+from emulator.c28x.readers.c.neighbour_files import NeighbourFiles, functions, objects
 from hil.drivers.check import DriverFiles, check_files
 from hil.image import Build
 
@@ -57,6 +57,21 @@ def test_what_a_program_uses_is_linked_and_what_that_uses(library: Path) -> None
     assert build.image().call("led.Blink", []) == 8
 
 
+TABLE_H = "struct Part { unsigned int pin; };\nextern const struct Part Parts[2];\nextern unsigned int Level;\n"
+TABLE_C = '#include "table.h"\nconst struct Part Parts[2] = { {4}, {6} };\n'
+
+
+def test_an_object_that_a_program_uses_is_linked(library: Path) -> None:
+    (library / "table.h").write_text(TABLE_H, encoding="utf-8")
+    (library / "table.c").write_text(TABLE_C, encoding="utf-8")
+    (library / "level.c").write_text('#include "table.h"\nunsigned int Level;\n', encoding="utf-8")
+    text = '#include "table.h"\nunsigned int Second(void)\n{\n    return Parts[1].pin;\n}\n'
+    (library.parent / "led.c").write_text(text, encoding="utf-8")
+    build = Build([str(library.parent / "led.c")], include=[library])
+    assert sorted(build.program.modules) == ["led", "library.table"]  # nobody uses Level
+    assert build.image().call("led.Second", []) == 6
+
+
 def test_a_library_is_not_checked_by_itself(library: Path) -> None:
     checked = check_files(DriverFiles([library.parent / "led.c"], [library], calls=2))
     assert [function.name for function in checked.functions] == ["Blink"]
@@ -102,12 +117,24 @@ def test_beginnings_of_functions(text: str, found: list[str]) -> None:
     assert list(functions(text)) == found
 
 
+@pytest.mark.parametrize(("text", "found"), [
+    ("int a;\nint b = 3;\nconst char *c = \"x = 1;\";\nint d[2][3] = { {1}, {2} };\n", ["a", "b", "c", "d"]),
+    ("extern int a;\nstatic int b;\ntypedef int c;\nstruct s;\nenum e { A = 1, B };\nint f(void);\n", []),
+    ("volatile struct R *Rs[3] =\n{ 0, &A, &B };\nint f(void) { int x = 1; y = 2; }\nlong last;\n", ["Rs", "last"]),
+    ("struct s { int a; } x;\nint (*g)(void);\nint a = 1, b = 2;\n", ["a"]),
+])  # fmt: skip
+def test_definitions_of_objects(text: str, found: list[str]) -> None:
+    assert list(objects(text)) == found
+
+
 @pytest.mark.parametrize("text", ["/* ", "a", "a(", "a() ", "a(b() ", " ", '"', "'a", "\\\n#", "{a(){"])
 def test_a_hostile_file_of_a_megabyte_is_searched_once(text: str) -> None:
     found = list(functions("int f(void) { } " + text * (1_000_000 // len(text)) + "{"))
     assert found[0] == "f"
+    found = list(objects("int a; " + text * (1_000_000 // len(text)) + ";"))
+    assert found[0] == "a"
 
 
 @given(st.text(alphabet="abc(){};\"'/*#\\\n ", max_size=200))
 def test_any_text_is_searched(text: str) -> None:
-    assert all(name.isidentifier() for name in functions(text))
+    assert all(name.isidentifier() for name in (*functions(text), *objects(text)))

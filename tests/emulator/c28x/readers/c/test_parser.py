@@ -158,6 +158,10 @@ def test_nothing_is_an_empty_file() -> None:
     ("text", "message"),
     [
         ("int x\nint y;", "t.c:1:6: expected ';' after 'x'; found 'int' in line 2"),
+        (
+            "#define A 0\nenum E {\n  A = 1 };",
+            "t.c:2:9: expected a name after '{'; found '0' in line 3, out of the macro text at t.c:1:11",
+        ),
         ("int x = 5 6;", "t.c:1:11: expected ';', found '6'"),
         ("void f(void) { x = ; }", "t.c:1:20: expected an expression, found ';'"),
         ("void f(void) { g(1,); }", "t.c:1:20: expected an expression, found ')'"),

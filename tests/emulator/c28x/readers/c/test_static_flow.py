@@ -10,7 +10,7 @@ import pytest
 from tests.emulator.c28x.readers.c.workshop import findings_of
 
 HEAD = (
-    "volatile int port = 0; int other = 3; struct P { int x, y; }; void take(struct P p) { port = p.x; }"
+    "volatile int port = 0; int other = 3; struct P { int x, y; } both; void take(struct P p) { port = p.x; }"
     " int flags(unsigned long base) { return *(volatile int *)(base + 2); }\n"
     "int f(int n)\n"
 )
@@ -37,6 +37,15 @@ WRITTEN = [
     "{ int i, x; for (i = 0, x = 0; i < n && x < 9; i++, x += port) ; return x; }",
     # `ok` is not 0 only where x was written.
     "{ int x, ok; ok = n > 2 && (x = port, x > 1); if (ok) return x; return 0; }",
+    # A bit is 0 or 1.
+    "{ int x, bit = n & 1; if (bit == 0) x = port; else if (bit == 1) x = 4; return x; }",
+    "{ int x, bit = n > 2; if (bit) x = 3; else if (!bit) x = 4; return x; }",
+    "{ int x; unsigned two = n & 3u; if (two == 0 || two > 2) x = 3; else if (two < 2) x = 4; else if (two == 2) x = 5;"
+    " return x; }",
+    "{ struct P *at = &both; int x; at->x = n & 1; at->y = port; if (at->x == 0) x = 3; else if (at->x == 1) x = 4;"
+    " return x; }",
+    "{ int x, k; both.x = n & 1; for (k = 0; k < n; k++) port = k; both.x = n > 3; if (both.x == 1) x = 3;"
+    " else if (both.x == 0) x = 4; return x; }",
 ]
 
 
@@ -53,12 +62,38 @@ UNWRITTEN = [
     "{ int x; switch (n) { case 0: if (port) break; x = 2; break; default: x = 3; } return x; }",
     "{ int x; switch (n) { case 0: x = 1; break; case 1: port = 2; default: port = x; } return 1; }",
     "{ int i, x; for (i = 0; i < n && i < 9; i++, x += port) ; return i; }",
+    # There are other values, or another one by now.
+    "{ int x, two = n & 3; if (two == 0) x = 3; else if (two == 1) x = 4; return x; }",
+    "{ int x, bit = n & 1; bit = n; if (bit == 0) x = 3; else if (bit == 1) x = 4; return x; }",
+    "{ int x, k, bit = n & 1; for (k = 0; k < n; k++) bit = port; if (bit == 0) x = 3; else if (bit == 1) x = 4;"
+    " return x; }",
+    "{ int x; volatile int bit = n & 1; if (bit == 0) x = 3; else if (bit == 1) x = 4; return x; }",
+    "{ struct P *at = &both; int x; at->x = n & 1; take(both); if (at->x == 0) x = 3; else if (at->x == 1) x = 4;"
+    " return x; }",
+    "{ struct P *at = &both, *to = at + port; int x; at->x = n & 1; to->x = n; if (at->x == 0) x = 3;"
+    " else if (at->x == 1) x = 4; return x; }",
+    "{ struct P *at = &both; int x; at->x = n & 1; at = at + port; if (at->x == 0) x = 3; else if (at->x == 1) x = 4;"
+    " return x; }",
+    "{ int x, bit = -(n & 1); if (bit == 0) x = 3; else if (bit == 1) x = 4; return x; }",
 ]
 
 
 @pytest.mark.parametrize("body", UNWRITTEN)
 def test_a_way_without_a_write_is_found(body: str) -> None:
     assert "maybe-uninitialised" in told(body)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "{ int bit = n & 1; if (bit == 0) return 1; else if (bit == 1) return 2; else port = 9; return 0; }",
+        "{ int bit = n & 1; if (bit == 0) return 1; else if (bit == 1) return 2; }",
+        "{ int bit = n & 1; if (bit > 1) port = 9; return bit; }",
+        "{ int bit = n & 1; while (bit == 2) { port = 9; bit = port; } return bit; }",
+    ],
+)
+def test_a_branch_that_is_there_to_be_safe_is_not_told(body: str) -> None:
+    assert not told(body) & {"unreachable", "missing-return", "maybe-uninitialised"}
 
 
 #: Every value of `x` is read on some way.
