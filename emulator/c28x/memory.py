@@ -40,6 +40,9 @@ SYSTEM: Final = (0x5D000, 0x5D400)
 NOTHING_ABOVE: Final = 0x1C000
 #: Memory with code that no file defines: TI's and the user's one-time programmable memory, and the boot ROM.
 ROM: Final = ((0x70000, 0x70400), (0x78000, 0x78400), (0x3F0000, 0x400000))
+#: Functions there that only load what TI measured of this very chip: Device_cal, and those of the ADCs' trims (HDR
+#: F2837xS_Examples.h).  Here oscillators and ADCs are exact, so that there is nothing to load.
+TRIMS: Final = (0x70282, *range(0x703AC, 0x703B6))
 #: The address of the first function whose address is taken, and the distance between two of them: CHOICE.
 CODE_BASE: Final = 0xC0000
 _CODE_STEP: Final = 16

@@ -36,7 +36,7 @@ from emulator.c28x.ctypes import (
 )  # fmt: skip
 from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.heap_block import HeapBlock
-from emulator.c28x.memory import ROM, Memory, Object, Pointer, from_words, zero_of
+from emulator.c28x.memory import ROM, TRIMS, Memory, Object, Pointer, from_words, zero_of
 from emulator.c28x.sites import Site
 from emulator.c28x.tree import NOWHERE, Declaration, Where
 from emulator.c28x.varargs import ArgumentBlock
@@ -745,8 +745,9 @@ class Runtime:
         if callable(function):
             return self._called(function, site)
         if isinstance(function, Pointer) and any(low <= function.addr < high for low, high in ROM):
-            message = f"the function at {function.addr:#x} of the ROM is not modelled: it does nothing here"
-            self.hit(site, "unmodelled", message)
+            if function.addr not in TRIMS:
+                message = f"the function at {function.addr:#x} of the ROM is not modelled: it does nothing here"
+                self.hit(site, "unmodelled", message)
             return _nothing
         message = f"{site.name} is called, but it points to no function"
         self.hit(site, "null-dereference", message)

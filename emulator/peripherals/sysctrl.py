@@ -2,10 +2,10 @@
 
 Modelled: PCLKCRx, which switch the registers of the modules that the board attaches, and inform the modules;
 TBCLKSYNC; CPUSYSLOCK1 for PCLKCRx; SOFTPRESx; LSPCLK and EPWMCLK dividers; the bit clocks of the CAN modules; RESC; the
-wait for the PLL's lock; the clock of CPU timer 2.
+wait for the PLL's lock; the clock of CPU timer 2, with AUXPLLCLK as one.
 Not modelled: a SYSCLK other than 200 MHz.  SYSCLK is 200 MHz from the first instruction; if PLL, divider and oscillator
 are set to another frequency for `_SETTLED`, that is reported.  Not modelled either: the 5 cycles that a module takes to
-answer after its gate opens, low-power modes, trims, AUXPLLCLK, a clock at AUXCLKIN.
+answer after its gate opens, low-power modes, trims, a clock at AUXCLKIN.
 Time: everything takes effect at the write, except LOCKS, which comes `PLL_LOCK` after a multiplier was written.
 CHOICE: the crystal of the CAN has 10 MHz, as on the LaunchPad.
 CHOICE: for CPU timer 2 an oscillator has the frequency from which PLL and divider, as they are set, make SYSCLK; it has
@@ -26,6 +26,7 @@ from emulator.cpu import Cpu
 from emulator.registers.cell import Cell
 from emulator.registers.core import ALL, Block
 from emulator.registers.sysctrl import (
+    AUXPLLCTL1,
     CPUSYSLOCK1,
     SYSPLLCTL1,
     SYSPLLSTS,
@@ -52,9 +53,10 @@ _CRYSTALS_HZ: Final = (10_000_000, 20_000_000)
 _XTAL: Final = 1
 #: Start-up code lets SYSCLK run slower for a while before it sets the last divider.
 _SETTLED: Final = 1000 * CYCLES_PER_US
-#: TMR2CLKSRCSEL: SYSCLK, and INTOSC1, INTOSC2, XTAL (HDR cputimer.h of driverlib).
+#: TMR2CLKSRCSEL: SYSCLK, and INTOSC1, INTOSC2, XTAL, and AUXPLLCLK (HDR cputimer.h of driverlib).
 _SYSCLK: Final = 0
 _OSCILLATORS: Final = (1, 2, 3)
+_AUXPLL: Final = 6
 #: TMR2CLKPRESCALE: /1 to /16.
 _MAX_PRESCALE: Final = 4
 
@@ -86,6 +88,8 @@ class SysCtrl:
         clkcfg.bind("SYSCLKDIVSEL", write=self._write_SYSCLKDIVSEL)
         for name in ("CLKSRCCTL1", "SYSPLLCTL1"):
             clkcfg.bind(name, write=partial(self._write_source, clkcfg.registers[name]))
+        for name in ("AUXPLLCTL1", "AUXPLLMULT", "AUXCLKDIVSEL"):
+            clkcfg.bind(name, write=partial(self._write_aux, clkcfg.registers[name]))
         cpusys.bind("TMR2CLKCTL", write=self._write_TMR2CLKCTL)
 
     def reset(self, cause: str = "POR") -> None:
@@ -145,7 +149,8 @@ class SysCtrl:
         self._cpu.clock.cancel(self._settling)
         clkcfg = self._clkcfg.registers
         divider = 2 * (clkcfg["SYSCLKDIVSEL"].value & 0x3F) or 1
-        factor = (self._quarters if clkcfg["SYSPLLCTL1"].value & SYSPLLCTL1.PLLCLKEN.mask else 4) / 4 / divider
+        on = clkcfg["SYSPLLCTL1"].value & SYSPLLCTL1.PLLCLKEN.mask
+        factor = (_quarters(clkcfg["SYSPLLMULT"]) if on else 4) / 4 / divider
         crystal = clkcfg["CLKSRCCTL1"].value & 3 == _XTAL
         low, high = _CRYSTALS_HZ if crystal else (_OSC_HZ, _OSC_HZ)
         if not low * factor <= SYSCLK_HZ <= high * factor:
@@ -156,21 +161,21 @@ class SysCtrl:
             )  # fmt: skip
 
     @property
-    def _quarters(self) -> int:
-        """The multiplier of the PLL, in quarters."""
-        multiplier = self._clkcfg.registers["SYSPLLMULT"].value
-        return 4 * (multiplier & 0x7F) + (multiplier >> 8 & 3)
-
-    @property
     def timer2_cycles(self) -> int:
         """SYSCLK cycles between two counts of CPU timer 2's input.  CHOICE: whole ones."""
         control = self._cpusys.registers["TMR2CLKCTL"].value
-        if control & 7 not in _OSCILLATORS:
+        source = control & 7
+        if source not in (*_OSCILLATORS, _AUXPLL):
             return 1
-        quarters = self._quarters
-        divider = 2 * (self._clkcfg.registers["SYSCLKDIVSEL"].value & 0x3F) or 1
-        cycles = round(quarters / (4 * divider)) if quarters > 3 else _WITHOUT_PLL
-        return max(1, cycles) << min(control >> 3 & 7, _MAX_PRESCALE)
+        clkcfg = self._clkcfg.registers
+        quarters = _quarters(clkcfg["SYSPLLMULT"])
+        divider = 2 * (clkcfg["SYSCLKDIVSEL"].value & 0x3F) or 1
+        cycles = quarters / (4 * divider) if quarters > 3 else _WITHOUT_PLL
+        if source == _AUXPLL:
+            on = clkcfg["AUXPLLCTL1"].value & AUXPLLCTL1.PLLCLKEN.mask
+            factor = _quarters(clkcfg["AUXPLLMULT"]) / 4 if on else 1.0
+            cycles = cycles * (1 << (clkcfg["AUXCLKDIVSEL"].value & 3)) / max(factor, 1.0)
+        return max(1, round(cycles)) << min(control >> 3 & 7, _MAX_PRESCALE)
 
     @property
     def lspclk_divider(self) -> int:
@@ -280,11 +285,20 @@ class SysCtrl:
         register = self._cpusys.registers["TMR2CLKCTL"]
         register.store(word, lanes)
         source = register.value & 7
-        if source != _SYSCLK and source not in _OSCILLATORS:
+        if source not in (_SYSCLK, *_OSCILLATORS, _AUXPLL):
             path = f"{register.path}.TMR2CLKSRCSEL"
-            message = f"{path} = {source} (AUXPLLCLK, or reserved) is not modelled: CPU timer 2 counts SYSCLK"
+            message = f"{path} = {source} is reserved: CPU timer 2 counts SYSCLK here"
             self._cpu.findings.report("unmodelled", message, object=path, value=source)
+        self._tell_timer2()
+
+    def _write_aux(self, register: Cell, word: int, lanes: int = ALL) -> None:
+        register.store(word, lanes)
         self._tell_timer2()
 
     def _tell_timer2(self) -> None:
         self.timer2_changed.emit(self.timer2_cycles)
+
+
+def _quarters(register: Cell) -> int:
+    """The multiplier of a PLL, in quarters."""
+    return 4 * (register.value & 0x7F) + (register.value >> 8 & 3)

@@ -250,7 +250,7 @@ class CLKSRCCTL2(Register, bits=32, eallow=True):
     """Clock sources of CAN and USB.  TRM CLK_CFG_REGS; HDR CLKSRCCTL2_BITS."""
     CANBBCLKSEL     = F(5, 4, RW, 0, "bit clock of CAN-B: 0 SYSCLK, 1 crystal, 2 AUXCLKIN")
     CANABCLKSEL     = F(3, 2, RW, 0, "bit clock of CAN-A: 0 SYSCLK, 1 crystal, 2 AUXCLKIN")
-    AUXOSCCLKSRCSEL = F(1, 0, RW, 0, "source of AUXOSCCLK", modelled=False)
+    AUXOSCCLKSRCSEL = F(1, 0, RW, 0, "source of AUXOSCCLK: 0 INTOSC2, 1 crystal, 2 AUXCLKIN")
 
 
 class CLKSRCCTL3(Register, bits=32, eallow=True):
@@ -279,14 +279,14 @@ class SYSPLLSTS(Register, bits=32, eallow=True):
 
 class AUXPLLCTL1(Register, bits=32, eallow=True):
     """Second PLL, control.  TRM CLK_CFG_REGS; HDR AUXPLLCTL1_BITS."""
-    PLLCLKEN = F(1, RW, 0, "PLL drives AUXPLLCLK", modelled=False)
-    PLLEN    = F(0, RW, 0, "PLL on", modelled=False)
+    PLLCLKEN = F(1, RW, 0, "PLL drives AUXPLLCLK")
+    PLLEN    = F(0, RW, 0, "PLL on")
 
 
 class AUXPLLMULT(Register, bits=32, eallow=True):
     """Second PLL, multiplier.  TRM CLK_CFG_REGS; HDR AUXPLLMULT_BITS."""
-    FMULT = F(9, 8, RW, 0, "fraction, quarters", modelled=False)
-    IMULT = F(6, 0, RW, 0, "integer part", modelled=False)
+    FMULT = F(9, 8, RW, 0, "fraction, quarters")
+    IMULT = F(6, 0, RW, 0, "integer part")
 
 
 class AUXPLLSTS(Register, bits=32, eallow=True):
@@ -298,7 +298,7 @@ class AUXPLLSTS(Register, bits=32, eallow=True):
 
 class AUXCLKDIVSEL(Register, bits=32, eallow=True):
     """Second PLL, divider.  TRM CLK_CFG_REGS; HDR AUXCLKDIVSEL_BITS."""
-    AUXPLLDIV = F(1, 0, RW, 1, "AUXPLLCLK: 0 = /1, 1 = /2, 2 = /4, 3 = /8", modelled=False)
+    AUXPLLDIV = F(1, 0, RW, 1, "AUXPLLCLK: 0 = /1, 1 = /2, 2 = /4, 3 = /8")
 
 
 class XCLKOUTDIVSEL(Register, bits=32, eallow=True):

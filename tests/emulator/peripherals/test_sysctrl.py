@@ -211,8 +211,31 @@ def test_an_oscillator_has_the_frequency_that_the_PLL_makes_SYSCLK_of(
     assert told[-1] == 1
 
 
-@pytest.mark.parametrize("source", [4, 5, 6, 7])
-def test_a_clock_of_timer_2_that_is_not_modelled_is_told(source: int) -> None:
+@pytest.mark.parametrize(
+    ("multiplier", "divider", "on", "prescale", "cycles"),
+    [
+        # SYSCLK is 20 times the oscillator; the second PLL has a multiplier of its own.
+        (0, 0, False, 0, 20), (0, 3, False, 0, 160), (12, 1, False, 0, 40), (12, 1, True, 0, 3), (10, 3, True, 2, 64),
+        (12 | 2 << 8, 3, True, 0, 13), (127, 0, True, 0, 1),
+    ],
+)  # fmt: skip
+def test_AUXPLLCLK_is_made_of_an_oscillator(
+    multiplier: int, divider: int, on: bool, prescale: int, cycles: int
+) -> None:
+    bench = Bench()
+    told: list[int] = []
+    bench.sysctrl.timer2_changed.connect(told.append)
+    bench.cpusys.TMR2CLKCTL.all = 6 | prescale << 3
+    bench.clkcfg.SYSPLLMULT.all = 20
+    bench.clkcfg.AUXCLKDIVSEL.all = divider
+    bench.clkcfg.AUXPLLMULT.all = multiplier
+    bench.clkcfg.AUXPLLCTL1.bit.PLLCLKEN = on
+    assert told[-1] == cycles
+    assert bench.findings.of("unmodelled") == []
+
+
+@pytest.mark.parametrize("source", [4, 5, 7])
+def test_a_reserved_clock_of_timer_2_is_told(source: int) -> None:
     bench = Bench()
     bench.cpusys.TMR2CLKCTL.bit.TMR2CLKSRCSEL = source
     assert [f.object for f in bench.findings.of("unmodelled")] == ["CpuSysRegs.TMR2CLKCTL.TMR2CLKSRCSEL"]
