@@ -134,7 +134,7 @@ def _function(tried: CheckedFunction, found: Roles, ran: ProgramOutcome | None) 
     if tried.fault:
         notes.append(f"one of them ended in {tried.fault}")
     if tried.endless:
-        notes.append("it does not return: it has an endless loop")
+        notes.append("it does not return: it has an endless loop, or sleeps until an interrupt comes")
     elif tried.cut:
         notes.append(f"{tried.cut} of them were stopped: they computed for too long")
     return CalledFunction(
