@@ -264,10 +264,12 @@ class Pie:
         if entry is not None:
             entry[0]()
         else:
+            reserved = "the line is reserved, no module of this chip requests it, and its entry is not modelled"
+            empty = "nothing was written to its entry of PieVectTable"
             self._cpu.findings.report(
                 "interrupt-without-handler",
-                f"{_name(vector)} (vector id {vector:#04x}) was taken but has no handler: nothing was written to its "
-                "entry of PieVectTable",
+                f"{_name(vector)} (vector id {vector:#04x}) was taken but has no handler: "
+                f"{empty if vector in _ENTRIES else reserved}",
                 object=f"vector {vector:#04x}", cause=self._enabled_by.get(vector),
             )  # fmt: skip
 

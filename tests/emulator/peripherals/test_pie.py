@@ -168,6 +168,18 @@ def test_an_interrupt_without_handler_is_a_finding() -> None:
     bench.pie.line(1, 1)()
     assert bench.run() == []
     assert [f.rule for f in bench.findings] == ["interrupt-without-handler"]
+    assert "nothing was written" in next(iter(bench.findings)).message
+
+
+def test_a_reserved_interrupt_is_said_to_be_one() -> None:
+    bench = Bench()
+    bench.enable(4, 1 << 6)
+    bench.pie.set_vector(vector_id(4, 7), None)
+    bench.regs.PIEIFR4.all = 1 << 6
+    assert bench.run() == []
+    assert "interrupt 4.7 (vector id 0x3e) was taken but has no handler: the line is reserved" in (
+        next(iter(bench.findings)).message
+    )
 
 
 @given(st.lists(st.tuples(st.integers(1, 12), st.integers(1, 16)), max_size=30))
