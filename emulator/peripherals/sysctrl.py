@@ -53,10 +53,10 @@ _CRYSTALS_HZ: Final = (10_000_000, 20_000_000)
 _XTAL: Final = 1
 #: Start-up code lets SYSCLK run slower for a while before it sets the last divider.
 _SETTLED: Final = 1000 * CYCLES_PER_US
-#: TMR2CLKSRCSEL: SYSCLK, and INTOSC1, INTOSC2, XTAL, and AUXPLLCLK (HDR cputimer.h of driverlib).
+#: TMR2CLKSRCSEL: SYSCLK; AUXPLLCLK; INTOSC1, INTOSC2, XTAL and AUXPLLCLK (HDR cputimer.h of driverlib).
 _SYSCLK: Final = 0
-_OSCILLATORS: Final = (1, 2, 3)
 _AUXPLL: Final = 6
+_OTHER_CLOCKS: Final = (1, 2, 3, 6)
 #: TMR2CLKPRESCALE: /1 to /16.
 _MAX_PRESCALE: Final = 4
 
@@ -165,7 +165,7 @@ class SysCtrl:
         """SYSCLK cycles between two counts of CPU timer 2's input.  CHOICE: whole ones."""
         control = self._cpusys.registers["TMR2CLKCTL"].value
         source = control & 7
-        if source not in (*_OSCILLATORS, _AUXPLL):
+        if source not in _OTHER_CLOCKS:
             return 1
         clkcfg = self._clkcfg.registers
         quarters = _quarters(clkcfg["SYSPLLMULT"])
@@ -285,7 +285,7 @@ class SysCtrl:
         register = self._cpusys.registers["TMR2CLKCTL"]
         register.store(word, lanes)
         source = register.value & 7
-        if source not in (_SYSCLK, *_OSCILLATORS, _AUXPLL):
+        if source != _SYSCLK and source not in _OTHER_CLOCKS:
             path = f"{register.path}.TMR2CLKSRCSEL"
             message = f"{path} = {source} is reserved: CPU timer 2 counts SYSCLK here"
             self._cpu.findings.report("unmodelled", message, object=path, value=source)
