@@ -84,7 +84,8 @@ def By_PIEIER() -> void:
 # drv.c: By_IER
 def By_IER() -> void:
     if Ready():
-        IER |= M_INT13
+        IER |= M_INT13  # until the return: the other interrupt must come within
+        EINT()
     PieCtrlRegs.PIEACK.all = PIEACK_GROUP1
 
 
