@@ -170,6 +170,8 @@ angles of the C library are in radians. The message names both units, and says w
 `hil check` reports a value that goes to an object, a parameter or a result with another unit of the same quantity, and
 sums and comparisons of two units. A constant factor converts: `x_ms * 1000` is microseconds. A power of ten in the
 wrong direction, or the reverse of the right factor, is reported. Any other factor may mean something else, and is not.
+A product with 180/pi (57.3) is in degrees: it is reported where it, or an object that takes only such products, goes to
+`sinf` or to a value in radians.
 Values of two quantities are reported only if no sensor makes one of the other without a factor.
 
 A comment that speaks of a scale (`// in tenths`, `// counts per mV`), an amount in a name (`RATE_6400_HZ`), and an

@@ -12,6 +12,7 @@ sum of products with constants that add up to 1, as in a filter.  Other products
 
 A product with constants is in its unit or, if the constants convert it, in another: `x_ms * 1000` is in ms or in us.
 It is told if no scaling can have been meant, and the constant is a power of ten, or the reverse of what would convert.
+A product with 180/pi is in degrees, whatever its other factor is called; so is an object that takes only such values.
 
 CHOICE: values of two different quantities are told only if no sensor can have made one of the other without a factor:
 10 mV for a degree are tenths of a degree, and a sensor may give a microsecond for a millimetre.
@@ -22,7 +23,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
-from math import isclose, log10
+from math import isclose, log10, pi
 from typing import Final
 
 from emulator.c28x.ctypes import ArrayType, CType, FloatType, IntType, PointerType, StructType
@@ -57,6 +58,10 @@ from hil.drivers.unit_names import PhysicalUnit, UnitRemark, unit_of_text, words
 _KEEPS: Final = ("+", "-")
 #: The unit of angles in the C library.
 RADIANS: Final = replace(unit_of_text("rad") or PhysicalUnit(""), name="radians of the C library")
+DEGREES: Final = unit_of_text("degree") or PhysicalUnit("")
+#: What makes degrees of radians; the constants of programs are rounded (57.3).
+_DEGREES_PER_RADIAN: Final = 180 / pi
+_ROUNDED_PI: Final = 1e-3
 #: Functions of the C library whose result is an angle, those whose argument is one, and those that keep a unit.
 _ANGLES: Final = ("acos", "asin", "atan", "atan2")
 _OF_ANGLES: Final = ("cos", "sin", "tan")
@@ -133,12 +138,17 @@ class _Units:
                 if declared.word == "unit":
                     self._read_declaration(declared, functions, objects)
         self._members = members(self.files)
+        #: The text of objects at file scope that hold what was multiplied with 180/pi.
+        self._degrees: set[str] = set()
         #: Objects and members that the program converts where they are: their names are right at one time only.
         self._converted = {
             _name(target) for function in functions for target, value in _assignments(function)
             if _scales_itself(target, value)
         }  # fmt: skip
         for function in functions:
+            self._infer(function)
+        self._degrees = self._in_degrees(functions)
+        for function in functions if self._degrees else ():
             self._infer(function)
 
     def _read_declaration(self, declared: UserDeclaration, functions: list[Function], objects: list[Variable]) -> None:
@@ -175,6 +185,19 @@ class _Units:
             ):  # fmt: skip
                 stated_by = first.by if not first.by or first.by.startswith("value's") else f"value's {first.by}"
                 self.variables[variable] = replace(first, by=stated_by, of="")
+
+    def _in_degrees(self, functions: list[Function]) -> set[str]:
+        """The objects at file scope, by their text, that take only products with 180/pi, sums of them, and numbers."""
+        taken: dict[str, list[Measured | None]] = {}
+        for function in functions:
+            for target, value in _assignments(function):
+                root = target.root
+                if not isinstance(root, Variable) or root.kind != "global" or root.escapes:
+                    continue
+                if isinstance(target.ctype, FloatType) and not _only_numbers(value, target):
+                    own = self._of_lvalue(target)
+                    taken.setdefault(target.text, []).append(self._value(value) if own is None else None)
+        return {text for text, values in taken.items() if text and all(v == _OF_PRODUCT for v in values)}
 
     def of(self, function: Function) -> list[UnitMismatch]:
         """The places in one function where units are mixed."""
@@ -281,6 +304,8 @@ class _Units:
         if e.op == "*" and _plain(left) is not None:
             left, right = right, left
         factor, value = _plain(right), self._value(left)
+        if _makes_degrees(e.op, right) and (value is None or (value.factor == 1.0 and value.unit.name[:3] == "rad")):
+            return _OF_PRODUCT
         if factor is None or value is None or not factor:
             return None
         if e.op in ("<<", ">>"):
@@ -295,6 +320,8 @@ class _Units:
         """The unit of an object, or of a member, element or target."""
         root = lvalue.root
         whole = isinstance(root, Variable) and _is_whole(lvalue)
+        if lvalue.text in self._degrees and isinstance(root, Variable) and root.kind == "global":
+            return _OF_PRODUCT
         if isinstance(root, Variable) and root in self.variables:
             return self.variables[root]
         name = _name(lvalue)
@@ -338,12 +365,38 @@ class _Units:
         return own, parameter.declaration.name
 
 
+#: The unit of a product with 180/pi.
+_OF_PRODUCT: Final = Measured(DEGREES, "factor 180/pi")
+
+
+def _makes_degrees(op: str, by: Expr) -> bool:
+    """Whether a product or quotient with a constant is one with 180/pi."""
+    if not isinstance(by, Const) or not isinstance(by.value, float) or by.value <= 0:
+        return False
+    factor = by.value if op == "*" else 1 / by.value if op == "/" else 0.0
+    return isclose(factor, _DEGREES_PER_RADIAN, rel_tol=_ROUNDED_PI)
+
+
+def _only_numbers(value: Expr, target: LValue) -> bool:
+    """Whether a value is a constant, or the target itself plus or minus a constant: a start, or a turn taken off."""
+    match bare(value):
+        case Const():
+            return True
+        case Binary(op="+" | "-", left=left, right=right) if isinstance(bare(right), Const):
+            own = bare(left)
+            return isinstance(own, Load) and own.lvalue == target
+    return False
+
+
 def _mismatch(given: Measured, wanted: Measured, value: str, target: str) -> str:
     """The message about a value that goes to a target of another unit; "": it may go there."""
     one, other = given.unit, wanted.unit
     if one == other or wanted.factor != 1.0 or given.named or wanted.named:
         return ""
     ratio, factor = one.ratio(other), given.factor
+    for derived, stated_one in ((given, wanted), (wanted, given)):
+        if derived.by.endswith(_OF_PRODUCT.by) and stated_one.unit.name[:3] != "rad":
+            return ""  # of other units the number may be a factor that is no 180/pi
     if RADIANS in (one, other) and not (one.scale and other.scale):
         return ""  # declared by a name that may be another one for radians
     if not ratio:

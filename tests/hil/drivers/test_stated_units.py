@@ -77,6 +77,7 @@ int16_t temp_c;
 int16_t levelMv;            // mV per count
 uint32_t age_us;
 float tilt_deg, tilt_rad;
+float bow = 0, rudder = 0, drift_dps = 0;
 uint16_t rateKhz;
 int16_t voltage_mV, duty_percent;
 void delay_ms(uint16_t n) { tickMs = n; }
@@ -120,6 +121,12 @@ MIXED = [
     ("tilt_deg = tilt_rad * 0.01745329f;",
      "tilt_rad * 0.0174533 is tilt_rad (rad by its name) times 0.01745, tilt_deg is in degree by its name: from rad to "
      "degree the factor is 57.3"),
+    ("tilt_rad += 0.1f * bow * 57.29578f;",
+     "tilt_rad is in rad by its name, 0.1 * bow * 57.2958 in degree by its factor 180/pi"),
+    ("bow += rudder * (180.0f / 3.14159265f); if (bow > 180.0f) bow -= 360.0f; rudder = cosf(bow);",
+     "bow is in degree by its factor 180/pi, the angle of cos in radians of the C library"),
+    ("float a = rudder / 0.0174533f; bow = sinf(a);",
+     "a is in degree by its value's factor 180/pi, the angle of sin in radians of the C library"),
 ]  # fmt: skip
 
 
@@ -145,6 +152,10 @@ def test_a_value_in_another_unit_is_told(tmp_path: Path, body: str, message: str
     # A factor with a name; a function that is named after what it takes; a macro that takes a product.
     "gapCm = gapMm * SIDES; stamp_us = period_hz(3); stamp_us = rpmFromMs(3);",
     "PAUSE_US(POLL_US); PAUSE_US(tickMs * 1000L); PAUSE_US(tickMs + POLL_MS);",
+    # Degrees that go back to radians, or to something in degrees; a number that is no 180/pi; an object of both units.
+    "bow = rudder * 57.3f; rudder = cosf(bow * 0.0174533f) + sinf(bow / 57.3f); tilt_deg = bow;",
+    "drift_dps = tilt_rad * 57.3f; gapMm = (int16_t)(rudder * 57.3f); pose.angle = (int16_t)(rudder * 57.3f);",
+    "bow = rudder * 57.3f; bow = tilt_rad; rudder = cosf(bow);",
 ])  # fmt: skip
 def test_a_converted_value_is_not_told(tmp_path: Path, body: str) -> None:
     assert told(tmp_path, f"{HEAD}void f(void)\n{{\n    {body}\n}}\n", "unit-by-name") == []
