@@ -69,6 +69,30 @@ end.
         how="static",
     ),
     _rule(
+        "not-begun-again",
+        Severity.WARNING,
+        "A count or a flag is never begun again: it is right only the first time.",
+        """
+The first time all is well. The second time, the count goes on where it was, or the flag still stands.
+
+* A state ends when a count passes a limit, and the program can enter the state again. Nothing sets the count to 0: it
+  is the time since the start, and the state ends at once.
+* A text is ended where a count says (`line[length] = 0`), and used. Nothing sets the count to 0: the next text is
+  appended to it.
+* A flag says that a buffer was too small, and all that a test of it else leads to is refused. The index of the buffer
+  begins again, the flag is never taken back: one long message, and no other is heard.
+
+The check needs the source of a whole program. It knows counts that every statement only counts up, and flags that every
+statement sets to the same value. Not reported: a count that anything but such tests reads, as a clock is; a limit that
+only another condition makes act; a state that cannot come again, as a delay after the start or a last try; a text that
+grows by design; a flag that its name or comment calls latched, a trip or a fault.
+
+**Fix:** begin again where the state is entered, or the message is done.
+""",
+        "CERT MSC07-C",
+        how="static",
+    ),
+    _rule(
         "stamp-backwards",
         Severity.ERROR,
         "The age of a time stamp is computed with its operands swapped.",

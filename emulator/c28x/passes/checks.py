@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from emulator.c28x.passes.anew import check_begun_anew
+from emulator.c28x.passes.begun_again import check_begun_again
 from emulator.c28x.passes.copies import check_copies
 from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.masked import check_masked
@@ -67,6 +68,7 @@ def check(
         for variable in module.variables:
             file_scope(variable, initialisers[variable], report)
     States(modules, entries, stamps).check(reports)
+    check_begun_again(modules, reports)
     owners = {function: report for module, report in reports.items() for function in module.functions}
     for function, s, stamp, against in stamps.cuts():
         name = source_text(stamp)

@@ -281,4 +281,56 @@ def Turn(number: uint16) -> uint16:
 """,
         ("Turn", (9,)),
     ),
+    static_pair(
+        "not-begun-again",
+        "the time in a state is the time since the start",
+        """
+State: uint16 = 0
+Stay: uint16 = 0
+Button: uint16 = 0
+def Step() -> uint16:
+    Stay += 1
+    match State:
+        case 0:
+            if Button:
+                State = 1
+        case 1:
+            if Stay > 100:  # <-
+                State = 2
+        case 2:
+            if not Button:
+                State = 0
+    return State
+def main() -> int16:
+    i: int16
+    for i in range(3):
+        Step()
+    return 0
+""",
+        """
+State: uint16 = 0
+Stay: uint16 = 0
+Button: uint16 = 0
+def Step() -> uint16:
+    Stay += 1
+    match State:
+        case 0:
+            if Button:
+                State = 1
+                Stay = 0
+        case 1:
+            if Stay > 100:
+                State = 2
+        case 2:
+            if not Button:
+                State = 0
+    return State
+def main() -> int16:
+    i: int16
+    for i in range(3):
+        Step()
+    return 0
+""",
+        ("main", ()),
+    ),
 )

@@ -1,0 +1,448 @@
+"""Static check of counts and flags that are never begun again: `not-begun-again`.
+
+The check needs a whole program (one with a `main`), because it must see all statements.  It knows the integers at file
+scope (and `static` ones) that every statement only counts up, or only sets to one value.  Three uses of them are wrong
+from the second time on:
+
+* the time in a state, which the program can enter again (`if (stateMs > LIMIT) state = FAULT`);
+* the place where a text ends, in a function that ends one text after the other (`line[length] = 0`);
+* the mark that a buffer was too small, while the buffer's index begins again (`if (tooLong || ...) bad++; else ...`).
+
+Clocks (read by any other statement), numbers of events, delays after the start, and faults that are latched are not
+meant: the conditions stand at each use.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Container, Iterable, Iterator
+from pathlib import Path
+from typing import Any, Final
+
+from emulator.c28x.ctypes import ArrayType, IntType
+from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    Assign,
+    Binary,
+    Call,
+    Compare,
+    Conditional,
+    Const,
+    Declare,
+    Expr,
+    FallThrough,
+    Function,
+    If,
+    Index,
+    Load,
+    Logic,
+    LValue,
+    Not,
+    Stmt,
+    Switch,
+    Variable,
+)  # fmt: skip
+from emulator.c28x.tree_queries import (
+    addressed,
+    assigned,
+    bare,
+    blocks,
+    calls,
+    last_loop,
+    parts,
+    roots,
+    statements,
+    within,
+)
+
+#: Names and comments of flags that are meant to stay.
+_LATCHED: Final = re.compile(r"latch|trip|fault|fail|lock|sticky|perman|for good|until reset", re.IGNORECASE)
+#: What a function may give to a state: a constant, the parameter with this number, or anything.
+_Given = tuple[str, int]
+_ANYTHING: Final[_Given] = ("anything", 0)
+
+
+def check_begun_again(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
+    """Report the uses of counts and flags that are wrong because nothing begins them again."""
+    functions = [function for module in modules for function in module.functions]
+    if any(function.name == "main" and function.body for function in functions):
+        _Program(functions, {f: report for module, report in reports.items() for f in module.functions}).check()
+
+
+class _Program:
+    """The objects of a program that are only counted up or only set, and their uses."""
+
+    def __init__(self, functions: list[Function], reports: dict[Function, StaticReport]) -> None:
+        self.functions = functions
+        self.reports = reports
+        #: The assignments to each object.
+        self.writes: dict[Variable, list[Stmt]] = {}
+        taken: set[Variable] = set()
+        for function in functions:
+            taken |= addressed(within(function.body))
+            for s in statements(function.body):
+                if (variable := assigned(s)) is not None:
+                    self.writes.setdefault(variable, []).append(s)
+        plain = [v for v in self.writes if is_number(v) and v not in taken and not v.escapes]
+        #: Those that are only counted up, and those that are only set to one value which they did not have.
+        self.counts = {v for v in plain if all((step_of(s, v) or 0) > 0 for s in self.writes[v])}
+        self.flags = {v for v in plain if self._only_set(v)}
+        self.counts -= {v for v in self.counts if self._read_otherwise(v)}
+        self._given: dict[Variable, dict[str, set[_Given]]] = {}
+
+    def _only_set(self, v: Variable) -> bool:
+        values = {constant_of(s.value) if isinstance(s, Assign) else None for s in self.writes[v]}
+        return len(values) == 1 and None not in values and values != {start_of(v)}
+
+    def _read_otherwise(self, v: Variable) -> bool:
+        """Whether a count is read by anything but its steps, comparisons with constants, and subscripts: a clock is."""
+        for function in self.functions:
+            for s in statements(function.body):
+                if step_of(s, v) is not None or (isinstance(s, Declare) and s.variable.kind == "temporary"):
+                    continue
+                for root in roots(s):
+                    allowed = {
+                        id(p) for q in parts(root)
+                        if isinstance(q, Index) or (isinstance(q, Compare) and _against_constant(q) is v)
+                        for p in parts(q)
+                    }  # fmt: skip
+                    if any(isinstance(p, LValue) and p.root is v and id(p) not in allowed for p in parts(root)):
+                        return True
+        return False
+
+    def check(self) -> None:
+        for function in self.functions:
+            for s in statements(function.body):
+                if isinstance(s, Switch) and (state := named(s.subject)) is not None and self.counts:
+                    self._times(function, s, state)
+                for block in blocks(s):
+                    self._text_end(function, block)
+                if isinstance(s, If) and self.flags:
+                    self._too_small(s)
+
+    # The time in a state
+
+    def _times(self, function: Function, switch: Switch, state: Variable) -> None:
+        """Report tests of a count that lead out of a state which can be entered again."""
+        graph = self._graph(function, switch, state)
+        if graph is None:
+            return
+        for labels, body in switch.cases:
+            own = set(labels) if labels is not None else graph.keys() - {x for xs, _ in switch.cases for x in xs or ()}
+            for s in statements(body):
+                if not isinstance(s, If):
+                    continue
+                for count, branch in _passed(s):
+                    to = self._leads(branch, state) if count in self.counts else set()
+                    numbers = {value for kind, value in to if kind == "constant"}
+                    if numbers - own and _ANYTHING not in to and own & _reached(graph, numbers):
+                        message = (
+                            f"nothing begins {count.declaration.name} again: once it has passed this limit, each later "
+                            "stay in this state ends at once"
+                        )
+                        self.reports[function].report(
+                            function, s.where, "not-begun-again", message, object=count.declaration.path,
+                            declaration=count.declaration,
+                        )  # fmt: skip
+
+    def _graph(self, function: Function, switch: Switch, state: Variable) -> dict[int, set[int]] | None:
+        """The states, each with those that its case and the statements beside the switch lead to; None: not known."""
+        inside = [s for _, body in switch.cases for s in statements(body)]
+        by_cases = _reached_by({f.path: f.calls for f in self.functions}, _called(inside))
+        beside = [s for f in self._elsewhere(function, by_cases) for s in self._again(f)]
+        left_out = set(map(id, inside))
+        always = self._of_statements((s for s in beside if id(s) not in left_out), state, by_cases)
+        by_case = [(labels, self._leads(body, state)) for labels, body in switch.cases]
+        every = always.union(*(given for _, given in by_case))
+        if any(kind != "constant" for kind, _ in every):
+            return None
+        named_ones = {label for labels, _ in switch.cases for label in labels or ()}
+        known = named_ones | {value for _, value in every} | {start_of(state)}
+        graph = {label: {value for _, value in always} for label in known}
+        for number, (labels, given) in enumerate(by_case):
+            body = switch.cases[number][1]
+            if body and isinstance(body[-1], FallThrough) and number + 1 < len(by_case):
+                given = given | by_case[number + 1][1]
+            for label in labels if labels is not None else known - named_ones:
+                graph[label] |= {value for _, value in given}
+        return graph
+
+    def _elsewhere(self, function: Function, by_cases: set[str]) -> list[Function]:
+        """The functions that run again and again, but those that the cases of a switch in `function` call."""
+        begin = [f.path for f in self.functions if f.interrupt]
+        begin += [path for f in self.functions if f.name == "main" for path in _called(self._again(f))]
+        repeated = _reached_by({f.path: f.calls for f in self.functions}, begin) - by_cases
+        return [f for f in self.functions if f.path in repeated or f.name == "main" or f is function]
+
+    @staticmethod
+    def _again(function: Function) -> list[Stmt]:
+        """The statements of a function that run each time; of `main`, those of its loop."""
+        loop = last_loop(function) if function.name == "main" else None
+        return list(statements(function.body if loop is None else loop.body))
+
+    def _leads(self, body: list[Stmt], state: Variable) -> set[_Given]:
+        return self._of_statements(statements(body), state)
+
+    def _of_statements(
+        self, body: Iterable[Stmt], state: Variable, called: Container[str] | None = None
+    ) -> set[_Given]:
+        """What statements, and the functions that they call, may give to a state.
+
+        Of functions that are not `called`, it is only what the statements pass to them: they are looked at themselves.
+        """
+        found: set[_Given] = set()
+        summaries = self._summaries(state)
+        parameters = tuple(v for f in self.functions for v in f.parameters) if called is not None else ()
+        for s in body:
+            if assigned(s) is state:
+                found |= _values(s.value, parameters) if isinstance(s, Assign) else {_ANYTHING}
+            for root in roots(s):
+                for p in parts(root):
+                    if isinstance(p, Call):
+                        given = summaries.get(p.function.path, set())
+                        if called is not None and p.function.path not in called:
+                            given = {one for one in given if one[0] == "parameter"}
+                        found |= _passed_on(given, p, parameters)
+        return {one for one in found if one[0] != "parameter"}  # their callers say which
+
+    def _summaries(self, state: Variable) -> dict[str, set[_Given]]:
+        """What each function, with those that it calls, may give to a state."""
+        if state in self._given:
+            return self._given[state]
+        found: dict[str, set[_Given]] = {}
+        grown = True
+        while grown:
+            grown = False
+            for function in self.functions:
+                mine = set(found.get(function.path, set()))
+                parameters = tuple(function.parameters)
+                for s in statements(function.body):
+                    if assigned(s) is state:
+                        mine |= _values(s.value, parameters) if isinstance(s, Assign) else {_ANYTHING}
+                    for root in roots(s):
+                        for p in parts(root):
+                            if isinstance(p, Call):
+                                mine |= _passed_on(found.get(p.function.path, set()), p, parameters)
+                if mine != found.get(function.path, set()):
+                    found[function.path], grown = mine, True
+        self._given[state] = found
+        return found
+
+    # The end of a text
+
+    def _text_end(self, function: Function, block: list[Stmt]) -> None:
+        """Report a text that is ended where a count says which nothing begins again, and then used."""
+        for number, s in enumerate(block):
+            match s:
+                case Assign(target=LValue(root=Variable(ctype=ArrayType()) as text, indices=[index]), value=value):
+                    count = named(index.expr)
+                case _:
+                    continue
+            if count not in self.counts or count is None or constant_of(value) != 0:
+                continue
+            if any(step_of(other, count) is not None for other in block):
+                continue  # a text that grows, and is ended anew behind each character
+            used = any(text in _roots_of(p) for later in block[number + 1:] for p in within([later]) if _passes(p))
+            marks = any(
+                isinstance(other, Assign) and constant_of(other.value) not in (None, 0) and assigned(other) is not None
+                for other in block
+            )  # fmt: skip
+            if used and not marks:
+                name = count.declaration
+                message = f"nothing begins {name.name} again: the next text is appended to this one"
+                self.reports[function].report(
+                    function, s.where, "not-begun-again", message, object=name.path, declaration=name,
+                )  # fmt: skip
+
+    # The mark that a buffer was too small
+
+    def _too_small(self, s: If) -> None:
+        """Report the tests of a mark that is set where a buffer is full, and that nothing takes back."""
+        match s.test:
+            case Compare(op="<" | "<=" | "!="):
+                fits, full = s.then, s.otherwise
+            case Compare(op=">" | ">=" | "=="):
+                fits, full = s.otherwise, s.then
+            case _:
+                return
+        index = _against_constant(s.test)
+        marks = {v for x in full if (v := assigned(x)) in self.flags}
+        if index is None or not marks or not any(step_of(x, index) == 1 for x in statements(fits)):
+            return
+        again = {f for f in self.functions for x in statements(f.body) if assigned(x) is index and _begins(x)}
+        for mark in marks:
+            if mark is None or _is_latched(mark):
+                continue
+            for function in self.functions:
+                if function not in again:
+                    continue
+                for test in statements(function.body):
+                    if isinstance(test, If) and _refuses(test, mark):
+                        name = mark.declaration
+                        message = (
+                            f"nothing takes {name.name} back, though {index.declaration.name} begins again: once it "
+                            "is set, all that follows is refused"
+                        )
+                        self.reports[function].report(
+                            function, test.where, "not-begun-again", message, object=name.path, declaration=name,
+                        )  # fmt: skip
+
+
+def is_number(v: Variable) -> bool:
+    """Whether an object is one integer at file scope (or `static`), and can be changed."""
+    return v.kind == "global" and isinstance(v.ctype, IntType) and not v.constant and v.address is None
+
+
+def start_of(v: Variable) -> int:
+    """The value of an integer at the start."""
+    start = constant_of(v.initial[0]) if v.initial else None
+    return start if start is not None else 0
+
+
+def constant_of(e: object) -> int | None:
+    """The value of a constant integer; None: it is none."""
+    inner = bare(e) if isinstance(e, Expr) else None
+    return inner.value if isinstance(inner, Const) and isinstance(inner.value, int) else None
+
+
+def named(e: Expr) -> Variable | None:
+    """The integer at file scope of which an expression is just the value."""
+    match bare(e):
+        case Load(lvalue=LValue(root=Variable(kind="global", ctype=IntType()) as v, indices=[])):
+            return v
+    return None
+
+
+def step_of(s: Stmt, v: Variable) -> int | None:
+    """The constant that a statement adds to an object; None: it does something else."""
+    if not isinstance(s, Assign) or assigned(s) is not v:
+        return None
+    match bare(s.value):
+        case Binary(op="+" | "-" as op, left=left, right=right) if (by := constant_of(right)) is not None:
+            stepped = bare(left)
+            root = stepped.lvalue.root if isinstance(stepped, Load) else None
+            # `v++` in an expression: its old value is a temporary of the same declaration.
+            old = isinstance(root, Variable) and root.kind == "temporary" and root.declaration == v.declaration
+            if root is v or old:
+                return by if op == "+" else -by
+    return None
+
+
+def _against_constant(e: Expr) -> Variable | None:
+    """The object that a comparison compares with a constant."""
+    if not isinstance(e, Compare):
+        return None
+    for side, other in ((e.left, e.right), (e.right, e.left)):
+        if constant_of(other) is not None:
+            return named(side)
+    return None
+
+
+def _passed(s: If) -> Iterator[tuple[Variable, list[Stmt]]]:
+    """The counts whose passing of a limit alone decides a test, each with the statements that run then."""
+    tests = s.test.operands if isinstance(s.test, Logic) and s.test.op == "or" else [s.test]
+    for test in tests:
+        count = _against_constant(test)
+        if not isinstance(test, Compare) or count is None:
+            continue
+        rises = test.op in (">", ">=") if named(test.left) is count else test.op in ("<", "<=")
+        falls = test.op in ("<", "<=") if named(test.left) is count else test.op in (">", ">=")
+        if rises:
+            yield count, s.then
+        elif falls and test is s.test:
+            yield count, s.otherwise
+
+
+def _reached(graph: dict[int, set[int]], first: set[int]) -> set[int]:
+    """The states that can be reached from some, with these."""
+    found: set[int] = set()
+    waiting = list(first)
+    while waiting:
+        state = waiting.pop()
+        if state not in found:
+            found.add(state)
+            waiting += graph.get(state, ())
+    return found
+
+
+def _called(body: Iterable[Stmt]) -> list[str]:
+    return [p.function.path for s in body for root in roots(s) for p in parts(root) if isinstance(p, Call)]
+
+
+def _reached_by(calls_of: dict[str, set[str]], first: list[str]) -> set[str]:
+    """The functions that some call, with these."""
+    found: set[str] = set()
+    waiting = list(first)
+    while waiting:
+        path = waiting.pop()
+        if path not in found:
+            found.add(path)
+            waiting += calls_of.get(path, ())
+    return found
+
+
+def _values(value: Expr, parameters: tuple[Variable, ...]) -> set[_Given]:
+    """What an expression may give."""
+    match bare(value):
+        case Const(value=int(number)):
+            return {("constant", number)}
+        case Conditional(then=then, otherwise=otherwise):
+            return _values(then, parameters) | _values(otherwise, parameters)
+        case Load(lvalue=LValue(root=Variable() as root, indices=[])) if root in parameters:
+            return {("parameter", parameters.index(root))}
+    return {_ANYTHING}
+
+
+def _passed_on(given: set[_Given], call: Call, parameters: tuple[Variable, ...]) -> set[_Given]:
+    """What a call gives, if its function gives `given`."""
+    found: set[_Given] = set()
+    for kind, number in given:
+        if kind != "parameter":
+            found.add((kind, number))
+        elif number < len(call.arguments):
+            found |= _values(call.arguments[number], parameters)
+    return found
+
+
+def _roots_of(e: Any) -> set[Variable]:
+    return {p.root for p in parts(e) if isinstance(p, LValue) and isinstance(p.root, Variable)}
+
+
+def _passes(e: Any) -> bool:
+    return isinstance(e, Call)
+
+
+def _begins(s: Stmt) -> bool:
+    return isinstance(s, Assign) and constant_of(s.value) is not None
+
+
+def _refuses(s: If, mark: Variable) -> bool:
+    """Whether a mark alone decides that what a test else leads to, which calls a function, does not happen."""
+    test = s.test
+    tests = test.operands if isinstance(test, Logic) else [test]
+    turned = isinstance(test, Logic) and test.op == "and"
+    for one in tests:
+        negated = isinstance(one, Not)
+        inner = one.operand if isinstance(one, Not) else one
+        if isinstance(inner, Compare) and _against_constant(inner) is mark:
+            zero = 0 in (constant_of(inner.left), constant_of(inner.right))
+            negated ^= (inner.op == "==") == zero
+        elif named(inner) is not mark:
+            continue
+        if len(tests) > 1 and negated != turned:
+            continue
+        kept = s.then if negated else s.otherwise
+        return any(calls(root) for x in statements(kept) for root in roots(x))
+    return False
+
+
+def _is_latched(v: Variable) -> bool:
+    """Whether the name of a flag, or the comment in its line, says that it is meant to stay."""
+    where = v.declaration.where
+    try:
+        lines = Path(where.file).read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:  # a text that is in no file
+        lines = []
+    line = lines[where.line - 1] if 0 < where.line <= len(lines) else v.declaration.name
+    return _LATCHED.search(line) is not None

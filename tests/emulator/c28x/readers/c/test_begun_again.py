@@ -1,0 +1,159 @@
+"""Counts and flags that nothing begins again: wrong programs, and their right twins."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from hil.image import Build
+from tests.emulator.c28x.readers.c.workshop import findings_of
+
+GATE = """typedef unsigned int Uint16;
+enum {{ SHUT, RISING, OPEN, STUCK }};
+static Uint16 gate = SHUT;
+static Uint16 stay = 0;
+Uint16 Button = 0, Top = 0, Shown = 0;
+static void Go(Uint16 next) {{ gate = next; {enter} }}
+static void Block(void) {{ Go(STUCK); }}
+static void Step(void)
+{{
+    stay++;
+    switch (gate) {{
+    case SHUT:
+        if (Button) Go(RISING);
+        break;
+    case RISING:
+        if (Top) Go(OPEN);
+        else {late}
+        break;
+    case OPEN:
+        if (!Button) Go(SHUT);
+        break;
+    default:
+        {stuck}
+        break;
+    }}
+}}
+int main(void)
+{{
+    for (;;) {{ Step(); Shown = gate; {turn} }}
+}}
+"""
+
+
+def told(text: str) -> list[str]:
+    """The lines at which `not-begun-again` is told."""
+    lines = text.splitlines()
+    return [lines[line - 1].strip() for rule, line in findings_of(text) if rule == "not-begun-again"]
+
+
+def gate(
+    enter: str = "", late: str = "if (stay > 500) Block();", stuck: str = "if (Button) Go(SHUT);", turn: str = ""
+) -> str:
+    return GATE.format(enter=enter, late=late, stuck=stuck, turn=turn)
+
+
+@pytest.mark.parametrize("text", [
+    gate(),
+    gate(late="if (stay >= 500 || Button > 1) gate = STUCK;"),
+    gate(late="if (500 < stay) Go(STUCK);"),
+    gate(late="if (stay < 500) Shown = 0; else Go(Button ? SHUT : STUCK);"),
+    # Another routine ends the last state.
+    gate(stuck="", turn="if (Button > 2) Go(SHUT);"),
+])  # fmt: skip
+def test_a_time_in_a_state_that_is_never_begun_again_is_told(text: str) -> None:
+    (line,) = told(text)
+    assert "stay" in line
+
+
+@pytest.mark.parametrize("text", [
+    gate(enter="stay = 0;"),
+    gate(turn="if (gate == SHUT) stay = 0;"),
+    # A last state: the fault is latched.
+    gate(stuck=""),
+    # A clock, which others read; the address is taken; a limit that only lets something else act.
+    gate(turn="Shown = stay;"),
+    gate(turn="{ Uint16 *p = &stay; *p = 0; }"),
+    gate(late="if (stay > 500 && Button) Block();"),
+    # Counted down, too.
+    gate(turn="if (Button) stay--;"),
+    # The limit does not end the state.
+    gate(late="if (stay > 500) Shown = 9;"),
+    # A delay after the start: the state does not come again.
+    gate(late="Shown = 1;").replace("if (Button) Go(RISING);", "if (stay > 50) Go(RISING);")
+    .replace("if (!Button) Go(SHUT);", "Shown = 2;").replace("if (Button) Go(SHUT);", ""),
+    # The state gets a value that is not known here.
+    gate(turn="if (Button) gate = Button;"),
+])  # fmt: skip
+def test_a_time_in_a_state_that_is_begun_again_or_means_something_else_is_silent(text: str) -> None:
+    assert told(text) == []
+
+
+TEXT = """typedef unsigned int Uint16;
+static char order[12] = "";
+static Uint16 length = 0;
+static Uint16 tooLong = 0;
+volatile char Came = 0;
+Uint16 Bad = 0, Done = 0, Good = 0;
+static void Obey(const char *text) {{ Good += text[0]; }}
+static void Take(char c)
+{{
+    if (c == 10) {{
+        {end}
+        {test}
+        {again}
+    }}
+    else if (length < 11) order[length++] = c;
+    else tooLong = 1;
+}}
+int main(void)
+{{
+    for (;;) {{ Take(Came); {turn} }}
+}}
+"""
+LENGTH, MARK = "length = 0;", "tooLong = 0;"
+END = "order[length] = 0;"
+REFUSE = "if (tooLong || length == 0) Bad++; else Obey(order);"
+
+
+def text(again: str = LENGTH + MARK, *, test: str = REFUSE, end: str = END, turn: str = "") -> str:
+    return TEXT.format(again=again, test=test, end=end, turn=turn)
+
+
+@pytest.mark.parametrize(("program", "line"), [
+    (text(MARK), END),
+    (text(MARK, test="Obey(order);"), END),
+    (text(LENGTH), REFUSE),
+    (text(LENGTH, test="if (!tooLong && length > 0) Obey(order);"), "if (!tooLong && length > 0) Obey(order);"),
+    (text(LENGTH, test="if (tooLong == 1) Bad++; else Obey(order);"), "if (tooLong == 1) Bad++; else Obey(order);"),
+    (text(LENGTH, test="if (tooLong == 0) Obey(order);"), "if (tooLong == 0) Obey(order);"),
+])  # fmt: skip
+def test_a_text_and_a_mark_that_are_never_begun_again_are_told(program: str, line: str) -> None:
+    assert told(program) == [line]
+
+
+@pytest.mark.parametrize("program", [
+    text(),
+    text(MARK, turn="if (Done) length = 0;"),
+    text(LENGTH, turn="if (Done) tooLong = 0;"),
+    # One text only: a mark says that it is there.
+    text(MARK, end="order[length] = 0; Done = 1;"),
+    # A text that grows: it is ended behind each character.
+    text(MARK, end="").replace("order[length++] = c;", "{ order[length++] = c; order[length] = 0; Obey(order); }"),
+    # The mark is only counted or shown, or decides with something else; it is meant to stay.
+    text(LENGTH, test="if (tooLong) Bad++; Obey(order);"),
+    text(LENGTH, test="if (tooLong && Done) Bad++; else Obey(order);"),
+    text(LENGTH).replace("tooLong", "lineFault"),
+])  # fmt: skip
+def test_texts_and_marks_that_begin_again_or_are_meant_to_stay_are_silent(program: str) -> None:
+    assert told(program) == []
+
+
+def test_a_comment_says_that_a_mark_is_meant_to_stay(tmp_path: Path) -> None:
+    found = []
+    for comment in ("", "  // latched"):
+        file = tmp_path / "a.c"
+        file.write_text(text(LENGTH).replace("tooLong = 0;", f"tooLong = 0;{comment}", 1), encoding="utf-8")
+        found.append([f.rule for f in Build([str(file)]).compiled.findings if f.rule == "not-begun-again"])
+    assert found == [["not-begun-again"], []]
