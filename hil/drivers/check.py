@@ -12,6 +12,7 @@ from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from hil.board import Board
 from hil.drivers.call_checker import CallChecker, CheckedFunction, Key, key_of
 from hil.drivers.following import wrong_steps
+from hil.drivers.limits import unused_limits
 from hil.drivers.program_run import ProgramOutcome, run_program
 from hil.drivers.roles import Roles, roles
 from hil.drivers.units import mixed_units
@@ -86,7 +87,9 @@ def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction:
     for file in build.files:
         allowances(file)  # a wrong one is told before anything runs
     static = build.image()
-    for mixed in mixed_units(build.modules, static.board.kernel.clocks.tick_period_us):
+    for mixed in (
+        *mixed_units(build.modules, static.board.kernel.clocks.tick_period_us), *unused_limits(build.files),
+    ):  # fmt: skip
         static.board.findings.report_at(mixed.place, mixed.rule, mixed.message, object=mixed.object, how="static")
     for step in wrong_steps(build.modules):
         static.board.findings.report_at(step.place, "step-away", step.message, object=step.object, how="static")

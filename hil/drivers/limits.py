@@ -1,0 +1,40 @@
+"""Finds limits that nobody applies: a definition in a C file whose name says that it is a limit, and that nothing uses.
+
+It speaks only of numbers, in a file that uses at least as many limits of its own as it leaves: where most are unused,
+they are a list of what a part can do.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from typing import Final
+
+from emulator.c28x.declarations import lines_with_comments
+from emulator.c28x.sites import Place
+from hil.drivers.units import UnitMismatch
+
+#: The words of a name, and those that say that it is a limit.
+_WORD: Final = re.compile(r"[A-Za-z]+")
+_LIMITS: Final = re.compile(r"MAX|MIN|LIMIT|TIMEOUT|LOW|HIGH|(OVER|UNDER)(VOLTAGE|CURRENT|TEMP|TEMPERATURE|SPEED)?")
+_DEFINITION: Final = re.compile(r"^\s*#\s*define\s+(\w+)\s+(?:[-+(\s]|\([A-Za-z][\w ]*\))*\.?\d[\w.]*[)\s]*$")
+_NAME: Final = re.compile(r"[A-Za-z_]\w*")
+
+
+def unused_limits(files: Iterable[str]) -> Iterator[UnitMismatch]:
+    """The limits that C files define and that no file uses."""
+    files = sorted(file for file in files if file.endswith(".c"))
+    lines = {file: lines_with_comments(file) for file in files}
+    times = Counter(name for file in files for code, _ in lines[file] for name in _NAME.findall(code))
+    for file in files:
+        limits: dict[str, int] = {}
+        for number, (code, _) in enumerate(lines[file], 1):
+            match = _DEFINITION.match(code)
+            if match is not None and any(_LIMITS.fullmatch(word) for word in _WORD.findall(match[1].replace("_", " "))):
+                limits[match[1]] = number
+        unused = [name for name in limits if times[name] == 1]
+        for name in unused if 2 * len(unused) <= len(limits) else ():
+            place = Place(file, limits[name], "", file)
+            message = f"nothing uses {name}: the check that it is for may be missing"
+            yield UnitMismatch(place, message, name, "limit-unused")
