@@ -192,6 +192,21 @@ they come from rounding, or from a comment that says something else.
 """, how="static",
     ),
     _rule(
+        "limit-unused",
+        Severity.NOTE,
+        "A limit is defined, and nothing applies it.",
+        """
+The value that the limit is for may be anything: the check that belongs to it is missing, or has been removed.
+
+The limit is a `#define` of a number in a C file. Its name says that it is one (`SPEED_MAX`, `POT_MIN`, `TRAVEL_LIMIT`,
+`REPLY_TIMEOUT_MS`, `BATTERY_LOW_MV`, `OVERCURRENT_MA`), and its name occurs nowhere else in the C files. Headers are
+not looked at, nor a file that leaves more of its limits unused than it uses.
+
+**Fix:** apply the limit, or remove it.
+""",
+        how="static",
+    ),
+    _rule(
         "step-away", Severity.WARNING, "A value that follows another one steps away from it.", """
 A ramp or a limiter runs away: once its target is on one side, each step increases the distance.
 

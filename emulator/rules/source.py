@@ -145,4 +145,23 @@ others.
 """,
         "SPRU514, the asm statement",
     ),
+    _rule(
+        "one-sided",
+        Severity.NOTE,
+        "An object or a state that only one half of the program knows.",
+        """
+One half of something is there, and the other half has been forgotten or removed.
+
+* A `static` integer that begins with 0 is tested, and no statement writes it: what counted the events is gone.
+* A `static` integer is counted and set back, and nothing reads it: the test of it is missing.
+* A value of an enumeration has a case, or is asked for, and no statement gives it to its object: the way into this
+  state is missing.
+
+The check needs the source of a whole program. Not reported: a number of events, which is only counted; objects that are
+not `static`, which a debugger or another program may set or watch; objects whose address is taken; names of switches
+for tests (`debug`, `enable`).
+
+**Fix:** write the other half, or remove this one.
+""",
+    ),
 )

@@ -15,20 +15,19 @@ meant: the conditions stand at each use.
 from __future__ import annotations
 
 import re
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, Final
 
 from emulator.c28x.ctypes import ArrayType, IntType
 from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.passes.state_values import ANYTHING, Given, StateValues, constant_of, named, start_of
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     Assign,
     Binary,
     Call,
     Compare,
-    Conditional,
-    Const,
     Declare,
     Expr,
     FallThrough,
@@ -58,9 +57,6 @@ from emulator.c28x.tree_queries import (
 
 #: Names and comments of flags that are meant to stay.
 _LATCHED: Final = re.compile(r"latch|trip|fault|fail|lock|sticky|perman|for good|until reset", re.IGNORECASE)
-#: What a function may give to a state: a constant, the parameter with this number, or anything.
-_Given = tuple[str, int]
-_ANYTHING: Final[_Given] = ("anything", 0)
 
 
 def check_begun_again(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
@@ -89,7 +85,7 @@ class _Program:
         self.counts = {v for v in plain if all((step_of(s, v) or 0) > 0 for s in self.writes[v])}
         self.flags = {v for v in plain if self._only_set(v)}
         self.counts -= {v for v in self.counts if self._read_otherwise(v)}
-        self._given: dict[Variable, dict[str, set[_Given]]] = {}
+        self.states = StateValues(functions)
 
     def _only_set(self, v: Variable) -> bool:
         values = {constant_of(s.value) if isinstance(s, Assign) else None for s in self.writes[v]}
@@ -136,7 +132,7 @@ class _Program:
                 for count, branch in _passed(s):
                     to = self._leads(branch, state) if count in self.counts else set()
                     numbers = {value for kind, value in to if kind == "constant"}
-                    if numbers - own and _ANYTHING not in to and own & _reached(graph, numbers):
+                    if numbers - own and ANYTHING not in to and own & _reached(graph, numbers):
                         message = (
                             f"nothing begins {count.declaration.name} again: once it has passed this limit, each later "
                             "stay in this state ends at once"
@@ -152,7 +148,7 @@ class _Program:
         by_cases = _reached_by({f.path: f.calls for f in self.functions}, _called(inside))
         beside = [s for f in self._elsewhere(function, by_cases) for s in self._again(f)]
         left_out = set(map(id, inside))
-        always = self._of_statements((s for s in beside if id(s) not in left_out), state, by_cases)
+        always = self.states.of_statements((s for s in beside if id(s) not in left_out), state, by_cases)
         by_case = [(labels, self._leads(body, state)) for labels, body in switch.cases]
         every = always.union(*(given for _, given in by_case))
         if any(kind != "constant" for kind, _ in every):
@@ -181,53 +177,8 @@ class _Program:
         loop = last_loop(function) if function.name == "main" else None
         return list(statements(function.body if loop is None else loop.body))
 
-    def _leads(self, body: list[Stmt], state: Variable) -> set[_Given]:
-        return self._of_statements(statements(body), state)
-
-    def _of_statements(
-        self, body: Iterable[Stmt], state: Variable, called: Container[str] | None = None
-    ) -> set[_Given]:
-        """What statements, and the functions that they call, may give to a state.
-
-        Of functions that are not `called`, it is only what the statements pass to them: they are looked at themselves.
-        """
-        found: set[_Given] = set()
-        summaries = self._summaries(state)
-        parameters = tuple(v for f in self.functions for v in f.parameters) if called is not None else ()
-        for s in body:
-            if assigned(s) is state:
-                found |= _values(s.value, parameters) if isinstance(s, Assign) else {_ANYTHING}
-            for root in roots(s):
-                for p in parts(root):
-                    if isinstance(p, Call):
-                        given = summaries.get(p.function.path, set())
-                        if called is not None and p.function.path not in called:
-                            given = {one for one in given if one[0] == "parameter"}
-                        found |= _passed_on(given, p, parameters)
-        return {one for one in found if one[0] != "parameter"}  # their callers say which
-
-    def _summaries(self, state: Variable) -> dict[str, set[_Given]]:
-        """What each function, with those that it calls, may give to a state."""
-        if state in self._given:
-            return self._given[state]
-        found: dict[str, set[_Given]] = {}
-        grown = True
-        while grown:
-            grown = False
-            for function in self.functions:
-                mine = set(found.get(function.path, set()))
-                parameters = tuple(function.parameters)
-                for s in statements(function.body):
-                    if assigned(s) is state:
-                        mine |= _values(s.value, parameters) if isinstance(s, Assign) else {_ANYTHING}
-                    for root in roots(s):
-                        for p in parts(root):
-                            if isinstance(p, Call):
-                                mine |= _passed_on(found.get(p.function.path, set()), p, parameters)
-                if mine != found.get(function.path, set()):
-                    found[function.path], grown = mine, True
-        self._given[state] = found
-        return found
+    def _leads(self, body: list[Stmt], state: Variable) -> set[Given]:
+        return self.states.of_statements(statements(body), state)
 
     # The end of a text
 
@@ -292,26 +243,6 @@ class _Program:
 def is_number(v: Variable) -> bool:
     """Whether an object is one integer at file scope (or `static`), and can be changed."""
     return v.kind == "global" and isinstance(v.ctype, IntType) and not v.constant and v.address is None
-
-
-def start_of(v: Variable) -> int:
-    """The value of an integer at the start."""
-    start = constant_of(v.initial[0]) if v.initial else None
-    return start if start is not None else 0
-
-
-def constant_of(e: object) -> int | None:
-    """The value of a constant integer; None: it is none."""
-    inner = bare(e) if isinstance(e, Expr) else None
-    return inner.value if isinstance(inner, Const) and isinstance(inner.value, int) else None
-
-
-def named(e: Expr) -> Variable | None:
-    """The integer at file scope of which an expression is just the value."""
-    match bare(e):
-        case Load(lvalue=LValue(root=Variable(kind="global", ctype=IntType()) as v, indices=[])):
-            return v
-    return None
 
 
 def step_of(s: Stmt, v: Variable) -> int | None:
@@ -379,29 +310,6 @@ def _reached_by(calls_of: dict[str, set[str]], first: list[str]) -> set[str]:
         if path not in found:
             found.add(path)
             waiting += calls_of.get(path, ())
-    return found
-
-
-def _values(value: Expr, parameters: tuple[Variable, ...]) -> set[_Given]:
-    """What an expression may give."""
-    match bare(value):
-        case Const(value=int(number)):
-            return {("constant", number)}
-        case Conditional(then=then, otherwise=otherwise):
-            return _values(then, parameters) | _values(otherwise, parameters)
-        case Load(lvalue=LValue(root=Variable() as root, indices=[])) if root in parameters:
-            return {("parameter", parameters.index(root))}
-    return {_ANYTHING}
-
-
-def _passed_on(given: set[_Given], call: Call, parameters: tuple[Variable, ...]) -> set[_Given]:
-    """What a call gives, if its function gives `given`."""
-    found: set[_Given] = set()
-    for kind, number in given:
-        if kind != "parameter":
-            found.add((kind, number))
-        elif number < len(call.arguments):
-            found |= _values(call.arguments[number], parameters)
     return found
 
 

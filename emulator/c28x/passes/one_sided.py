@@ -1,0 +1,169 @@
+"""Static check of objects and states that only one half of the program knows: `one-sided`.
+
+The check needs a whole program (one with a `main`), because it must see all statements.
+
+* A `static` integer that begins with 0 is tested, and no statement writes it.
+* A `static` integer is counted and set back, and nothing but its own count reads it.
+* A state has a case, or is asked for, and no statement gives it to its object.
+
+A number of events is only counted, and never set back; a debugger may set an object that is not `static`: both are not
+meant.  Nor are switches for tests, by their names.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any, Final
+
+from emulator.c28x.passes.begun_again import is_number, step_of
+from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.passes.state_values import StateValues, constant_of, named, start_of
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    Assign,
+    Compare,
+    Conditional,
+    Expr,
+    Function,
+    If,
+    LValue,
+    Stmt,
+    Switch,
+    Variable,
+    While,
+)  # fmt: skip
+from emulator.c28x.tree_queries import addressed, assigned, bare, parts, roots, source_text, statements, within
+
+#: Names of objects that are set by hand, with a debugger.
+_BY_HAND: Final = re.compile(r"debug|test|sim|trace|verbose|enable|option|config|dbg", re.IGNORECASE)
+_STATIC: Final = re.compile(r"\bstatic\b")
+
+
+def check_one_sided(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
+    """Report what only one half of a whole program knows."""
+    modules = list(modules)
+    functions = [function for module in modules for function in module.functions]
+    if not any(function.name == "main" and function.body for function in functions):
+        return
+    writes: dict[Variable, list[Stmt]] = {}
+    taken: set[Variable] = set()
+    for function in functions:
+        taken |= addressed(within(function.body))
+        for s in statements(function.body):
+            if (variable := assigned(s)) is not None:
+                writes.setdefault(variable, []).append(s)
+    values = StateValues(functions)
+    owners = {function: report for module, report in reports.items() for function in module.functions}
+    for module in modules:
+        report = reports[module]
+        for variable in module.variables:
+            if not is_number(variable) or variable in taken or variable.escapes or module.brought:
+                continue
+            if _is_static(variable) and not _BY_HAND.search(variable.declaration.name):
+                if variable not in writes and start_of(variable) == 0:
+                    _never_written(variable, module.functions, report)
+                elif _begins_again(writes.get(variable, []), variable):
+                    _never_read(variable, functions, report)
+            if variable in writes and variable.constants:
+                _never_entered(variable, functions, values, owners)
+
+
+def _never_written(variable: Variable, functions: list[Function], report: StaticReport) -> None:
+    """Report the first test of an object that is always 0."""
+    for function in functions:
+        for s in statements(function.body):
+            for test in _tests(s):
+                if any(isinstance(p, LValue) and p.root is variable for p in parts(test)):
+                    name = variable.declaration
+                    message = f"no statement writes {name.name}: it is always 0 in {source_text(test)}"
+                    report.report(function, s.where, "one-sided", message, object=name.path, declaration=name)
+                    return
+
+
+def _tests(s: Stmt) -> Iterator[Expr]:
+    """The conditions of a statement."""
+    match s:
+        case If(test=test) | While(test=test) | Switch(subject=test):
+            yield test
+    for root in roots(s):
+        for p in parts(root):
+            if isinstance(p, Conditional):
+                yield p.test
+
+
+def _begins_again(writes: list[Stmt], variable: Variable) -> bool:
+    """Whether an object is both counted and set to a constant."""
+    counted = again = False
+    for s in writes:
+        value = bare(s.value) if isinstance(s, Assign) else None
+        ways = [value.then, value.otherwise] if isinstance(value, Conditional) else [value]
+        again |= any(constant_of(way) is not None for way in ways)
+        counted |= step_of(s, variable) is not None or (isinstance(value, Conditional) and _mentions(value, variable))
+    return counted and again
+
+
+def _mentions(e: Any, variable: Variable) -> bool:
+    return any(isinstance(p, LValue) and p.root is variable for p in parts(e))
+
+
+def _never_read(variable: Variable, functions: list[Function], report: StaticReport) -> None:
+    """Report an object that only its own count reads."""
+    first: tuple[Function, Stmt] | None = None
+    for function in functions:
+        for s in statements(function.body):
+            own = assigned(s) is variable
+            if own and (first is None or constant_of(getattr(first[1], "value", None)) is not None):
+                first = function, s
+            for root in roots(s):
+                reads = sum(
+                    isinstance(p, LValue) and getattr(p.root, "declaration", None) == variable.declaration
+                    for p in parts(root)
+                )  # fmt: skip
+                if reads and not own:
+                    return
+    if first is not None:
+        name = variable.declaration
+        message = f"{name.name} is counted and set back, and nothing reads it: the test of it may be missing"
+        report.report(first[0], first[1].where, "one-sided", message, object=name.path, declaration=name)
+
+
+def _never_entered(
+    variable: Variable, functions: list[Function], values: StateValues, reports: dict[Function, StaticReport]
+) -> None:
+    """Report cases and comparisons for values that no statement gives to an object."""
+    asked: list[tuple[Function, Stmt, int]] = []
+    for function in functions:
+        for s in statements(function.body):
+            if isinstance(s, Switch) and named(s.subject) is variable:
+                cases = [(label, body) for labels, body in s.cases for label in labels or ()]
+                asked += [(function, body[0] if body else s, label) for label, body in cases]
+            for root in roots(s):
+                for p in parts(root):
+                    if isinstance(p, Compare) and p.op == "==":
+                        for side, other in ((p.left, p.right), (p.right, p.left)):
+                            if named(side) is variable and (label := constant_of(other)) is not None:
+                                asked.append((function, s, label))
+    given = values.of(variable) if asked else None
+    if given is None or len(given) < 2:
+        return
+    told: set[int] = set()
+    for function, s, label in asked:
+        if label not in given | {start_of(variable)} | told:
+            told.add(label)
+            name = variable.declaration
+            message = f"no statement gives {name.name} the value {label}, which is handled here"
+            reports[function].report(function, s.where, "one-sided", message, object=name.path, declaration=name)
+
+
+def _is_static(v: Variable) -> bool:
+    """Whether only its own file, or function, knows an object at file scope."""
+    declaration = v.declaration
+    if declaration.function:
+        return True
+    try:
+        lines = Path(declaration.file).read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:  # a text that is in no file
+        return False
+    return 0 < declaration.line <= len(lines) and _STATIC.search(lines[declaration.line - 1]) is not None

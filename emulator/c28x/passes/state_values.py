@@ -1,0 +1,133 @@
+"""The values that statements may give to a state, also through the functions that they call."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable
+from typing import Final
+
+from emulator.c28x.ctypes import IntType
+from emulator.c28x.tree import (
+    Assign,
+    Call,
+    Conditional,
+    Const,
+    Expr,
+    Function,
+    FunctionRef,
+    Load,
+    LValue,
+    Stmt,
+    Variable,
+)  # fmt: skip
+from emulator.c28x.tree_queries import assigned, bare, parts, roots, statements, within
+
+#: What a function may give to a state: a constant, the parameter with this number, or anything.
+Given = tuple[str, int]
+ANYTHING: Final[Given] = ("anything", 0)
+
+
+class StateValues:
+    """What the functions of a program may give to the objects at file scope."""
+
+    def __init__(self, functions: list[Function]) -> None:
+        self.functions = functions
+        self._given: dict[Variable, dict[str, set[Given]]] = {}
+
+    def of(self, state: Variable) -> set[int] | None:
+        """The constants that the program gives to a state; None: it may give others too."""
+        summaries = self._summaries(state)
+        by_pointer = {p.function.path for f in self.functions for p in within(f.body) if isinstance(p, FunctionRef)}
+        every = {f.path for f in self.functions}
+        found = {one for f in self.functions for one in self.of_statements(statements(f.body), state, every)}
+        passed = {path for path, given in summaries.items() if any(kind == "parameter" for kind, _ in given)}
+        if by_pointer & passed or any(kind != "constant" for kind, _ in found):
+            return None
+        return {value for _, value in found}
+
+    def of_statements(
+        self, body: Iterable[Stmt], state: Variable, called: Container[str] | None = None
+    ) -> set[Given]:
+        """What statements, and the functions that they call, may give to a state.
+
+        Of functions that are not `called`, it is only what the statements pass to them: they are looked at themselves.
+        """
+        found: set[Given] = set()
+        summaries = self._summaries(state)
+        parameters = tuple(v for f in self.functions for v in f.parameters) if called is not None else ()
+        for s in body:
+            if assigned(s) is state:
+                found |= _values(s.value, parameters) if isinstance(s, Assign) else {ANYTHING}
+            for root in roots(s):
+                for p in parts(root):
+                    if isinstance(p, Call):
+                        given = summaries.get(p.function.path, set())
+                        if called is not None and p.function.path not in called:
+                            given = {one for one in given if one[0] == "parameter"}
+                        found |= _passed_on(given, p, parameters)
+        return {one for one in found if one[0] != "parameter"}  # their callers say which
+
+    def _summaries(self, state: Variable) -> dict[str, set[Given]]:
+        """What each function, with those that it calls, may give to a state."""
+        if state in self._given:
+            return self._given[state]
+        found: dict[str, set[Given]] = {}
+        grown = True
+        while grown:
+            grown = False
+            for function in self.functions:
+                mine = set(found.get(function.path, set()))
+                parameters = tuple(function.parameters)
+                for s in statements(function.body):
+                    if assigned(s) is state:
+                        mine |= _values(s.value, parameters) if isinstance(s, Assign) else {ANYTHING}
+                    for root in roots(s):
+                        for p in parts(root):
+                            if isinstance(p, Call):
+                                mine |= _passed_on(found.get(p.function.path, set()), p, parameters)
+                if mine != found.get(function.path, set()):
+                    found[function.path], grown = mine, True
+        self._given[state] = found
+        return found
+
+
+def start_of(v: Variable) -> int:
+    """The value of an integer at the start."""
+    start = constant_of(v.initial[0]) if v.initial else None
+    return start if start is not None else 0
+
+
+def constant_of(e: object) -> int | None:
+    """The value of a constant integer; None: it is none."""
+    inner = bare(e) if isinstance(e, Expr) else None
+    return inner.value if isinstance(inner, Const) and isinstance(inner.value, int) else None
+
+
+def named(e: Expr) -> Variable | None:
+    """The integer at file scope of which an expression is just the value."""
+    match bare(e):
+        case Load(lvalue=LValue(root=Variable(kind="global", ctype=IntType()) as v, indices=[])):
+            return v
+    return None
+
+
+def _values(value: Expr, parameters: tuple[Variable, ...]) -> set[Given]:
+    """What an expression may give."""
+    match bare(value):
+        case Const(value=int(number)):
+            return {("constant", number)}
+        case Conditional(then=then, otherwise=otherwise):
+            return _values(then, parameters) | _values(otherwise, parameters)
+        case Load(lvalue=LValue(root=Variable() as root, indices=[])) if root in parameters:
+            return {("parameter", parameters.index(root))}
+    return {ANYTHING}
+
+
+def _passed_on(given: set[Given], call: Call, parameters: tuple[Variable, ...]) -> set[Given]:
+    """What a call gives, if its function gives `given`."""
+    found: set[Given] = set()
+    for kind, number in given:
+        if kind != "parameter":
+            found.add((kind, number))
+        elif number < len(call.arguments):
+            found |= _values(call.arguments[number], parameters)
+    return found
