@@ -1,0 +1,171 @@
+"""Compares constants that are named after a routine's period with the period that a run shows.
+
+`CONTROL_S 0.01` says that a control runs each 10 ms.  Where an interrupt routine always divides by it, or multiplies
+with it, the routine has to run so often.  A difference by a power of ten is told: the timer or the constant changed,
+and the other one did not.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from math import isclose, log10
+from typing import Final
+
+from emulator.c28x.declarations import lines_with_comments
+from emulator.c28x.sites import Place
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    Binary,
+    Break,
+    Call,
+    Const,
+    Continue,
+    Function,
+    If,
+    LeaveSwitch,
+    Return,
+    Stmt,
+)  # fmt: skip
+from emulator.c28x.tree_queries import bare, parts, roots, statements
+from emulator.clock import SYSCLK_HZ
+from hil.board import Board
+from hil.drivers.units import UnitMismatch
+
+#: A period is known after so many intervals, none of which differs from their mean by more than this part of it.
+_ENOUGH: Final = 20
+_STEADY: Final = 0.5
+#: A power of ten is exact up to this: dividers round.
+_EXACT: Final = 0.02
+#: The words of a name one of which says whose period it is, its last ones with the unit in seconds (Hz: 0).
+_WHOSE: Final = frozenset({"CONTROL", "CONTROLLER", "LOOP", "SAMPLE", "SAMPLING", "TICK", "DT", "ISR", "PID"})
+_UNITS: Final = {"S": 1.0, "SEC": 1.0, "MS": 1e-3, "US": 1e-6, "HZ": 0.0, "KHZ": 0.0}
+#: Words of names that are other times.
+_OTHERS: Final = frozenset({"TAU", "FILTER", "DELAY", "TIMEOUT", "RAMP", "MAX", "MIN", "LIMIT", "RISE", "PER", "WAIT"})
+_DEFINITION: Final = re.compile(r"^\s*#\s*define\s+(\w+)\s+\(*\s*[\d.]")
+
+
+class RoutinePeriods:
+    """Measures how often the interrupt routines of a board run."""
+
+    def __init__(self, board: Board) -> None:
+        self._clock = board.clock
+        #: Routine -> first and last time, number of runs, shortest and longest interval.
+        self._seen: dict[str, tuple[int, int, int, int, int]] = {}
+        board.vectors.began.connect(self._begins)
+
+    def _begins(self, number: int, name: str) -> None:
+        now = self._clock.now
+        if name not in self._seen:
+            self._seen[name] = now, now, 1, 1 << 62, 0
+            return
+        first, last, times, shortest, longest = self._seen[name]
+        self._seen[name] = first, now, times + 1, min(shortest, now - last), max(longest, now - last)
+
+    def periods(self) -> dict[str, float]:
+        """Routine -> its period in seconds, if it is steady."""
+        found = {}
+        for name, (first, last, times, shortest, longest) in self._seen.items():
+            mean = (last - first) / max(1, times - 1)
+            if times > _ENOUGH and shortest > mean * (1 - _STEADY) and longest < mean * (1 + _STEADY):
+                found[name] = mean / SYSCLK_HZ
+        return found
+
+
+def wrong_periods(modules: Iterable[Module], periods: dict[str, float]) -> Iterator[UnitMismatch]:
+    """The uses of constants that are named after a period, in routines that run with another one."""
+    functions = [function for module in modules for function in module.functions]
+    by_path = {function.path: function for function in functions}
+    for routine in functions:
+        if routine.name not in periods or sum(f.name == routine.name for f in functions) > 1:
+            continue
+        # What another routine or main calls too runs with another period as well.
+        others = [f.path for f in functions if f is not routine and (f.interrupt or f.name in (*periods, "main"))]
+        elsewhere = _reached(by_path, others)
+        for function, s in _always(routine, by_path, set()):
+            if function.path not in elsewhere:
+                yield from _told(function, s, routine, periods[routine.name])
+
+
+def _told(function: Function, s: Stmt, routine: Function, period: float) -> Iterator[UnitMismatch]:
+    for root in roots(s):
+        for factor in _factors(root):
+            name, stated = _stated(factor)
+            if not name or not stated:
+                continue
+            power = round(log10(stated / period))
+            if power and isclose(stated / period, 10.0**power, rel_tol=_EXACT):
+                place = Place(function.where.file, s.where.line, function.name, function.c_file, s.where.column)
+                message = f"{name} is {stated:g} s by its name, and {routine.name} runs every {period:.4g} s"
+                yield UnitMismatch(place, message, name, "period-by-name")
+
+
+def _factors(e: object) -> Iterator[Const]:
+    """The named constants that an expression multiplies with, or divides by."""
+    for p in parts(e):
+        if isinstance(p, Const) and p.source is not None:
+            yield from _factors(p.source)
+        if isinstance(p, Binary) and p.op in ("*", "/"):
+            for side in (p.left, p.right):
+                factor = bare(side)
+                if isinstance(factor, Const) and factor.where.macro is not None:
+                    yield factor
+
+
+def _stated(e: Const) -> tuple[str, float]:
+    """The name of a constant, and the period in seconds that it states; 0: none."""
+    assert e.where.macro is not None
+    lines = lines_with_comments(e.where.macro.file)
+    line = lines[e.where.macro.line - 1][0] if 0 < e.where.macro.line <= len(lines) else ""
+    match = _DEFINITION.match(line)
+    words = match[1].upper().split("_") if match is not None else []
+    if match is None or words[-1] not in _UNITS or not _WHOSE.intersection(words) or _OTHERS.intersection(words):
+        return "", 0.0
+    if e.value <= 0:
+        return "", 0.0
+    size = _UNITS[words[-1]]
+    return match[1], float(e.value) * size if size else 1 / (e.value * (1e3 if words[-1] == "KHZ" else 1.0))
+
+
+def _always(function: Function, by_path: dict[str, Function], seen: set[str]) -> Iterator[tuple[Function, Stmt]]:
+    """The statements that each run of a function executes, with those of the functions that it always calls."""
+    if function.path in seen:
+        return
+    seen.add(function.path)
+    for s in _straight(function.body):
+        yield function, s
+    for path in sorted(_always_called(function.body)):
+        if path in by_path:
+            yield from _always(by_path[path], by_path, seen)
+
+
+def _straight(body: list[Stmt]) -> Iterator[Stmt]:
+    """The statements of a body up to the first that may leave it, without those in inner blocks."""
+    for s in body:
+        yield s
+        if any(isinstance(x, Return | Break | Continue | LeaveSwitch) for x in statements([s])):
+            return
+
+
+def _always_called(body: list[Stmt]) -> set[str]:
+    found: set[str] = set()
+    for s in _straight(body):
+        if isinstance(s, If):
+            found |= _always_called(s.then) & _always_called(s.otherwise)
+        found |= {p.function.path for root in roots(s) for p in parts(root) if isinstance(p, Call)}
+    return found
+
+
+def _called(body: list[Stmt]) -> set[str]:
+    return {p.function.path for s in statements(body) for root in roots(s) for p in parts(root) if isinstance(p, Call)}
+
+
+def _reached(by_path: dict[str, Function], first: list[str]) -> set[str]:
+    found: set[str] = set()
+    waiting = list(first)
+    while waiting:
+        path = waiting.pop()
+        if path not in found and path in by_path:
+            found.add(path)
+            waiting += _called(by_path[path].body)
+    return found

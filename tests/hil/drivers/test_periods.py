@@ -1,0 +1,87 @@
+"""Constants that state another period than a routine has in the run: wrong programs, and their right twins."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from hil.board import load
+from hil.drivers.check import DriverFiles, check_files
+
+PROGRAM = """#include "F28x_Project.h"
+#define {define}
+#define GAIN 3.0f
+volatile float Speed = 0, Sum = 0, Last = 0, Way = 0;
+volatile Uint16 Runs = 0, Slow = 0;
+static void Meter(float way)
+{{
+    {use}
+    Last = way;
+}}
+interrupt void Control(void)
+{{
+    Runs++;
+    {call}
+}}
+interrupt void Other(void) {{ Slow++; }}
+void main(void)
+{{
+    InitSysCtrl();
+    DINT;
+    InitPieCtrl();
+    IER = 0;
+    IFR = 0;
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.TIMER1_INT = &Control;
+    PieVectTable.TIMER2_INT = &Other;
+    EDIS;
+    InitCpuTimers();
+    ConfigCpuTimer(&CpuTimer1, 200, 100);
+    IER |= M_INT13;
+    EINT;
+    StartCpuTimer1();
+    for (;;) {{ {turn} }}
+}}
+"""
+USE = "Speed = (way - Last) / CONTROL_S;"
+
+
+def told(
+    folder: Path, *, define: str = "CONTROL_S 0.001f", use: str = USE, call: str = "Meter(Way);", turn: str = "",
+) -> list[str]:  # fmt: skip
+    """The statements at which `period-by-name` is told; the routine runs every 0.1 ms."""
+    file = folder / "a.c"
+    text = PROGRAM.format(define=define, use=use, call=call, turn=turn)
+    file.write_text(text, encoding="utf-8")
+    found = check_files(DriverFiles([file], calls=1, board=load("bare"), seconds=0.005)).findings
+    return [text.splitlines()[f.place.line - 1].strip() for f in found if f.rule == "period-by-name" and f.place]
+
+
+@pytest.mark.parametrize("given", [
+    {},
+    {"define": "LOOP_US 1000L", "use": "Sum += way * LOOP_US;"},
+    {"define": "SAMPLE_HZ 100000.0f", "use": "Speed = (way - Last) * SAMPLE_HZ;"},
+    {"use": "Speed = (way - Last) * (GAIN / CONTROL_S);"},
+    {"call": "if (Runs & 1) Meter(Way); else { Slow++; Meter(-Way); }"},
+])  # fmt: skip
+def test_a_period_that_is_wrong_by_a_power_of_ten_is_told(tmp_path: Path, given: dict[str, str]) -> None:
+    assert told(tmp_path, **given) == [given.get("use", USE)]
+
+
+@pytest.mark.parametrize("given", [
+    {"define": "CONTROL_S 0.0001f"},
+    {"define": "LOOP_US 100L", "use": "Sum += way * LOOP_US;"},
+    # No power of ten; another time; a comparison; no period by its name.
+    {"define": "CONTROL_S 0.0002f"},
+    {"define": "CONTROL_TAU_S 0.001f", "use": "Sum += (way - Sum) / CONTROL_TAU_S;"},
+    {"define": "CONTROL_S 0.001f", "use": "if (way > CONTROL_S) Sum = way;"},
+    {"define": "REST_S 0.001f", "use": "Speed = way / REST_S;"},
+    # In some of the runs, or by others too.
+    {"call": "if (Runs % 10 == 0) Meter(Way);"},
+    {"call": "if (Runs % 10) return; Meter(Way);"},
+    {"turn": "Meter(Way);"},
+])  # fmt: skip
+def test_another_time_or_another_rhythm_is_silent(tmp_path: Path, given: dict[str, str]) -> None:
+    assert told(tmp_path, **given) == []
