@@ -84,28 +84,35 @@ class _Program:
         #: Those that are only counted up, and those that are only set to one value which they did not have.
         self.counts = {v for v in plain if all((step_of(s, v) or 0) > 0 for s in self.writes[v])}
         self.flags = {v for v in plain if self._only_set(v)}
-        self.counts -= {v for v in self.counts if self._read_otherwise(v)}
+        self.counts -= self._read_otherwise() if self.counts else set()
         self.states = StateValues(functions)
 
     def _only_set(self, v: Variable) -> bool:
         values = {constant_of(s.value) if isinstance(s, Assign) else None for s in self.writes[v]}
         return len(values) == 1 and None not in values and values != {start_of(v)}
 
-    def _read_otherwise(self, v: Variable) -> bool:
-        """Whether a count is read by anything but its steps, comparisons with constants, and subscripts: a clock is."""
+    def _read_otherwise(self) -> set[Variable]:
+        """The counts that anything reads but their steps, comparisons with constants, and subscripts: as clocks are."""
+        by_declaration = {v.declaration: v for v in self.counts}
+        found: set[Variable] = set()
         for function in self.functions:
             for s in statements(function.body):
-                if step_of(s, v) is not None or (isinstance(s, Declare) and s.variable.kind == "temporary"):
+                if isinstance(s, Declare) and s.variable.kind == "temporary":
                     continue
+                own = assigned(s)
                 for root in roots(s):
+                    every = parts(root)
                     allowed = {
-                        id(p) for q in parts(root)
-                        if isinstance(q, Index) or (isinstance(q, Compare) and _against_constant(q) is v)
+                        id(p) for q in every
+                        if isinstance(q, Index) or (isinstance(q, Compare) and _against_constant(q) is not None)
                         for p in parts(q)
                     }  # fmt: skip
-                    if any(isinstance(p, LValue) and p.root is v and id(p) not in allowed for p in parts(root)):
-                        return True
-        return False
+                    for p in every:
+                        if isinstance(p, LValue) and isinstance(p.root, Variable) and id(p) not in allowed:
+                            read = by_declaration.get(p.root.declaration)
+                            if read is not None and read is not own:
+                                found.add(read)
+        return found
 
     def check(self) -> None:
         for function in self.functions:

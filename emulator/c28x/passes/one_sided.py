@@ -56,6 +56,7 @@ def check_one_sided(modules: Iterable[Module], reports: dict[Module, StaticRepor
                 writes.setdefault(variable, []).append(s)
     values = StateValues(functions)
     owners = {function: report for module, report in reports.items() for function in module.functions}
+    asked = _asked(functions)
     for module in modules:
         report = reports[module]
         for variable in module.variables:
@@ -66,8 +67,8 @@ def check_one_sided(modules: Iterable[Module], reports: dict[Module, StaticRepor
                     _never_written(variable, module.functions, report)
                 elif _begins_again(writes.get(variable, []), variable):
                     _never_read(variable, functions, report)
-            if variable in writes and variable.constants:
-                _never_entered(variable, functions, values, owners)
+            if variable in writes and variable.constants and variable in asked:
+                _never_entered(variable, asked[variable], values, owners)
 
 
 def _never_written(variable: Variable, functions: list[Function], report: StaticReport) -> None:
@@ -129,23 +130,33 @@ def _never_read(variable: Variable, functions: list[Function], report: StaticRep
         report.report(first[0], first[1].where, "one-sided", message, object=name.path, declaration=name)
 
 
-def _never_entered(
-    variable: Variable, functions: list[Function], values: StateValues, reports: dict[Function, StaticReport]
-) -> None:
-    """Report cases and comparisons for values that no statement gives to an object."""
-    asked: list[tuple[Function, Stmt, int]] = []
+#: Where a value of an object has a case, or is asked for.
+_Asked = tuple[Function, Stmt, int]
+
+
+def _asked(functions: list[Function]) -> dict[Variable, list[_Asked]]:
+    """The objects of switches and of tests for equality with constants."""
+    found: dict[Variable, list[_Asked]] = {}
     for function in functions:
         for s in statements(function.body):
-            if isinstance(s, Switch) and named(s.subject) is variable:
+            if isinstance(s, Switch) and (v := named(s.subject)) is not None:
                 cases = [(label, body) for labels, body in s.cases for label in labels or ()]
-                asked += [(function, body[0] if body else s, label) for label, body in cases]
+                found.setdefault(v, []).extend((function, body[0] if body else s, label) for label, body in cases)
             for root in roots(s):
                 for p in parts(root):
                     if isinstance(p, Compare) and p.op == "==":
                         for side, other in ((p.left, p.right), (p.right, p.left)):
-                            if named(side) is variable and (label := constant_of(other)) is not None:
-                                asked.append((function, s, label))
-    given = values.of(variable) if asked else None
+                            v, label = named(side), constant_of(other)
+                            if v is not None and label is not None:
+                                found.setdefault(v, []).append((function, s, label))
+    return found
+
+
+def _never_entered(
+    variable: Variable, asked: list[_Asked], values: StateValues, reports: dict[Function, StaticReport]
+) -> None:
+    """Report cases and comparisons for values that no statement gives to an object."""
+    given = values.of(variable)
     if given is None or len(given) < 2:
         return
     told: set[int] = set()

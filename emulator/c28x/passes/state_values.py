@@ -19,7 +19,7 @@ from emulator.c28x.tree import (
     Stmt,
     Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import assigned, bare, parts, roots, statements, within
+from emulator.c28x.tree_queries import assigned, bare, parts, roots, statements
 
 #: What a function may give to a state: a constant, the parameter with this number, or anything.
 Given = tuple[str, int]
@@ -30,19 +30,31 @@ class StateValues:
     """What the functions of a program may give to the objects at file scope."""
 
     def __init__(self, functions: list[Function]) -> None:
-        self.functions = functions
+        self._parameters = {v for f in functions for v in f.parameters}
+        self._by_pointer: set[str] = set()
+        #: Object -> the functions that assign it, each with the assignments; function -> the calls of it, with callers.
+        self._assigns: dict[Variable, list[tuple[Function, Stmt]]] = {}
+        self._callers: dict[str, list[tuple[Function, Call]]] = {}
+        for function in functions:
+            for s in statements(function.body):
+                if (variable := assigned(s)) is not None:
+                    self._assigns.setdefault(variable, []).append((function, s))
+                for root in roots(s):
+                    for p in parts(root):
+                        if isinstance(p, Call):
+                            self._callers.setdefault(p.function.path, []).append((function, p))
+                        elif isinstance(p, FunctionRef):
+                            self._by_pointer.add(p.function.path)
         self._given: dict[Variable, dict[str, set[Given]]] = {}
 
     def of(self, state: Variable) -> set[int] | None:
         """The constants that the program gives to a state; None: it may give others too."""
         summaries = self._summaries(state)
-        by_pointer = {p.function.path for f in self.functions for p in within(f.body) if isinstance(p, FunctionRef)}
-        every = {f.path for f in self.functions}
-        found = {one for f in self.functions for one in self.of_statements(statements(f.body), state, every)}
+        found = set().union(*summaries.values())
         passed = {path for path, given in summaries.items() if any(kind == "parameter" for kind, _ in given)}
-        if by_pointer & passed or any(kind != "constant" for kind, _ in found):
+        if self._by_pointer & passed or ANYTHING in found:
             return None
-        return {value for _, value in found}
+        return {value for kind, value in found if kind == "constant"}
 
     def of_statements(
         self, body: Iterable[Stmt], state: Variable, called: Container[str] | None = None
@@ -53,7 +65,7 @@ class StateValues:
         """
         found: set[Given] = set()
         summaries = self._summaries(state)
-        parameters = tuple(v for f in self.functions for v in f.parameters) if called is not None else ()
+        parameters = tuple(self._parameters) if called is not None else ()
         for s in body:
             if assigned(s) is state:
                 found |= _values(s.value, parameters) if isinstance(s, Assign) else {ANYTHING}
@@ -71,21 +83,19 @@ class StateValues:
         if state in self._given:
             return self._given[state]
         found: dict[str, set[Given]] = {}
-        grown = True
-        while grown:
-            grown = False
-            for function in self.functions:
-                mine = set(found.get(function.path, set()))
-                parameters = tuple(function.parameters)
-                for s in statements(function.body):
-                    if assigned(s) is state:
-                        mine |= _values(s.value, parameters) if isinstance(s, Assign) else {ANYTHING}
-                    for root in roots(s):
-                        for p in parts(root):
-                            if isinstance(p, Call):
-                                mine |= _passed_on(found.get(p.function.path, set()), p, parameters)
-                if mine != found.get(function.path, set()):
-                    found[function.path], grown = mine, True
+        for function, s in self._assigns.get(state, ()):
+            parameters = tuple(function.parameters)
+            given = _values(s.value, parameters) if isinstance(s, Assign) else {ANYTHING}
+            found.setdefault(function.path, set()).update(given)
+        waiting = list(found)
+        while waiting:
+            path = waiting.pop()
+            for function, call in self._callers.get(path, ()):
+                mine = found.setdefault(function.path, set())
+                more = _passed_on(found[path], call, tuple(function.parameters)) - mine
+                if more:
+                    mine |= more
+                    waiting.append(function.path)
         self._given[state] = found
         return found
 
