@@ -442,6 +442,28 @@ class Connections:
                     self.silent.add(str(chip.vectors.routine(group, n)))
                     waits = f"interrupt {group}.{n} is enabled but never occurs"
                     self._report(place, waits, missing, f"{register}.{field}", whole=True)
+            self._enabled_for_a_while(group)
+
+    def _enabled_for_a_while(self, group: int) -> None:
+        """Lines that PIEIER has let through and does not now, while no statement lets their group through IER."""
+        pie, register = self._chip.pie, f"PieCtrlRegs.PIEIER{group}"
+        place = self._source.last("PieCtrlRegs", f"PIEIER{group}")
+        for n in range(1, 17) if self._never_let_through(group) else ():
+            routine = self._chip.vectors.routine(group, n)
+            if routine is not None and pie.kept_out(group, n) and pie.was_enabled(group, n):
+                missing = MissingLink(f"bit {group - 1} of IER (M_INT{group}) is 0", register)
+                waits = f"interrupt {group}.{n} is enabled at times, has come and never occurs"
+                self._report(place, waits, missing, f"{register}.INTx{n}")
+
+    def _never_let_through(self, line: int) -> bool:
+        """Whether an interrupt waits at a line of the CPU that IER has never let through, and never will.
+
+        A program that reads IFR asks for its interrupts itself.
+        """
+        cpu, bit = self._chip.cpu, 1 << line - 1
+        if not cpu.ifr & bit or (cpu.ier | cpu.lines_taken) & bit or ("CPU", "IFR") in self._source.reads:
+            return False
+        return not self._source.could("CPU", "IER", bit, bool, again=self.started_up)
 
     def _enabled_by_create(self, group: int, n: int) -> Place | None:
         """The `Hwi_create` that enabled a line."""
@@ -472,7 +494,8 @@ class Connections:
             return None
         if self._stuck("PieCtrlRegs.PIECTRL", "ENPIE", bool):
             return MissingLink("PieCtrlRegs.PIECTRL.ENPIE = 0", f"PieCtrlRegs.PIEIER{group}", f"INTx{n}")
-        if self._chip.cpu.ier & 1 << group - 1 or self._source.could("CPU", "IER", 1 << group - 1, bool):
+        bit = 1 << group - 1
+        if self._chip.cpu.ier & bit or self._source.could("CPU", "IER", bit, bool, again=self.started_up):
             return None
         return MissingLink(f"bit {group - 1} of IER (M_INT{group}) is 0", f"PieCtrlRegs.PIEIER{group}", f"INTx{n}")
 
@@ -487,7 +510,7 @@ class Connections:
             for n in range(1, 17) if not told else ():
                 entry, routine = vectors.entry(group, n), vectors.routine(group, n)
                 place = self._source.last("PieVectTable", entry)
-                if place is None or routine is None or not pie.kept_out(group, n):
+                if place is None or routine is None or not pie.kept_out(group, n) or pie.has_run(group, n):
                     continue
                 if self._stuck(register, f"INTx{n}", bool):
                     message = (
@@ -557,7 +580,21 @@ class Connections:
         register = f"Adc{letter.lower()}Regs." + ("ADCINTSEL1N2" if k < 3 else "ADCINTSEL3N4")
         if self._stuck(register, f"INT{k}E", bool):
             return MissingLink(f"{register}.INT{k}E = 0", register, f"INT{k}E")
+        select = f"INT{k}SEL"
+        if self._stuck(register, select, lambda soc: self._could_start(letter, soc)):
+            soc = self._value(register, select)
+            why = f"{register}.{select} = {soc}: SOC{soc} of ADC-{letter} has no trigger, and nothing else starts it"
+            return MissingLink(why, register, select)
         return None
+
+    def _could_start(self, letter: str, soc: int) -> bool:
+        """Whether a SOC has a trigger, or a statement could give it one or start it: by itself, or in a burst."""
+        block = f"Adc{letter.lower()}Regs"
+        triggers = (
+            (f"ADCSOC{soc}CTL", "TRIGSEL"), (f"ADCINTSOCSEL{soc // 8 + 1}", f"SOC{soc}"), ("ADCBURSTCTL", "BURSTEN"),
+        )  # fmt: skip
+        forced = self._could(f"{block}.ADCSOCFRC1", bool, f"SOC{soc}")
+        return forced or any(not self._stuck(f"{block}.{name}", field, bool) for name, field in triggers)
 
     def _no_can_line(self, letter: str, line: int) -> MissingLink | None:
         """Why a CAN never gives an interrupt on its line 0 or 1; None if it can."""
@@ -833,24 +870,31 @@ class Connections:
             vector, name = 12 + n, f"CpuTimer{n}Regs"
             routine = self._chip.vectors.cpu_routine(vector)
             place = self._source.last(name, "TCR")
-            if routine is None or place is None or not self._value(f"{name}.TCR", "TIE"):
+            if routine is None or place is None:
                 continue
             bit = 1 << vector - 1
+            wanted = bool(self._value(f"{name}.TCR", "TIE"))
+            runs = wanted and not self._value(f"{name}.TCR", "TSS")
             enabled = bool(self._chip.cpu.ier & bit)
-            if self._value(f"{name}.TCR", "TSS"):
-                if enabled and self._stuck(f"{name}.TCR", "TSS", lambda stopped: not stopped):
-                    self.silent.add(routine)
-                    missing = MissingLink(f"{name}.TCR.TSS = 1: it does not run", f"{name}.TCR", "TSS")
-                    self._report(place, f"{routine} waits for CPU timer {n}, which is stopped", missing, name)
-            elif not enabled and not self._source.could("CPU", "IER", bit, bool):
+            # A timer that the program has stopped by now may have asked before.
+            if self._never_let_through(vector) or (
+                runs and not enabled and not self._source.could("CPU", "IER", bit, bool)
+            ):  # fmt: skip
                 self.silent.add(routine)
                 # Report it where IER is set, because the statement that sets up the timer is right.
                 ier = self._source.last("CPU", "IER")
+                does = "runs" if runs else "has run out"
                 self._chip.findings.report_at(
                     ier or place, "not-connected",
-                    f"{routine} waits for CPU timer {n}, which runs: bit {vector - 1} of IER (M_INT{vector}) is 0",
+                    f"{routine} waits for CPU timer {n}, which {does}: bit {vector - 1} of IER (M_INT{vector}) is 0",
                     object=name, how="dynamic", details=(f"wanted by {place}",) if ier else (),
                 )  # fmt: skip
+            elif self._chip.cpu.lines_taken & bit:
+                pass  # the program has stopped it after its last interrupt
+            elif enabled and wanted and self._stuck(f"{name}.TCR", "TSS", lambda stopped: not stopped):
+                self.silent.add(routine)
+                missing = MissingLink(f"{name}.TCR.TSS = 1: it does not run", f"{name}.TCR", "TSS")
+                self._report(place, f"{routine} waits for CPU timer {n}, which is stopped", missing, name)
 
     def _trips(self) -> None:
         """Check the path from a comparator through the X-BAR and the digital compare of an ePWM to its trip zone."""

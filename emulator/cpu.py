@@ -69,7 +69,8 @@ class Cpu(Eallow):
 
     __slots__ = (
         "_began", "_described", "_forced", "_handlers", "_left", "_row", "_taken", "asleep", "clock", "deeper",
-        "dispatched", "findings", "ier", "ifr", "in_interrupt", "intm", "isr", "position", "sp", "stack_limit",
+        "dispatched", "findings", "ier", "ifr", "in_interrupt", "intm", "isr", "lines_taken", "position", "sp",
+        "stack_limit",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, findings: Findings) -> None:
@@ -82,6 +83,8 @@ class Cpu(Eallow):
         self.position = findings.position
         self.ier = 0
         self.ifr = 0
+        #: The lines that were ever taken, as in IFR.
+        self.lines_taken = 0
         self.in_interrupt = 0
         #: How many interrupts were ever taken.
         self._taken = 0
@@ -214,6 +217,7 @@ class Cpu(Eallow):
         raise InterruptStorm(message)
 
     def _enter(self, line: int) -> None:
+        self.lines_taken |= 1 << (line - 1)
         eallow, ier, row, began = self.eallow, self.ier, self._row, self._began
         position = self.position
         position.calls = interrupted = (position.at, position.calls, INTERRUPT)

@@ -76,6 +76,8 @@ class Pie:
         self._enabled_by: dict[int, Cause | None] = {}
         #: For each vector, when its routine ended, if there has been no pulse since; else -1.
         self._served = [-1] * VECTORS
+        #: For each vector, whether it was ever taken.
+        self._has_run = [False] * VECTORS
         #: (group, number) -> the flag that has kept a further event back, and the routine that left the flag.
         self._blocked: dict[tuple[int, int], tuple[str, Place]] = {}
         regs.bind("PIECTRL", write=self._write_PIECTRL)
@@ -149,6 +151,14 @@ class Pie:
     def kept_out(self, group: int, n: int) -> bool:
         """Whether interrupt `group`.`n` is pending, and PIEIER does not let it through."""
         return bool(self._ifr[group - 1].value & ~self._ier[group - 1].value & 1 << n - 1)
+
+    def was_enabled(self, group: int, n: int) -> bool:
+        """Whether PIEIER has ever let interrupt `group`.`n` through."""
+        return vector_id(group, n) in self._enabled_by
+
+    def has_run(self, group: int, n: int) -> bool:
+        """Whether interrupt `group`.`n` was ever taken."""
+        return self._has_run[vector_id(group, n)]
 
     def waits(self, group: int, n: int) -> bool:
         """Whether interrupt `group`.`n` is pending and enabled while no interrupt of its group was ever taken."""
@@ -236,6 +246,7 @@ class Pie:
         self._forced[x] &= ~bit
         vector = vector_id(x + 1, bit.bit_length())
         self._taken[x] = vector
+        self._has_run[vector] = True
         self._run(vector)
         self._served[vector] = self._clock.now
 

@@ -197,11 +197,12 @@ connections are checked:
 
 * ADC trigger: `TRIGSEL` selects an ePWM whose counter does not count (`TBCLKSYNC`, `CTRMODE`, `TBPRD`), which sends no
   trigger (`SOCAEN`, `SOCAPRD`), or which sends it at a compare value that the counter never reaches. Or it selects a
-  CPU timer that does not run.
+  CPU timer that does not run. `INTxSEL` selects a SOC that has no trigger, and no statement starts it.
 * Interrupts: `PIEIER` enables an interrupt whose source is not enabled, or an external interrupt whose pin was never
   selected (`INPUTxSELECT`). Or it enables a line without a routine, while another line of the group has a routine and
   is not enabled. Or the interrupt of a routine in the vector table has come, and no statement enables its line. Or
-  `IER` or `ENPIE` does not pass the interrupt on, or no statement executes `EINT`.
+  `IER` or `ENPIE` does not pass the interrupt on, or no statement executes `EINT`. So it is if `IER = M_INT1` takes bit
+  13 away again before the interrupt can come, and if the program has stopped the timer or disabled the line since.
 * DMA: a channel was never started, has no trigger, does not interrupt (`CHINTE`), or uses an ADC interrupt that is not
   enabled. It has stopped after a transfer, and is given the addresses of the next one without a start.
 * ADC post-processing: an event interrupts, and nothing starts the SOC of its block.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import partial
 from pathlib import Path
 
@@ -124,7 +125,11 @@ def told(tmp_path: Path, text: str, rule: str = "not-connected", seconds: float 
     ("EQep1Regs.QEPCTL.bit.UTE = 1;", "", "QEPCTL.bit.QPEN", "EQep1Regs.QEPCTL.UTE = 0"),
     ("EQep1Regs.QEINT.bit.UTO = 1;", "", "QEPCTL.bit.QPEN", "EQep1Regs.QEINT = 0"),
     ("EQep1Regs.QEPCTL.bit.QPEN = 1;", "", "QEPCTL.bit.UTE", "EQep1Regs.QEPCTL.QPEN = 0"),
+    ("    AdcaRegs.ADCSOC0CTL.bit.TRIGSEL = 5;\n", "    AdcaRegs.ADCSOC1CTL.bit.TRIGSEL = 5;\n", "INT1E = 1",
+     "INT1SEL = 0: SOC0 of ADC-A has no trigger"),
+    ("INT1E = 1;", "INT1E = 1; AdcaRegs.ADCINTSEL1N2.bit.INT1SEL = 9;", "INT1SEL = 9", "SOC9 of ADC-A has no trigger"),
     (" | M_INT5", "", "PIEIER5.bit.INTx1", "M_INT5"),
+    ("    EINT;\n", "    IER = M_INT1 | M_INT3;\n    EINT;\n", "PIEIER5.bit.INTx1", "M_INT5"),
     ("    EINT;\n", "", "IER |= M_INT1", "no statement executes EINT: "),
     ("    EINT;\n", "    DINT;\n", "IER |= M_INT1", "converted and edge and tick and period and unit never run, "),
     ("SCICTL1.all = 0x0022", "SCICTL1.all = 0x0002", "SCICTL1.all = 0x0002", "SciaRegs.SCICTL1.SWRESET = 0"),
@@ -186,7 +191,7 @@ def test_a_damage_of_the_corpus_is_told_with_the_link(damage: str, why: str) -> 
     # Each brings the missing link later, on an order that does not come in this run.
     "EPwm1Regs.TBCTL.bit.CTRMODE = 0;", "EPwm1Regs.ETSEL.bit.SOCAEN = 1;", "EPwm1Regs.TBPRD = 20000;",
     "SciaRegs.SCICTL1.all = 0x0022;", "XintRegs.XINT1CR.bit.ENABLE = 1;", "EQep1Regs.QUPRD = 200000;",
-    "AdcaRegs.ADCINTSEL1N2.bit.INT1E = 1;",
+    "AdcaRegs.ADCINTSEL1N2.bit.INT1E = 1;", "AdcaRegs.ADCSOC0CTL.bit.TRIGSEL = 5;",
 ])  # fmt: skip
 def test_a_right_program_is_told_nothing(tmp_path: Path, later: str) -> None:
     text = RIGHT
@@ -754,6 +759,82 @@ def test_a_routine_whose_line_is_never_enabled(tmp_path: Path, lines: str, later
     findings = told(tmp_path, text, seconds=0.005)
     assert [f.object for f in findings] == [at] * bool(at)
     assert all(f.place is not None and f"{at} =" in text.splitlines()[f.place.line - 1] for f in findings)
+
+
+@pytest.mark.parametrize("starts", [
+    "AdcaRegs.ADCSOCFRC1.bit.SOC9 = 1;", "AdcaRegs.ADCSOCFRC1.all = 0x0200;",
+    "EALLOW; AdcaRegs.ADCINTSOCSEL2.bit.SOC9 = 1; EDIS;", "EALLOW; AdcaRegs.ADCBURSTCTL.bit.BURSTEN = 1; EDIS;",
+    "EALLOW; AdcaRegs.ADCINTSEL1N2.bit.INT1SEL = 0; EDIS;",
+])  # fmt: skip
+def test_a_soc_that_a_statement_may_start_is_no_missing_trigger(tmp_path: Path, starts: str) -> None:
+    text = RIGHT.replace("INT1E = 1;", "INT1E = 1; AdcaRegs.ADCINTSEL1N2.bit.INT1SEL = 9;")
+    assert len(told(tmp_path, text)) == 1
+    assert told(tmp_path, text.replace("Count = 0;", f"if (Order) {{ {starts} }}")) == []
+
+
+#: Timer N counts the turns of a stirrer, which `main` stops after 3 ms; GIVE lets the interrupts through.
+STIRRER = """#include "F28x_Project.h"
+volatile Uint16 Ticks = 0, Turns = 0, Stirs = 1;
+__interrupt void Tick(void) { Ticks++; PieCtrlRegs.PIEACK.all = PIEACK_GROUP1; }
+__interrupt void Turn(void) { if (Stirs) Turns++; }
+void main(void)
+{
+""" + START_UP + """    EALLOW;
+    PieVectTable.TIMER0_INT = &Tick;
+    PieVectTable.TIMER1_INT = &Turn;
+    EDIS;
+    InitCpuTimers();
+    ConfigCpuTimer(&CpuTimer0, 200, 1000);
+    ConfigCpuTimer(&CpuTimer1, 200, 700);
+    StartCpuTimer0();
+    StartCpuTimer1();
+    PieCtrlRegs.PIEIER1.bit.INTx7 = 1;
+    GIVE
+    EINT;
+    for (;;)
+        if (Ticks > 3 && Stirs)
+        {
+            StopCpuTimer1();
+            Stirs = 0;
+        }
+}
+"""
+
+
+@pytest.mark.parametrize(("give", "at"), [
+    ("IER |= M_INT1 | M_INT13;", ""),
+    ("IER |= M_INT13; IER |= M_INT1;", ""),
+    ("IER = M_INT13 | M_INT1; DELAY_US(10); IER = M_INT1;", "Turn"),  # before the interrupt can come
+    ("IER = M_INT13; EINT; DELAY_US(2000); IER = M_INT1;", ""),  # it has come
+    ("IER |= M_INT1;", "Turn"),
+    ("IER |= M_INT1 | M_INT14;", "Turn"),
+    ("IER |= M_INT1; while ((IFR & M_INT13) == 0) {}", ""),  # it asks for it itself
+])  # fmt: skip
+@pytest.mark.parametrize("timer", [1, 2])
+def test_a_timer_that_the_program_has_stopped_has_asked_before(
+    tmp_path: Path, give: str, at: str, timer: int
+) -> None:
+    text = STIRRER.replace("GIVE", give)
+    if timer == 2:
+        both = {"M_INT13": "M_INT14", "M_INT14": "M_INT13"}
+        text = re.sub("M_INT1[34]", lambda bit: both[bit.group()], text)
+        text = text.replace("TIMER1", "TIMER2").replace("Timer1", "Timer2")
+    findings = told(tmp_path, text, seconds=0.008)
+    assert [f.message.split()[0] for f in findings] == [at] * bool(at)
+    assert all(f"waits for CPU timer {timer}, which has run out" in f.message for f in findings)
+    lines = text.splitlines()
+    assert all(f.place is not None and "IER " in lines[f.place.line - 1] for f in findings)
+
+
+@pytest.mark.parametrize(("bits", "count"), [("M_INT9", 1), ("M_INT1 | M_INT9", 0)])
+def test_a_line_that_is_enabled_for_a_while_is_let_through_by_ier_too(tmp_path: Path, bits: str, count: int) -> None:
+    # The program takes the line away for good after half of the time.
+    text = TWO_LINES.replace("LINES", TIMER_LINE + EDGE_LINE).replace("IER |= M_INT1;", f"IER |= {bits};")
+    text = text.replace("LATER", "if (++Turns == 4) PieCtrlRegs.PIEIER1.all = 0;")
+    text = text.replace("Edges = 0;", "Edges = 0, Turns = 0;")
+    findings = told(tmp_path, text, seconds=0.005)
+    assert len(findings) == 2 * count
+    assert all("is enabled at times, has come and never occurs: bit 0 of IER" in f.message for f in findings)
 
 
 #: Three bridges by a table; `ACTION` is what clears their outputs.
