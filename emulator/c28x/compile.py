@@ -29,7 +29,7 @@ from emulator.c28x.program import Program
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Where
-from emulator.c28x.tree_queries import compared, limited, made_float
+from emulator.c28x.tree_queries import compared, limited, limited_scalars, made_float
 
 
 @reading(0)
@@ -55,6 +55,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
     names_compared = compared(f for module in modules for f in module.functions)
     names_limited = limited(f for module in modules for f in module.functions)
     floats_made = made_float(f for module in modules for f in module.functions)
+    in_a_range = limited_scalars(f for module in modules for f in module.functions)
     regulators = wind_up(f for module in modules for f in module.functions) if options.watch else {}
     words = signed_words(f for module in modules for f in module.functions)
     costs = Costs(float_division(options.float_division))
@@ -71,8 +72,8 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
             frame.lay_out(function, options.room, residue=options.residue)
             Guards(
                 function, watch=options.watch, ieee=options.ieee, room=options.room, compared=names_compared,
-                limited=names_limited, made_float=floats_made, stamps=suspicions, pulses=cut_pulses,
-                regulators=regulators, words=words,
+                limited=names_limited, made_float=floats_made, in_a_range=in_a_range, stamps=suspicions,
+                pulses=cut_pulses, regulators=regulators, words=words,
             ).run()  # fmt: skip
             costs.leave(function)
             mark_copy_and_clear(function)

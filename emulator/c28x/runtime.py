@@ -54,6 +54,8 @@ WRONG_PULSES: Final = 3
 SMALL: Final = -4096
 #: CHOICE: what an integer quotient of this size loses is less than a hundredth, and its author may not need that.
 _FINE: Final = 100
+#: A float above this one has hardly a fraction.
+_WHOLE: Final = 1e6
 #: CHOICE: a float passed for an integer parameter that never reaches this value was not meant as an integer.
 _FEW: Final = 10
 #: CHOICE: after so many limited outputs it is known whether their limit moves.
@@ -1069,6 +1071,33 @@ class Runtime:
         meant = value - 2 * (site.bound + 1)
         message = f"{site.name} is {value}, as its highest bit is no sign here: {meant} is meant, {site.widened}"
         self.hit(site, "sign-lost", message, value)
+        return value
+
+    def gone_back(self, value: int, number: int) -> int:
+        """A difference of 32 bits that is just below 0, and of which 16 bits without a sign are kept."""
+        site = self.sites[number]
+        gone, kept = value - 0x1_0000_0000, value & 0xFFFF
+        message = f"{site.name} is {gone}: as 16 bits without a sign it is {kept}, which {site.widened}"
+        self.hit(site, "sign-lost", message, gone)
+        return value
+
+    def shifted_sign(self, value: int, number: int) -> int:
+        """A signed shift register whose highest bit is set, where it is shifted to the right."""
+        site = self.sites[number]
+        ctype = site.ctype
+        assert isinstance(ctype, IntType)
+        bits = f"{value & 2 * ctype.high + 1:#x}"
+        message = f"{site.name} holds the bits {bits}, as an {ctype} {value}: {site.widened}"
+        self.hit(site, "sign-extended", message, value)
+        return value
+
+    def fraction(self, value: float, number: int) -> float:
+        """A float that a cast makes an integer before it is multiplied by a scale."""
+        site = self.sites[number]
+        if abs(value) < _WHOLE and int(value * site.scale) != int(value) * int(site.scale):
+            message = f"{site.name} is {value:.7g}, and {int(value)} in front of the factor {site.scale:g}"
+            became = f"{int(value) * int(site.scale)} instead of {int(value * site.scale)}"
+            self.hit(site, "remainder-lost", f"{message}: {became}", value)
         return value
 
     def no_case(self, value: int, number: int) -> None:

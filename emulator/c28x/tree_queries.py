@@ -390,6 +390,19 @@ def made_float(functions: Iterable[Function]) -> set[NamedScalar]:
     return found
 
 
+def limited_scalars(functions: Iterable[Function]) -> set[NamedScalar]:
+    """The scalars that some expression compares by order with a constant."""
+    found: set[NamedScalar] = set()
+    for function in functions:
+        for p in within(function.body):
+            if isinstance(p, Compare) and p.op not in ("==", "!="):
+                for side, other in ((bare(p.left), p.right), (bare(p.right), p.left)):
+                    named = named_scalar(side.lvalue) if isinstance(side, Load) and isinstance(other, Const) else None
+                    if named is not None:
+                        found.add(named)
+    return found
+
+
 def _as_it_is(e: Expr) -> Expr:
     """An integer without the conversions around it that keep every value that is not negative."""
     match e:

@@ -47,7 +47,8 @@ is reported when such a width is used as a wider number for the third time.
 
 Two cases are not reported: a difference of two unsigned variables that wraps to a small number, because programs
 compute elapsed counts in that way; and a result that is cast to its own type, because the cast says that the wrap is
-intended.
+intended. A number minus a constant is no elapsed count: `(long) (Uint16) (raw - 512U) * 5` is reported in spite of the
+cast, where it is scaled or becomes a float.
 
 **Fix:** cast one operand first: `(long) a * b`, `((int) adc - 2048) * 0.001`; `atol` for `atoi`.
 """,
@@ -56,7 +57,7 @@ intended.
     _rule(
         "remainder-lost",
         Severity.WARNING,
-        "An integer division lost its remainder before the quotient became a float or was scaled.",
+        "A remainder or a fraction was lost before the number became a float or was scaled.",
         """
 A ratio or a percentage is 0, or always a whole number.
 
@@ -173,7 +174,9 @@ The finding is made where a negative number becomes unsigned, if the object or p
 makes it unsigned and the result is then widened and multiplied, divided, or converted to float. So it is if the source
 casts a number to a signed type, an unsigned object or member takes it, and another expression makes a float of that
 (`raw.x = (int16)(high << 8 | low);` with `Uint16 x`). Then only -4096 to -1 count: a cast may be needless, but a small
-negative number is none of the upper half of an unsigned range.
+negative number is none of the upper half of an unsigned range. The same small numbers count if 16 bits without a sign
+are kept of a difference of 32 bits, and become a float (`(Uint16) (count - before)` of a wheel that turns back): no
+time since a stamp is below 0.
 
 A word that came in octets (`int32_t rpm = data[0] | data[1] << 8;`), from a buffer or a union has no sign either. It is
 reported if its highest bit is set, and the object that takes it gets nothing else and is compared by order with a
@@ -191,7 +194,7 @@ These are not reported: additions and subtractions, which give the right result;
     _rule(
         "sign-extended",
         Severity.ERROR,
-        "A number above 32767 became an int, and was then compared with the same number in 32 bits.",
+        "A number above 32767 became an int, and its highest bit was then taken for a sign.",
         """
 A checksum is right for half of the messages.
 
@@ -201,6 +204,10 @@ of such a comparison does the same.
 
 The finding is made while the program runs, if both sides are the same number before the `int`. A negative number that
 was meant (a temperature, an offset) is not reported.
+
+Or the checksum is right for hardly any message: `int crc` is shifted to the right, and copies of its sign come in from
+above. The finding is made when such a register is negative at its shift, and an exclusive or with a constant that needs
+its highest bit (`(crc >> 1) ^ 0xA001`) says that it holds bits and no number. A mask (`crc >> 1 & 0x7FFF`) is right.
 
 **Fix:** `Uint16` for words that have no sign, on both sides.
 """,

@@ -804,6 +804,12 @@ class PythonWriter:
             return f"(_t if 0 <= (_t := {text}) <= {guard.site.bound} else _c_quantity(_t, {number}))"
         if guard.kind == "signed-word":
             return f"(_t if (_t := {text}) <= {guard.site.bound} else _c_signed_word(_t, {number}))"
+        if guard.kind == "gone-back":
+            return f"(_t if (_t := {text}) <= {guard.site.bound} else _c_gone_back(_t, {number}))"
+        if guard.kind == "fraction":
+            return f"_c_fraction({text}, {number})"
+        if guard.kind == "shifted-sign":
+            return f"(_t if 0 <= (_t := {text}) else _c_shifted_sign(_t, {number}))"
         if guard.kind == "sign-lost":
             return f"(_t if 0 <= (_t := {text}) else _c_sign_lost(_t, {number}))"
         return f"_c_float_out({text}, {number})"

@@ -28,6 +28,9 @@ Kinds of guards:
 | `float-out` | floats that others will see | they are finite |
 | `quantity` | integers that go to a register field | they fit the field |
 | `sign-lost` | signed integers that are scaled or limited as unsigned ones | they are not negative |
+| `gone-back` | differences of 32 bits that become a float by 16 bits without a sign | they are not negative |
+| `fraction` | floats that a cast makes integers in front of a factor | no fraction is lost that counts |
+| `shifted-sign` | signed shift registers (pass `signs`) | their highest bit is not set |
 | `signed-word` | unsigned words that the source takes for signed (pass `signs`) | their highest bit is not set |
 | `regulator` | parts of regulators (pass `wind_up`) | their integral does not run beyond the limits of the output |
 """
@@ -114,11 +117,14 @@ from emulator.c28x.tree_queries import (
     variables,
     without_end,
 )  # fmt: skip
+from emulator.c28x.tree_queries import within as inside
 
 #: Factors that scale a ratio: per cent, per mille, milli.
 SCALES: Final = (10, 100, 1000, 10000)
 #: CHOICE: an odd factor above this one spreads the bits of a hash or of a random number; 4095 is the last of an ADC.
 _HASH: Final = 4095
+#: CHOICE: a difference of 32 bits without a sign above this one is a small negative one, and no time.
+LAST_TIME: Final = 0xFFFF_FFFF - 4096
 CHARACTERS: Final = (CHAR.name, SCHAR.name, UCHAR.name)
 #: Fields that hold a quantity, a level or a number: nobody intends a value that does not fit.  Fields for a phase (it
 #: is cyclic), an octet (the lower part of a word) or a flag (a truth value) are not among them.
@@ -139,15 +145,15 @@ class Guards:
 
     `watch`: the image is watched; `ieee`: float division follows IEEE; `room`: path of an array -> its length, instead
     of that of its type; `compared`: variables that occur in a comparison or a subscript; `limited`: unsigned variables
-    that some function limits; `made_float`: unsigned scalars that some function makes floats of; `stamps`: the
-    suspicions of pass `stamps`; `pulses`: the result of pass `pulses`; `regulators`, `words`:
-    those of passes `wind_up` and `signs`.
+    that some function limits; `made_float`: unsigned scalars that some function makes floats of; `in_a_range`: scalars
+    that some function compares by order with a constant; `stamps`: the suspicions of pass `stamps`; `pulses`: the
+    result of pass `pulses`; `regulators`, `words`: those of passes `wind_up` and `signs`.
     """
 
     def __init__(
         self, function: Function, *, watch: bool, ieee: bool, room: Mapping[str, int], compared: Set[Variable],
-        limited: Set[Variable], made_float: Set[NamedScalar], stamps: Mapping[int, str], pulses: Mapping[int, str],
-        regulators: Mapping[int, RegulatorPart], words: Mapping[int, SignedWord],
+        limited: Set[Variable], made_float: Set[NamedScalar], in_a_range: Set[NamedScalar], stamps: Mapping[int, str],
+        pulses: Mapping[int, str], regulators: Mapping[int, RegulatorPart], words: Mapping[int, SignedWord],
     ) -> None:  # fmt: skip
         self.function = function
         self.watch = watch
@@ -156,6 +162,7 @@ class Guards:
         self.compared = compared
         self.limited = limited
         self.made_float = made_float
+        self.in_a_range = in_a_range
         self.stamps = stamps
         self.pulses = pulses
         self.regulators = regulators
@@ -168,6 +175,8 @@ class Guards:
         #: Identity of each result that is widened afterwards -> the wider type; identities of remainders as subscripts.
         self.widened: dict[int, str] = {}
         self.indexing: set[int] = set()
+        #: Identities of the operands of products and quotients.
+        self.scaled: set[int] = set()
         self.averaged = averaged(function.body)
         self.kept = kept_objects(function.body)
         self.stepped = {n for s in statements(function.body) if isinstance(s, While) for n in steps(s)}
@@ -195,7 +204,7 @@ class Guards:
             word = self.words.get(id(p))
             if word is not None and p.leaving is None:
                 site = self.site(p.ctype, source_text(p), at=p.where, bound=word.largest, widened=word.use)
-                p.leaving = Guard("signed-word", site)
+                p.leaving = Guard(word.kind, site)
             part = self.regulators.get(id(p))
             if part is not None:
                 name = part.integral if part.kind == "sum" else source_text(p)
@@ -317,6 +326,23 @@ class Guards:
             later = "becomes a float later"
             site = self.site(cast.ctype, source_text(cast), at=cast.where, widened=later, kind="small")
             cast.leaving = Guard("sign-lost", site)
+        named = named_scalar(target)
+        if named in self.made_float and named not in self.in_a_range:
+            self.gone_back(value, "becomes a float later")
+
+    def gone_back(self, e: Expr, then: str) -> None:
+        """Check a difference of 32 bits of which 16 bits without a sign are kept, and become a float.
+
+        A time since a stamp of 32 bits is never just below 0; a way is, once the wheel turns back.
+        """
+        match e:
+            case Convert(
+                ctype=IntType(signed=False, bits=16),
+                operand=Binary(op="-", ctype=IntType(signed=False, bits=32), right=right) as difference,
+            ) if not isinstance(right, Const):
+                text = source_text(difference)
+                site = self.site(difference.ctype, text, at=difference.where, widened=then, bound=LAST_TIME)
+                difference.leaving = Guard("gone-back", site)
 
     def not_negative(self, e: Expr, then: str) -> None:
         """Check a signed number that is converted to unsigned of the same width; `then`: how it is used as a number."""
@@ -454,6 +480,9 @@ class Guards:
 
     def mathematical(self, e: Expr, ctype: IntType) -> None:
         """Decide for the operands below the + - * << of an unsigned tree that is computed without wraps."""
+        for product in parts(e):
+            if isinstance(product, Binary) and product.op == "*":
+                self.scaled |= {id(product.left), id(product.right)}
         for leaf in mathematical_leaves(e, ctype):
             self.value(leaf)
         for product in parts(e):
@@ -469,6 +498,24 @@ class Guards:
             large = isinstance(other, Const) and other.value > UINT.high
             if isinstance(side, Convert) and not large and side.operand.ctype != side.ctype:
                 self.not_negative(side.operand, "is scaled")
+            if isinstance(other, Const) and other.value in SCALES:
+                self.cut_before(side, int(other.value))
+
+    def cut_before(self, side: Expr, scale: int) -> None:
+        """Check a float that a cast makes an integer in front of a factor, if nothing else scales this float.
+
+        Digits are taken apart so: `(int) (x * 10) - (int) x * 10`.
+        """
+        while isinstance(side, Convert) and isinstance(side.operand.ctype, IntType):
+            side = side.operand
+        if not isinstance(side, Convert) or not side.explicit or not isinstance(side.operand, Load | Call):
+            return
+        value = side.operand
+        if isinstance(value, Call) or not any(
+            isinstance(p, Binary) and _takes_fraction(p, value.lvalue, scale) for p in inside(self.function.body)
+        ):  # fmt: skip
+            site = self.site(value.ctype, source_text(value), at=value.where, scale=float(scale))
+            value.leaving = Guard("fraction", site)
 
     def mark_widened(self, e: Expr, to: str) -> None:
         """Remember that the results below `e` are converted to `to` only after they have been computed."""
@@ -503,6 +550,8 @@ class Guards:
             quotient = bare(e.left)
             if isinstance(quotient, Binary) and quotient.op == "/" and not isinstance(quotient.right, Const):
                 self.widened.setdefault(id(quotient), "scaled")
+        if op in ("*", "/"):
+            self.scaled |= {id(e.left), id(e.right)}
         self.dividend(e)
         self.value(e.right)
         self.factors(e)
@@ -579,6 +628,9 @@ class Guards:
         ):
             self.mark_widened(operand, target.name)
             self.unwrapped(operand, "widened-late", target.name)
+            less = less_constant(operand)
+            if less is not None and (isinstance(target, FloatType) or id(e) in self.scaled):
+                self.unwrapped(less, "widened-late", target.name)
         else:
             self.value(operand)
         if isinstance(operand, Call) and operand.function.extern and operand.function.name == "atoi" and (
@@ -589,6 +641,7 @@ class Guards:
             return
         if isinstance(target, FloatType) and isinstance(operand, Convert) and operand.explicit:
             self.not_negative(operand, "becomes a float")
+            self.gone_back(operand, "becomes a float")
         match target, source:
             case FloatType(), IntType(bits=bits) if bits <= 16:
                 self.signed_character(e)
@@ -815,6 +868,20 @@ def as_unsigned(e: Expr) -> Expr | None:
     return None
 
 
+def less_constant(e: Expr) -> Binary | None:
+    """The difference of an unsigned number and a constant, in a cast to its own type; None for other expressions.
+
+    Such a cast says that a wrap is intended, as for the time since a stamp.  A constant is no stamp.
+    """
+    match e:
+        case Convert(
+            ctype=IntType(signed=False, bits=bits), operand=Binary(op="-", ctype=IntType(signed=False), right=Const())
+        ) if isinstance(e.operand.ctype, IntType) and e.operand.ctype.bits == bits:
+            assert isinstance(e.operand, Binary)
+            return e.operand
+    return None
+
+
 def cut_to_int(e: Expr) -> Convert | Call | None:
     """The `int` that `e` widens, if it was a wider or an unsigned number before.
 
@@ -980,6 +1047,14 @@ def _mixed(e: Expr, target: IntType) -> bool:
             shifted = any(isinstance(side, Binary) and side.op == "<<" for side in sides)
             return sum(signed) == 1 and not shifted and not any(isinstance(side, Const) for side in sides)
     return False
+
+
+def _takes_fraction(e: Binary, lvalue: LValue, scale: int) -> bool:
+    """Whether a float operation scales an object too, or takes its whole part away: `x * 10.0f`, `x - (int) x`."""
+    sides = [bare(side) for side in (e.left, e.right)]
+    if not isinstance(e.ctype, FloatType) or not any(isinstance(s, Load) and s.lvalue == lvalue for s in sides):
+        return False
+    return e.op == "-" or (e.op == "*" and any(isinstance(s, Const) and s.value == scale for s in sides))
 
 
 def _stepped(e: Expr) -> Variable | None:

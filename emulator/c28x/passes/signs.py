@@ -10,7 +10,11 @@ object that takes it is compared by order with a negative number, and never gets
 The second form is a comparison by order in which a cast makes a signed number unsigned, and the other side is an object
 that gets signed numbers by casts, too.  One of the two alone may be the test whether a subscript is within an array.
 
-The result are the unsigned expressions that must not have their highest bit set.  The running code checks it.
+The third form is a shift register that is signed, a CRC: it is shifted to the right, and an exclusive or with a
+constant that needs its highest bit says that its bits are no number.  A mask behind the shift takes the copies of the
+sign away.
+
+The result are the expressions that must not have their highest bit set.  The running code checks it.
 """
 
 from __future__ import annotations
@@ -40,6 +44,7 @@ from emulator.c28x.tree_queries import (
     addressed,
     bare,
     named_scalar,
+    parts,
     source_text,
     statements,
     within,
@@ -47,16 +52,17 @@ from emulator.c28x.tree_queries import (
 
 
 class SignedWord(NamedTuple):
-    """The largest value of an unsigned expression that has no sign, and how the source takes it for a signed one."""
+    """The largest value of an expression without a sign, how the source takes its highest bit, the kind of guard."""
 
     largest: int
     use: str
+    kind: str = "signed-word"
 
 
 def signed_words(functions: Iterable[Function]) -> dict[int, SignedWord]:
     """Identities of unsigned expressions whose highest bit is a sign for the source."""
     functions = list(functions)
-    return _widened(functions) | _compared(functions)
+    return _widened(functions) | _compared(functions) | _shift_registers(functions)
 
 
 def _widened(functions: list[Function]) -> dict[int, SignedWord]:
@@ -148,6 +154,45 @@ def _compared(functions: list[Function]) -> dict[int, SignedWord]:
             use = f"{source_text(compare)} compares it"
             found[id(side)] = found[id(load)] = SignedWord(0x7FFF, use)
     return found
+
+
+def _shift_registers(functions: list[Function]) -> dict[int, SignedWord]:
+    """The signed objects, where they are shifted to the right, that an exclusive or shows to be shift registers."""
+    found: dict[int, SignedWord] = {}
+    for function in functions:
+        mixed = {
+            s.target.root: polynomial for s in statements(function.body)
+            if isinstance(s, Assign) and isinstance(s.target, LValue) and isinstance(s.target.root, Variable)
+            for p in parts(s.value) if (polynomial := _polynomial(p, s.target)) is not None
+        }  # fmt: skip
+        nodes = list(within(function.body)) if mixed else []
+        masked = {id(bare(side)) for p in nodes if isinstance(p, Binary) and p.op == "&" for side in (p.left, p.right)}
+        for p in nodes:
+            match p:
+                case Binary(
+                    op=">>", ctype=IntType(signed=True),
+                    left=Load(ctype=IntType() as ctype, lvalue=LValue(root=Variable() as root)) as register,
+                ) if root in mixed and id(p) not in masked:  # fmt: skip
+                    use = f"{source_text(p)} copies its sign; {mixed[root]:#x} needs all {ctype.bits} bits"
+                    found[id(register)] = SignedWord(ctype.high, use, "shifted-sign")
+    return found
+
+
+def _polynomial(e: Expr, register: LValue) -> int | None:
+    """The constant of an exclusive or with a signed object, or with it shifted to the right, if it needs the sign bit.
+
+    All ones are none: they invert the result.
+    """
+    match e:
+        case Binary(op="^", left=left, right=right):
+            for side, other in ((bare(left), bare(right)), (bare(right), bare(left))):
+                if isinstance(side, Binary) and side.op == ">>":
+                    side = bare(side.left)
+                match side, other:
+                    case Load(lvalue=lvalue, ctype=IntType(signed=True, high=high)), Const(value=int(value)):
+                        if lvalue == register and high < value < 2 * high + 1:
+                            return value
+    return None
 
 
 def _is_word(e: Expr) -> bool:

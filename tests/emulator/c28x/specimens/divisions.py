@@ -42,6 +42,45 @@ def Rate(counts: int16) -> float32:
 """,
     ),
     Pair(
+        "remainder-lost",
+        "a float is cut before it is scaled; digits are taken apart so",
+        (("Show", (21.75,)),),
+        """
+Tenths: uint16 = 0
+Digit: int16 = 0
+def Show(celsius: float32) -> uint16:
+    Tenths = uint16(celsius) * 10  # <-
+    return Tenths
+""",
+        """
+Tenths: uint16 = 0
+Digit: int16 = 0
+def Show(celsius: float32) -> uint16:
+    Tenths = uint16(celsius * 10.0)
+    Digit = int16(celsius * 10.0) - int16(celsius) * 10
+    return Tenths
+""",
+    ),
+    Pair(
+        "remainder-lost",
+        "a measured float is cut in front of its unit; whole ones lose nothing",
+        (("Set", (2.5,)), ("Set", (3.0,))),
+        """
+Period: uint32 = 0
+def Set(seconds: float32) -> uint32:
+    Period = uint32(uint16(seconds)) * 1000  # <-
+    return Period
+""",
+        """
+Period: uint32 = 0
+def Set(seconds: float32) -> uint32:
+    whole: float32
+    whole = 4.0 if seconds < 4.0 else 5.0
+    Period = uint32(uint16(whole)) * 1000
+    return Period
+""",
+    ),
+    Pair(
         "float-to-int",
         "a temperature beyond the range of int",
         (("Scale", (900.0,)),),

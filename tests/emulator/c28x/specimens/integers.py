@@ -518,4 +518,127 @@ def Mean() -> uint16:
     return uint16(s / 4)
 """,
     ),
+    Pair(
+        "widened-late",
+        "a reading below its zero, with a cast; the time since a stamp wraps as it is meant",
+        (("Pressure", (700,)), ("Pressure", (511,)), ("Age", (3,))),
+        """
+Stamp: uint16 = 65530
+def Pressure(raw: uint16) -> int32:
+    return int32(uint16(raw - 512)) * 375 / 64  # <-
+def Age(now: uint16) -> int32:
+    return int32(uint16(now - Stamp)) * 5
+""",
+        """
+Stamp: uint16 = 65530
+def Pressure(raw: uint16) -> int32:
+    return (int32(raw) - 512) * 375 / 64
+def Age(now: uint16) -> int32:
+    return int32(uint16(now - Stamp)) * 5
+""",
+    ),
+    Pair(
+        "widened-late",
+        "an offset is taken away in 16 bits, and the rest becomes a float; a test of a range may wrap",
+        (("Volts", (2040,)), ("Letter", (60,))),
+        """
+def Volts(raw: uint16) -> float32:
+    return float32(uint16(raw - 2048)) * 0.001  # <-
+def Letter(c: uint16) -> int16:
+    return 1 if uint16(c - 65) < 26 else 0
+""",
+        """
+def Volts(raw: uint16) -> float32:
+    return float32(int16(raw - 2048)) * 0.001
+def Letter(c: uint16) -> int16:
+    return 1 if uint16(c - 65) < 26 else 0
+""",
+    ),
+    Pair(
+        "sign-lost",
+        "the way of a wheel in 16 bits without a sign; the time between two edges has none",
+        (("Turn", (1000,)), ("Turn", (995,)), ("Lap", (70000,))),
+        """
+Before: uint32 = 990
+Edge: uint32 = 5000
+Moved: uint16 = 0
+def Turn(count: uint32) -> float32:
+    Moved = uint16(count - Before)  # <-
+    Before = count
+    return float32(Moved) * 0.25
+def Lap(now: uint32) -> float32:
+    width: uint16
+    width = uint16(now - Edge)
+    Edge = now
+    return float32(width)
+""",
+        """
+Before: uint32 = 990
+Edge: uint32 = 5000
+Moved: int16 = 0
+def Turn(count: uint32) -> float32:
+    Moved = int16(count - Before)
+    Before = count
+    return float32(Moved) * 0.25
+def Lap(now: uint32) -> float32:
+    width: uint16
+    width = uint16(now - Edge)
+    Edge = now
+    return float32(width)
+""",
+    ),
+    Pair(
+        "sign-extended",
+        "a checksum is shifted with its sign",
+        (("Check", (0x81,)), ("Check", (0x17,))),
+        """
+Crc: int16 = 0
+def Check(octet: uint16) -> int16:
+    i: uint16
+    Crc ^= octet
+    for i in range(8):
+        if Crc & 1:
+            Crc = int16((Crc >> 1) ^ 0x8408)  # <-
+        else:
+            Crc >>= 1
+    return Crc
+""",
+        """
+Crc: uint16 = 0
+def Check(octet: uint16) -> int16:
+    i: uint16
+    Crc ^= octet
+    for i in range(8):
+        if Crc & 1:
+            Crc = (Crc >> 1) ^ 0x8408
+        else:
+            Crc >>= 1
+    return int16(Crc)
+""",
+    ),
+    Pair(
+        "sign-extended",
+        "a generator of 32 bits; a mask takes the copies of the sign away",
+        (("Next", ()), ("Next", ()), ("Next", ())),
+        """
+Noise: int32 = -17
+def Next() -> int16:
+    bit: int16
+    bit = int16(Noise & 1)
+    Noise >>= 1  # <-
+    if bit:
+        Noise = int32(uint32(Noise) ^ 0xB4000000)
+    return bit
+""",
+        """
+Noise: int32 = -17
+def Next() -> int16:
+    bit: int16
+    bit = int16(Noise & 1)
+    Noise = (Noise >> 1) & 0x7FFFFFFF
+    if bit:
+        Noise = int32(uint32(Noise) ^ 0xB4000000)
+    return bit
+""",
+    ),
 )
