@@ -563,10 +563,15 @@ class SerialLine:
             self.break_changed.emit(low)
 
 
+#: Clock schemes of the SPI: 2 cpol + cpha.
+SPI_MODES: Final = frozenset(range(4))
+
+
 class SpiSlave(Protocol):
     """An SPI device as a bus sees it.
 
-    A device with a maximum clock has an attribute `greatest_clock_hz`.
+    A device with a maximum clock has an attribute `greatest_clock_hz`; one that does not take every clock scheme has
+    `clock_modes`, those that it takes: mode = 2 cpol + cpha.
     """
 
     def select(self, level: int) -> None:
@@ -585,7 +590,7 @@ class SpiBus:
 
     __slots__ = (
         "_slaves", "addressed", "connected", "deselected", "exchanged", "greatest_clock_hz", "idle_in", "missing",
-        "name",
+        "name", "refused",
     )  # fmt: skip
 
     def __init__(self, name: str, idle_in: int = 0) -> None:
@@ -598,13 +603,20 @@ class SpiBus:
         self._slaves: list[tuple[Wire, SpiSlave]] = []
         #: The maximum clock of the slowest slave, in Hz.
         self.greatest_clock_hz = inf
+        #: A bit for each mode that one of the slaves does not take.
+        self.refused = 0
         #: (chip_select): a chip select has risen.
         self.deselected: Signal[Wire] = Signal()
         #: (simo, somi): at the end of each word that the pins carried, its bits on both lines.
         self.exchanged: Signal[int, int] = Signal()
 
     def attach(self, chip_select: Wire, slave: SpiSlave) -> None:
-        """Connect `slave` to the bus; a low level of `chip_select` selects it."""
+        """Connect `slave` to the bus; a low level of `chip_select` selects it.  Raises ValueError for `clock_modes`."""
+        modes = frozenset(getattr(slave, "clock_modes", SPI_MODES))
+        if not modes or not modes <= SPI_MODES:
+            raise ValueError(f"{self.name}: clock_modes of {type(slave).__name__}: expected some of 0, 1, 2 and 3")
+        for mode in SPI_MODES - modes:
+            self.refused |= 1 << mode
         self._slaves.append((chip_select, slave))
         self.greatest_clock_hz = min(self.greatest_clock_hz, getattr(slave, "greatest_clock_hz", inf))
         chip_select.changed.connect(slave.select)
@@ -620,6 +632,12 @@ class SpiBus:
         """The selected slaves whose maximum clock is below `clock_hz`."""
         for chip_select, slave in self._slaves:
             if chip_select.level == 0 and clock_hz > getattr(slave, "greatest_clock_hz", inf):
+                yield slave
+
+    def refusing(self, mode: int) -> Iterator[SpiSlave]:
+        """The selected slaves that do not take a mode."""
+        for chip_select, slave in self._slaves:
+            if chip_select.level == 0 and mode not in getattr(slave, "clock_modes", SPI_MODES):
                 yield slave
 
     @property

@@ -174,6 +174,7 @@ class Spi:
         #: Clock scheme of the bus, as mode = 2 cpol + cpha.
         self._cpol = 1 if ccr & CLKPOLARITY else 0
         self._cpha = 0 if ctl & CLK_PHASE else 1
+        self._mode = 2 * self._cpol + self._cpha
 
     # --- registers -------------------------------------------------------------------------------------------------
 
@@ -412,6 +413,8 @@ class Spi:
                     self._check_selected()
                 elif self._clock_hz > self._bus.greatest_clock_hz:
                     self._too_fast()
+                elif self._bus.refused >> self._mode & 1:
+                    self._check_mode()
             finally:
                 self._cpu.findings.cause = None
             self._cut = False
@@ -447,6 +450,17 @@ class Spi:
                 "device-clock",
                 f"{name} is clocked with {self._clock_hz / 1e6:.3g} MHz on {self._bus.name}: it takes {most / 1e6:.3g} "
                 f"MHz at most (LSPCLK {SYSCLK_HZ / self._lspclk_divider() / 1e6:.4g} MHz, SPIBRR {self._brr.value})",
+                object=name,
+            )  # fmt: skip
+
+    def _check_mode(self) -> None:
+        for slave in self._bus.refusing(self._mode):
+            modes = " and ".join(map(str, sorted(getattr(slave, "clock_modes", ()))))
+            name, phase = type(slave).__name__, int(not self._cpha)
+            self._cpu.findings.report(
+                "spi-mode",
+                f"{name} takes mode {modes}, and {self._bus.name} has mode {self._mode}: CLKPOLARITY = {self._cpol}, "
+                f"CLK_PHASE = {phase}",
                 object=name,
             )  # fmt: skip
 

@@ -881,7 +881,10 @@ half a millisecond or more, and then resets the module (`IRS = 0`), and if there
 Every byte is shifted by one bit: numbers are doubled, halved or odd.
 
 Clock polarity and phase decide at which edge each side samples. The phase bit of this chip (`CLK_PHASE`) is the
-inverse of the usual CPHA.
+inverse of the usual CPHA: mode 0 is `CLKPOLARITY = 0, CLK_PHASE = 1`, mode 1 is 0 and 0, mode 2 is 1 and 1, mode 3 is
+1 and 0.
+
+A part of your own board says which modes it takes: `clock_modes = (1,)` in its class.
 
 **Fix:** for mode 0 of the gyro `CLKPOLARITY = 0, CLK_PHASE = 1`, for mode 3 `CLKPOLARITY = 1, CLK_PHASE = 0`.
 """,

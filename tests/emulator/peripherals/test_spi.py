@@ -44,7 +44,7 @@ class Bench:
         self.regs = SpiRegs("SpiaRegs", 0x6100, cpu)
         self.chip_select = Wire("cs", pull=1)
         self.slave = EchoSlave()
-        bus = SpiBus("spia")
+        self.bus = bus = SpiBus("spia")
         bus.attach(self.chip_select, self.slave)
         self.chip_select.drive("test", 0)
         self.rx: list[int] = []
@@ -91,6 +91,39 @@ def test_baud_rate(brr: int, cycles_per_bit: int) -> None:
     bench.regs.SPITXBUF = 1
     bench.clock.advance_to(bench.clock.next)
     assert bench.clock.now == 16 * cycles_per_bit
+
+
+#: (CLKPOLARITY, CLK_PHASE) of each mode: the phase bit is the inverse of CPHA.
+MODES = [(0, 1), (0, 0), (1, 1), (1, 0)]
+
+
+@pytest.mark.parametrize("mode", range(4))
+@pytest.mark.parametrize("modes", [(1,), (0, 3), (0, 1, 2, 3), None])
+def test_a_part_that_declares_its_modes(mode: int, modes: tuple[int, ...] | None) -> None:
+    polarity, phase = MODES[mode]
+    bench = Bench(ccr=7 | polarity << 6, ctl=MASTER_TALK | phase << 3)
+    part = EchoSlave()
+    other = Wire("other", pull=1)
+    if modes is not None:
+        part.clock_modes = modes  # type: ignore[attr-defined]
+    bench.bus.attach(other, part)
+    bench.word(0x4200)
+    assert [f.rule for f in bench.findings] == []  # another part was meant
+    bench.chip_select.drive("test", 1)
+    other.drive("test", 0)
+    bench.word(0x4200)
+    told = [f.message for f in bench.findings]
+    assert len(told) == int(modes is not None and mode not in modes)
+    assert all(f"has mode {mode}: CLKPOLARITY = {polarity}, CLK_PHASE = {phase}" in message for message in told)
+    assert [seen[2:] for seen in part.seen] == [(mode >> 1, mode & 1)]
+
+
+@pytest.mark.parametrize("modes", [(), (4,), (-1, 0)])
+def test_modes_that_no_bus_has(bench: Bench, modes: tuple[int, ...]) -> None:
+    part = EchoSlave()
+    part.clock_modes = modes  # type: ignore[attr-defined]
+    with pytest.raises(ValueError, match="clock_modes of EchoSlave: expected some of 0, 1, 2 and 3"):
+        bench.bus.attach(Wire("other", pull=1), part)
 
 
 def test_transmit_takes_bits_from_bit_15_downward(bench: Bench) -> None:
