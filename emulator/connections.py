@@ -59,6 +59,7 @@ TIMERS: Final = range(1, 4)
 #: Values of TBCTL.CTRMODE.
 UP: Final = 0
 DOWN: Final = 1
+UP_DOWN: Final = 2
 STOPPED: Final = 3
 #: Choice of ETSEL -> its compare, and the counter mode in which it never occurs: 4 CAU, 5 CAD, 6 CBU, 7 CBD.
 COMPARES: Final = {4: ("CMPA", DOWN), 5: ("CMPA", UP), 6: ("CMPB", DOWN), 7: ("CMPB", UP)}
@@ -70,6 +71,8 @@ LET_THROUGH: Final = (
 #: Fields of AQCTLA and AQCTLB, and those of their values that do not toggle.
 AQ_EVENTS: Final = ("ZRO", "PRD", "CAU", "CAD", "CBU", "CBD")
 AQ_LEVELS: Final = {1: "clears", 2: "sets"}
+#: Values of AQCTLA and AQCTLB, as they act on an output.
+AQ_ACTIONS: Final = {1: "cleared", 2: "set"}
 #: Channels of an ADC that are pins (DS, analog subsystem); the others are inside of the chip.
 ADC_PINS: Final = (*range(6), 14, 15)
 #: Words of a FIFO of the SCI.
@@ -142,6 +145,7 @@ class Connections:
         self._loads()
         self._compares()
         self._compares_for_nobody()
+        self._half_duties()
         self._outputs()
         self._driven_inputs()
 
@@ -1352,6 +1356,35 @@ class Connections:
                 self._report(
                     self._source.last(name, compare), f"the values of {name}.{compare} change nothing", missing, action
                 )  # fmt: skip
+
+    def _half_duties(self) -> None:
+        """Outputs of an up-down counter that change at zero and at a compare on the way up, and not on the way down.
+
+        The program computes the compare value, and has gone beyond half of the period.
+        """
+        for n, name, compare, _ in self._epwms():
+            computed = any(write.values is None for write in self._source.writes[name, compare])
+            value, period = self._chip.epwm[n].above_half.get(compare, (0, 0))
+            if not value or not computed or not self._stuck(f"{name}.TBCTL", "CTRMODE", lambda mode: mode != UP_DOWN):
+                continue
+            up = f"C{compare[-1]}U"
+            for output in "AB":
+                action = f"{name}.AQCTL{output}"
+                kinds = {event: kind for event in AQ_EVENTS if (kind := self._value(action, event))}
+                other = [event for event in AQ_EVENTS if event not in ("ZRO", up)]
+                if kinds.keys() != {"ZRO", up} or {*kinds.values()} != {*AQ_ACTIONS} or any(
+                    self._could(action, bool, event) for event in other
+                ) or self._value(f"{action}2", ""):  # fmt: skip
+                    continue
+                place = self._wanting(f"{name}.TBCTL", "CTRMODE") or self._wanting(action, up)
+                if place is not None:
+                    self._chip.findings.report_at(
+                        place, "half-duty",
+                        f"{name} counts up and down: output {output} is {AQ_ACTIONS[kinds['ZRO']]} at zero and "
+                        f"{AQ_ACTIONS[kinds[up]]} at {compare} on the way up only, so that {compare} = {value} of "
+                        f"{period} gives {50 * min(value / period, 1.0):.3g} % and no value more than 50 %",
+                        object=action, how="dynamic",
+                    )  # fmt: skip
 
     def _constant_output(self, name: str, x: str) -> str:
         """Why an output with actions never changes: they only set it, or only clear it.  Empty: it can change."""

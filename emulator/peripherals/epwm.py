@@ -299,6 +299,11 @@ class EPwm:
         return self._checks.above
 
     @property
+    def above_half(self) -> Mapping[str, tuple[int, int]]:
+        """Compare register -> its greatest value above half of the period, and that period."""
+        return self._checks.above_half
+
+    @property
     def unpaired(self) -> PwmWire | None:
         """The output of a pair with a dead band that has no pin, while the other one has."""
         a, b = (output.wire for output in self._outputs.both)

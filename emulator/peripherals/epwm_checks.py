@@ -31,7 +31,7 @@ class CompareBeyondPeriod(NamedTuple):
 class EPwmChecks:
     """The findings of one module."""
 
-    __slots__ = ("_above", "_clock", "_cpu", "_first", "_regs", "above")
+    __slots__ = ("_above", "_clock", "_cpu", "_first", "_regs", "above", "above_half")
 
     def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs) -> None:
         self._clock, self._cpu, self._regs = clock, cpu, regs
@@ -40,6 +40,8 @@ class EPwmChecks:
         #: counts only if it stood until the next one was written and the period did not change meanwhile.
         self.above: dict[str, CompareBeyondPeriod] = {}
         self._above: dict[str, CompareBeyondPeriod] = {}
+        #: Compare register -> the greatest value above half of the period, and that period.
+        self.above_half: dict[str, tuple[int, int]] = {}
 
     def reset(self) -> None:
         """Module reset."""
@@ -50,6 +52,8 @@ class EPwmChecks:
         """A compare value was written; `period` is the larger one of TBPRD and its shadow."""
         if self._above and (stood := self._above.pop(compare, None)):
             self.above.setdefault(compare, stood)
+        if 2 * value > period > 0 and value > self.above_half.get(compare, (0, 0))[0]:
+            self.above_half[compare] = value, period
         if value > period + 1 and period and compare not in self.above and (cause := self._cpu.findings.mark()):
             self._above[compare] = CompareBeyondPeriod(value, period, cause)
 

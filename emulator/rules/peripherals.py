@@ -381,6 +381,24 @@ own (`--board`) a program may be meant for other parts: then the finding is a no
         "TRM ADC: ADCSOCxCTL, CHSEL; DS, analog subsystem",
     ),
     _rule(
+        "half-duty",
+        Severity.NOTE,
+        "An output of an up-down counter changes only on the way up: its duty is half of what the compare value says.",
+        """
+The motor, the lamp or the converter gets half of the power, and the frequency is half of what it was.
+
+The actions are those of a counter that counts up: the output is set at zero and cleared at the compare value. A counter
+that counts up and down passes zero once in two times `TBPRD`, and on the way down nothing happens. So the duty is
+`CMPA / (2 * TBPRD)`, and never more than 50 %.
+
+The finding is made at the end of a run, where the counting mode is set, if the program computes the compare value and
+has gone beyond half of `TBPRD`. It is a note, because an output that must never have more than 50 % may be made so.
+
+**Fix:** `CTRMODE = 0` for these actions, with a period of `TBPRD + 1`. For a symmetric pulse use `CAU` and `CAD`.
+""",
+        "TRM ePWM: action qualifier, waveforms of up-down count mode",
+    ),
+    _rule(
         "adc-clock",
         Severity.ERROR,
         "The ADC's clock is above its limit.",

@@ -837,6 +837,55 @@ def test_a_line_that_is_enabled_for_a_while_is_let_through_by_ier_too(tmp_path: 
     assert all("is enabled at times, has come and never occurs: bit 0 of IER" in f.message for f in findings)
 
 
+#: A fan: the demand of an order goes to the duty of ePWM3, in the mode COUNTING, with ACTIONS.
+FAN = """#include "F28x_Project.h"
+volatile Uint16 Demand = 0;
+void Blow(Uint16 permille) { EPwm3Regs.CMPA.bit.CMPA = (Uint16)((Uint32)permille * 2500 / 1000); LATER }
+void main(void)
+{
+""" + START_UP + """    GPIO_SetupPinMux(4, GPIO_MUX_CPU1, 1);
+    EPwm3Regs.TBPRD = 2500;
+    EPwm3Regs.CMPCTL.bit.LOADAMODE = 0;
+    EPwm3Regs.CMPA.bit.CMPA = 0;
+    ACTIONS
+    EPwm3Regs.TBCTL.bit.CTRMODE = COUNTING;
+    EALLOW;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 1;
+    EDIS;
+    for (;;)
+    {
+        DELAY_US(200);
+        if (Demand < MOST)
+            Demand += 100;
+        Blow(Demand);
+    }
+}
+"""
+RISES = "EPwm3Regs.AQCTLA.bit.ZRO = AQ_SET; EPwm3Regs.AQCTLA.bit.CAU = AQ_CLEAR;"
+FALLS = "EPwm3Regs.AQCTLA.all = 1 | 2 << 4;"
+
+
+@pytest.mark.parametrize(("actions", "mode", "most", "later", "told_"), [
+    (RISES, "TB_COUNT_UPDOWN", 900, "", "set at zero and cleared at CMPA on the way up only, so that CMPA = 2250"),
+    (FALLS, "TB_COUNT_UPDOWN", 900, "", "cleared at zero and set at CMPA on the way up only"),
+    (RISES, "TB_COUNT_UP", 900, "", ""),
+    (RISES, "TB_COUNT_UPDOWN", 400, "", ""),  # at most half was wanted in this run
+    (RISES + " EPwm3Regs.AQCTLA.bit.CAD = AQ_SET;", "TB_COUNT_UPDOWN", 900, "", ""),
+    ("EPwm3Regs.AQCTLA.bit.CAU = AQ_CLEAR; EPwm3Regs.AQCTLA.bit.CAD = AQ_SET;", "TB_COUNT_UPDOWN", 900, "", ""),
+    (RISES, "TB_COUNT_UPDOWN", 900, "if (Demand > 5000) EPwm3Regs.AQCTLA.bit.CAD = AQ_SET;", ""),
+    (RISES, "TB_COUNT_UPDOWN", 900, "if (Demand > 5000) EPwm3Regs.TBCTL.bit.CTRMODE = TB_COUNT_UP;", ""),
+])  # fmt: skip
+def test_an_output_that_changes_on_the_way_up_only(
+    tmp_path: Path, actions: str, mode: str, most: int, later: str, told_: str
+) -> None:
+    text = FAN.replace("ACTIONS", actions).replace("COUNTING", mode).replace("MOST", str(most)).replace("LATER", later)
+    findings = told(tmp_path, text, "half-duty", seconds=0.005)
+    assert len(findings) == bool(told_)
+    assert all(told_ in f.message for f in findings)
+    lines = text.splitlines()
+    assert all(f.place is not None and "CTRMODE = TB" in lines[f.place.line - 1] for f in findings)
+
+
 #: Three bridges by a table; `ACTION` is what clears their outputs.
 BRIDGES = """#include "F28x_Project.h"
 static volatile struct EPWM_REGS * const Bridge[3] = {&EPwm1Regs, &EPwm2Regs, &EPwm3Regs};
