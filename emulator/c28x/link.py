@@ -268,6 +268,7 @@ class Linked:
             "_c_quantity": runtime.quantity, "_c_sign_lost": runtime.sign_lost,
             "_c_signed_word": runtime.signed_word, "_c_gone_back": runtime.gone_back,
             "_c_fraction": runtime.fraction, "_c_shifted_sign": runtime.shifted_sign,
+            "_c_word_of_24": runtime.word_of_24,
             "_c_overflow": runtime.overflow, "_c_float_to_int": runtime.float_to_int,
             "_c_float_argument": runtime.float_argument, "_c_stamps": runtime.stamps, "_c_past": runtime.past,
             "_c_turn": runtime.turn, "_c_extended": runtime.extended, "_c_parsed": runtime.parsed,

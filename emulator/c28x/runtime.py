@@ -54,6 +54,10 @@ WRONG_PULSES: Final = 3
 SMALL: Final = -4096
 #: CHOICE: what an integer quotient of this size loses is less than a hundredth, and its author may not need that.
 _FINE: Final = 100
+#: The greatest word of 24 bits.  CHOICE: so near to 0 a step below it is one, after so many values just above it.
+_ALL_24: Final = 0xFF_FFFF
+_NEAR: Final = 1 << 20
+_BEFORE: Final = 3
 #: A float above this one has hardly a fraction.
 _WHOLE: Final = 1e6
 #: CHOICE: a float passed for an integer parameter that never reaches this value was not meant as an integer.
@@ -1089,6 +1093,27 @@ class Runtime:
         bits = f"{value & 2 * ctype.high + 1:#x}"
         message = f"{site.name} holds the bits {bits}, as an {ctype} {value}: {site.widened}"
         self.hit(site, "sign-extended", message, value)
+        return value
+
+    def word_of_24(self, value: int, number: int) -> int:
+        """A word of three octets that becomes signed: report the second value just below 0 after three just above it.
+
+        All ones are what a line without a part reads.  A counter that counts up never steps so.
+        """
+        site = self.sites[number]
+        above, below = site.last
+        site.turned = site.turned or not 0 <= value <= _ALL_24
+        if value < _NEAR:
+            above, below = above + 1, 0
+        elif _ALL_24 - _NEAR < value < _ALL_24 and above >= _BEFORE:
+            below += 1
+        else:
+            above = below = 0
+        site.last = above, below
+        if below > 1 and not site.turned:
+            meant = value - _ALL_24 - 1
+            message = f"{site.name} is {value}: bit 23 is its sign, {meant} is meant, and it {site.widened}"
+            self.hit(site, "sign-lost", message, value)
         return value
 
     def fraction(self, value: float, number: int) -> float:

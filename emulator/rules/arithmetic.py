@@ -184,6 +184,9 @@ number below -1 (`rpm >= -3000`): so negative numbers are expected, and none can
 a wider object takes, and for two sides of a comparison by order that both get signed numbers only by casts to unsigned
 (`words[n] > (Uint16) limit`).
 
+So is a word of three octets that becomes a signed number of 32 bits (`(int32) (high << 16 | middle << 8 | low)`), if it
+steps from just above 0 to just below 16777216, and the program looks nowhere at bit 23.
+
 These are not reported: additions and subtractions, which give the right result; masks and shifts; a factor above
 65535; a test that rejects the number (`if (x >= N) return;`), because it rejects negative ones too.
 

@@ -808,6 +808,8 @@ class PythonWriter:
             return f"(_t if (_t := {text}) <= {guard.site.bound} else _c_gone_back(_t, {number}))"
         if guard.kind == "fraction":
             return f"_c_fraction({text}, {number})"
+        if guard.kind == "word-of-24":
+            return f"_c_word_of_24({text}, {number})"
         if guard.kind == "shifted-sign":
             return f"(_t if 0 <= (_t := {text}) else _c_shifted_sign(_t, {number}))"
         if guard.kind == "sign-lost":

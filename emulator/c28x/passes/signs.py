@@ -14,13 +14,17 @@ The third form is a shift register that is signed, a CRC: it is shifted to the r
 constant that needs its highest bit says that its bits are no number.  A mask behind the shift takes the copies of the
 sign away.
 
+The fourth form is a word of three octets that becomes a signed number of 32 bits, as a converter of 24 bits sends it,
+in a program that looks nowhere at bit 23.  Only a run shows whether there is a sign: the running code waits for a step
+from just above 0 to just below 2 to the 24.
+
 The result are the expressions that must not have their highest bit set.  The running code checks it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from emulator.c28x.ctypes import FloatType, IntType
 from emulator.c28x.passes.intervals import bounds_of
@@ -50,6 +54,12 @@ from emulator.c28x.tree_queries import (
     within,
 )
 
+#: Constants that say that a program knows bit 23: it, the bits below and above it, and what it counts twice.
+_KNOWS_BIT_23: Final = frozenset((0x80_0000, 0x7F_FFFF, 0xFF00_0000, 0x100_0000, -0x80_0000, -0x100_0000))
+
+#: By how many bits the three octets of a word are shifted.
+_OCTETS: Final = frozenset((0, 8, 16))
+
 
 class SignedWord(NamedTuple):
     """The largest value of an expression without a sign, how the source takes its highest bit, the kind of guard."""
@@ -62,7 +72,7 @@ class SignedWord(NamedTuple):
 def signed_words(functions: Iterable[Function]) -> dict[int, SignedWord]:
     """Identities of unsigned expressions whose highest bit is a sign for the source."""
     functions = list(functions)
-    return _widened(functions) | _compared(functions) | _shift_registers(functions)
+    return _widened(functions) | _compared(functions) | _shift_registers(functions) | _words_of_24_bits(functions)
 
 
 def _widened(functions: list[Function]) -> dict[int, SignedWord]:
@@ -193,6 +203,52 @@ def _polynomial(e: Expr, register: LValue) -> int | None:
                         if lvalue == register and high < value < 2 * high + 1:
                             return value
     return None
+
+
+def _words_of_24_bits(functions: list[Function]) -> dict[int, SignedWord]:
+    """The words of three octets where they become signed, if no statement of the program extends their sign."""
+    found: dict[int, SignedWord] = {}
+    for function in functions:
+        nodes = list(within(function.body))
+        for p in nodes:
+            match p:
+                case Const(value=constant) if constant in _KNOWS_BIT_23:
+                    return {}
+                case Binary(op="<<", left=Load(ctype=IntType(bits=32)), right=Const(value=8)):
+                    return {}  # the sign comes to bit 31, and back by a shift to the right
+        composed: dict[Variable, set[int]] = {}
+        for s in statements(function.body):
+            match s:
+                case Assign(target=LValue(root=Variable() as variable, indices=[]), value=value):
+                    composed.setdefault(variable, set()).update(_shifts(value))
+                case Declare(variable=variable, value=Expr() as value):
+                    composed.setdefault(variable, set()).update(_shifts(value))
+        for p in nodes:
+            match p:
+                case Convert(ctype=IntType(signed=True, bits=32), operand=Expr(ctype=IntType(bits=32)) as whole):
+                    pass
+                case Binary(op="|" | "+", ctype=IntType(signed=True, bits=32), left=left, right=right) as whole:
+                    if _OCTETS in (_shifts(left), _shifts(right)):
+                        continue  # more than the word
+                case _:
+                    continue
+            shifts = _shifts(whole)
+            match whole:
+                case Load(lvalue=LValue(root=Variable(kind="local") as variable, indices=[])):
+                    shifts = composed.get(variable, set())
+            if shifts == _OCTETS:
+                found[id(whole)] = SignedWord(0xFF_FFFF, "becomes a number of 32 bits without it", "word-of-24")
+    return found
+
+
+def _shifts(e: Expr) -> set[int]:
+    """By how many bits the octets of a composed word are shifted."""
+    match bare(e):
+        case Binary(op="|" | "+", left=left, right=right):
+            return _shifts(left) | _shifts(right)
+        case Binary(op="<<", right=Const(value=int(count))):
+            return {count}
+    return {0}
 
 
 def _is_word(e: Expr) -> bool:

@@ -588,6 +588,68 @@ def Lap(now: uint32) -> float32:
 """,
     ),
     Pair(
+        "sign-lost",
+        "a load cell sends 24 bits, and pulls; a time of 24 bits goes round",
+        (("Run", ()),),
+        """
+Cell: array[uint16, 15] = (0, 7, 200, 0, 5, 9, 0, 3, 1, 255, 254, 40, 255, 250, 17)
+Clock: array[uint16, 15] = (255, 240, 0, 255, 250, 0, 0, 1, 0, 0, 9, 0, 0, 30, 0)
+Pull: int32 = 0
+At: int32 = 0
+def Run() -> int32:
+    i: int16
+    word: uint32
+    for i in range(0, 15, 3):
+        word = uint32(Cell[i]) << 16
+        word |= uint32(Cell[i + 1]) << 8
+        word |= Cell[i + 2]
+        Pull = int32(word) - 1000  # <-
+        At = int32(Clock[i]) << 16 | int32(Clock[i + 1]) << 8 | int32(Clock[i + 2])
+    return Pull
+""",
+        """
+Cell: array[uint16, 15] = (0, 7, 200, 0, 5, 9, 0, 3, 1, 255, 254, 40, 255, 250, 17)
+Clock: array[uint16, 15] = (255, 240, 0, 255, 250, 0, 0, 1, 0, 0, 9, 0, 0, 30, 0)
+Pull: int32 = 0
+At: int32 = 0
+def Run() -> int32:
+    i: int16
+    word: uint32
+    for i in range(0, 15, 3):
+        word = uint32(Cell[i]) << 16
+        word |= uint32(Cell[i + 1]) << 8
+        word |= Cell[i + 2]
+        if word & 0x800000:
+            word |= 0xFF000000
+        Pull = int32(word) - 1000
+        At = int32(Clock[i]) << 16 | int32(Clock[i + 1]) << 8 | int32(Clock[i + 2])
+    return Pull
+""",
+    ),
+    Pair(
+        "sign-lost",
+        "a balance of 24 bits in one expression; one that never goes below 0 has no sign",
+        (("Run", ()),),
+        """
+Raw: array[uint16, 15] = (0, 7, 200, 0, 5, 9, 0, 3, 1, 255, 254, 40, 255, 250, 17)
+Sum: int32 = 0
+def Run() -> int32:
+    i: int16
+    for i in range(0, 15, 3):
+        Sum += int32(Raw[i]) << 16 | int32(Raw[i + 1]) << 8 | int32(Raw[i + 2])  # <-
+    return Sum
+""",
+        """
+Raw: array[uint16, 15] = (0, 7, 200, 0, 5, 9, 0, 3, 1, 240, 254, 40, 130, 250, 17)
+Sum: int32 = 0
+def Run() -> int32:
+    i: int16
+    for i in range(0, 15, 3):
+        Sum += int32(Raw[i]) << 16 | int32(Raw[i + 1]) << 8 | int32(Raw[i + 2])
+    return Sum
+""",
+    ),
+    Pair(
         "sign-extended",
         "a checksum is shifted with its sign",
         (("Check", (0x81,)), ("Check", (0x17,))),
