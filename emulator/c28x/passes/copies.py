@@ -13,17 +13,20 @@ from emulator.c28x.passes.values import volatile
 from emulator.c28x.tree import (
     Assign,
     Binary,
+    CopyStruct,
     Declare,
     Evaluate,
     Expr,
+    For,
     Function,
     If,
     Load,
     LValue,
     Stmt,
     Variable,
+    While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import OBSERVABLE, bare, blocks, parts, roots, source_text
+from emulator.c28x.tree_queries import OBSERVABLE, bare, blocks, calls, parts, roots, source_text, statements
 
 #: Operator -> its result for an object and its copy.
 _RESULT: Final = {"-": 0, "/": 1, "^": 0}
@@ -38,11 +41,12 @@ def check_copies(function: Function, report: StaticReport) -> None:
 
 def _block(function: Function, body: list[Stmt], copies: _Copies, report: StaticReport) -> None:
     for s in body:
+        inner = blocks(s)
+        copies = _copies_within(s, copies)
         for e in (part for root in roots(s) for part in parts(root)) if copies else ():
             if isinstance(e, Binary) and e.op in _RESULT and _are_copies(e, copies):
                 message = f"{source_text(e)} is always {_RESULT[e.op]}: one has just been copied to the other"
                 report.report(function, s.where, "own-copy", message, object=source_text(e))
-        inner = blocks(s)
         for block in inner:
             _block(function, block, list(copies) if isinstance(s, If) else [], report)
         copies = [] if inner or not isinstance(s, Assign | Declare | Evaluate) else _copies_after(s, copies)
@@ -56,26 +60,55 @@ def _are_copies(e: Binary, copies: _Copies) -> bool:
     return any(both in ((a, b), (b, a)) for a, b in copies)
 
 
+def _copies_within(s: Stmt, copies: _Copies) -> _Copies:
+    """The copies that are valid wherever the expressions of a statement are evaluated.
+
+    A call in them may come first (`if (Find(&line) && line - last > 2)`).  A loop evaluates its test after each turn.
+    """
+    if not copies:
+        return copies
+    if not isinstance(s, While | For):
+        return _kept(copies, None, called=any(map(calls, roots(s))))
+    turns = list(statements([s]))
+    for turn in turns:
+        copies = _kept(copies, _written(turn), called=False)
+    return _kept(copies, None, called=any(calls(root) for turn in turns for root in roots(turn)))
+
+
 def _copies_after(s: Assign | Declare | Evaluate, copies: _Copies) -> _Copies:
     """The copies that are valid after a statement."""
     called = any(isinstance(part, OBSERVABLE) for root in roots(s) for part in parts(root))
-    written: Variable | Expr | None = None
+    written = _written(s)
     target: LValue | None = None
     match s:
         case Assign(target=LValue() as target):
-            written = target.root
-        case Declare(variable=written):
-            target = LValue(written.ctype, written)
-    left = [
-        pair for pair in copies
-        if not any(end.root is written or (called and _reached(end)) or isinstance(written, Expr) for end in pair)
-    ]  # fmt: skip
+            pass
+        case Declare(variable=variable):
+            target = LValue(variable.ctype, variable)
+    left = _kept(copies, written, called=called)
     value = s.value
     match value:
         case Load(lvalue=source) if target is not None and _plain(target) and _plain(source):
             if source.root is not written and not called:
                 left.append((target, source))
     return left
+
+
+def _kept(copies: _Copies, written: Variable | Expr | None, *, called: bool) -> _Copies:
+    """The copies that a write to an object, or (an expression) through a pointer, and a call leave."""
+    if isinstance(written, Expr):
+        return []
+    return [pair for pair in copies if not any(end.root is written or (called and _reached(end)) for end in pair)]
+
+
+def _written(s: Stmt) -> Variable | Expr | None:
+    """The object that a statement itself writes, or the pointer that it writes through."""
+    match s:
+        case Assign(target=LValue(root=root)) | CopyStruct(target=LValue(root=root)) | For(variable=LValue(root=root)):
+            return root
+        case Declare(variable=variable):
+            return variable
+    return None
 
 
 def _plain(lvalue: LValue) -> bool:

@@ -171,6 +171,52 @@ def Speed(now: int32) -> int32:
         ("Speed", (7,)),
     ),
     static_pair(
+        "own-copy",
+        "the level is taken over before its change is used; a search in a condition finds another level",
+        """
+Level: float32 = 0.0
+Rise: float32 = 0.0
+def Take(level: float32, calm: int16) -> int16:
+    Level = level
+    if calm:
+        Rise = level - Level  # <-
+    return int16(Rise)
+""",
+        """
+Level: float32 = 2.0
+Rise: float32 = 0.0
+Depth: int16 = 0
+def Found(level: ptr[float32], try_: int16) -> int16:
+    if try_ < 2:
+        return 0
+    level[0] = float32(try_) * 4.0
+    return 1
+def Lowered(try_: int16) -> int16:
+    Depth -= try_
+    return Depth
+def Take(try_: int16, calm: int16) -> int16:
+    level: float32 = Level
+    depth: int16
+    if calm and Found(addressof(level), try_) and level - Level > 1.0:
+        Rise = level - Level
+    level = Level
+    if Found(addressof(level), try_):
+        Rise += level - Level
+        Level = level
+    depth = Depth
+    if Lowered(try_) < 0:
+        Rise += float32(depth - Depth)
+    begun: int16 = try_
+    while begun - try_ < 3:
+        try_ -= 1
+    level = Level
+    while level - Level < 3.0 and Found(addressof(level), 9):
+        pass
+    return int16(Rise)
+""",
+        ("Take", (5, 1)),
+    ),
+    static_pair(
         "stamp-compare",
         "a time since a stamp that no statement sets",
         """
