@@ -25,6 +25,8 @@ from emulator.sysbios.watch.kernel_watch import KernelWatch
 
 #: The kernel's tick takes 5 us on the robot (TFG 3.4.2, figure 39); see `emulator/sysbios/costs.py`.
 KERNEL_COST_SCALE: Final = 2.4
+#: The vectors of the CPU timers 0 to 2.
+_TIMER_VECTORS: Final = (vector_id(1, 7), *DIRECT_VECTORS)
 
 
 class System(Chip):
@@ -139,7 +141,13 @@ class System(Chip):
             watch.can(self.blocks[block])
             for line, enable in zip(lines, (CAN_CTL.IE0, CAN_CTL.IE1), strict=True):
                 self._gate(watch, line, (block, "CAN_CTL", enable.mask))
-        self._gate(watch, (1, 7), ("CpuTimer0Regs", "TCR", 1 << 14))
+        for n, number in enumerate(_TIMER_VECTORS):
+            tcr = self.register(f"CpuTimer{n}Regs", "TCR")
+            interrupt = tcr, TCR.TIE.mask
+            # A timer that stands sends nothing more.
+            watch.interrupt(
+                number, (self._pie_line(number) if n == 0 else interrupt, (interrupt,), ((tcr, TCR.TSS.mask),))
+            )
         for register, begins, number in self._beginnings():
             watch.starts(number, register, begins)
         return watch
@@ -162,7 +170,7 @@ class System(Chip):
         for n in range(1, CHANNELS + 1):
             register = self.register("DmaRegs", f"CH{n}.CONTROL")
             yield register, lambda word: bool(word & (RUN | PERINTFRC)), vector_id(7, n)
-        for n, number in enumerate((vector_id(1, 7), *DIRECT_VECTORS[:2])):
+        for n, number in enumerate(_TIMER_VECTORS):
             yield self.register(f"CpuTimer{n}Regs", "TCR"), lambda word: not word & TCR.TSS.mask, number
 
     def _gate(self, watch: KernelWatch, pie: tuple[int, int], *enables: tuple[str, str, int]) -> None:
@@ -170,4 +178,4 @@ class System(Chip):
         group, n = pie
         bits = [(self.register(block, name), mask) for block, name, mask in enables]
         ier = self.register("PieCtrlRegs", f"PIEIER{group}")
-        watch.interrupt(32 + 8 * (group - 1) + n - 1, ((ier, 1 << n - 1), tuple(bits)))
+        watch.interrupt(32 + 8 * (group - 1) + n - 1, ((ier, 1 << n - 1), tuple(bits), ()))

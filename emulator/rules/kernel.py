@@ -25,7 +25,7 @@ The detector uses the order of accesses, so the threads need not have met in thi
 
 * a common gate;
 * a scheduler or interrupt that the *lower* thread disables (`Task_disable`, `Swi_disable`, `Hwi_disable`, IER,
-  `Hwi_disableInterrupt`, the enable bit of the peripheral);
+  `Hwi_disableInterrupt`, the enable bit of the peripheral, a CPU timer that stands);
 * equal priorities;
 * a hand-over by a semaphore, by `Swi_post`, or by a plain flag that is written after the data and read before them;
 * a flag that keeps the higher thread off, whoever sets it: that thread uses the data only while the flag has a certain
@@ -81,7 +81,9 @@ and the finding only says that such a word exists. Check three things: the word 
 function; the compiler may keep it in a register unless it is `volatile`; it orders only data that are written before it
 and read after it.
 
-If a lower thread reads and writes the word in one statement while a higher one writes it, the rule is `race`.
+If a lower thread reads and writes the word in one statement while a higher one writes it, the rule is `race`. Nothing is
+said of an index that one thread alone moves round a ring buffer (`i = (i + 1) % N`), if it is `volatile` or only
+the higher thread looks at it.
 
 **Fix:** read it once into a local; declare it `volatile`; for more than a flag use a semaphore.
 """, "CPU, MOV; ISO C 6.7.3",

@@ -18,7 +18,9 @@ from emulator.c28x.tree import (
     Binary,
     Break,
     Call,
+    CallPointer,
     Compare,
+    Conditional,
     Const,
     CopyStruct,
     Declare,
@@ -30,6 +32,7 @@ from emulator.c28x.tree import (
     Logic,
     LValue,
     Not,
+    RegisterAt,
     Return,
     Stmt,
     Switch,
@@ -107,20 +110,23 @@ class UseConditions:
     def __init__(self, modules: Iterable[Module]) -> None:
         own = {function.path: function for module in modules for function in module.functions}
         found: dict[tuple[str, str, bool], frozenset[ScalarCondition]] = {}
+        by_word: dict[tuple[str, str, bool, int | None], frozenset[ScalarCondition]] = {}
         steps: dict[tuple[str, str], frozenset[ScalarCondition]] = {}
         given: dict[Word, set[Any]] = {}
         self._elsewhere: set[tuple[str, str, int]] = set()
         for routine, reached in interrupt_routines(own):
-            for path, write, now in _uses(routine, own):
+            for path, write, word, now in _uses(routine, own):
                 key = (routine.name, path, write)
                 found[key] = found.get(key, now) & now
+                by_word[*key, word] = by_word.get((*key, word), now) & now
             for path, now in _steps(routine, own):
                 steps[routine.name, path] = steps.get((routine.name, path), now) & now
             for function in reached:
                 for place, value in _given(function):
                     given.setdefault(place, set()).add(value)
-                self._elsewhere |= {(routine.name, *place) for place in _read_elsewhere(function)}
+            self._elsewhere |= {(routine.name, *place) for place in _deciding_elsewhere(reached)}
         self._uses = {key: frozenset(_only_main_opens(now, given)) for key, now in found.items()}
+        self._words = {key: frozenset(_only_main_opens(now, given)) for key, now in by_word.items()}
         self._steps = {key: frozenset(_only_main_opens(now, given)) for key, now in steps.items()}
 
     def writing(self, routine: str, path: str) -> frozenset[ScalarCondition]:
@@ -131,14 +137,14 @@ class UseConditions:
         """As `writing`, for other writes than those of a constant."""
         return self._steps.get((routine, path), frozenset())
 
-    def denies(self, routine: str, path: str, write: bool, flag: Word) -> bool:
-        """Whether a flag keeps the routine from no use of the object, though it reads the flag: it reads it in tests
-        only, and none of them decides on the use.
+    def denies(self, routine: str, path: str, word: int, write: bool, flag: Word) -> bool:
+        """Whether a flag keeps the routine from no use of a word of the object, though it reads the flag: it depends on
+        it in tests only, and none of them decides on the use.
         """
-        uses = self._uses.get((routine, path, write))
-        if uses is None or (routine, *flag) in self._elsewhere:
+        uses = [now for at in (word, None) if (now := self._words.get((routine, path, write, at))) is not None]
+        if not uses or (routine, *flag) in self._elsewhere:
             return False
-        return all((condition.path, condition.word) != flag for condition in uses)
+        return any(all((condition.path, condition.word) != flag for condition in now) for now in uses)
 
 
 def _given(function: Function) -> Iterator[tuple[Word, Any]]:
@@ -161,16 +167,23 @@ def _only_main_opens(now: Iterable[ScalarCondition], given: dict[Word, set[Any]]
             yield condition._replace(answered=bool(values))
 
 
-def _uses(function: Function, own: dict[str, Function]) -> Iterator[tuple[str, bool, frozenset[ScalarCondition]]]:
-    """The objects that a function and those below it use, whether they may write them, and what is true then."""
+def _uses(
+    function: Function, own: dict[str, Function]
+) -> Iterator[tuple[str, bool, int | None, frozenset[ScalarCondition]]]:
+    """The objects that a function and those below it use, whether they may write them, and what is true then.
+
+    With the word of the scalar that is used; None: any word may be meant.
+    """
     for statement, here in _run(function, _NOTHING, own, ()):
         changed = statement.target if isinstance(statement, Assign | CopyStruct) else None
-        for part in (part for root in roots(statement) for part in parts(root)):
+        for whole, part in ((whole, part) for whole in roots(statement) for part in parts(whole)):
             match part:
                 case AddressOf(lvalue=LValue(root=Variable(kind="global") as root)):
-                    yield root.declaration.path, True, here
+                    yield root.declaration.path, True, None, here
                 case LValue(root=Variable(kind="global") as root):
-                    yield root.declaration.path, part is changed, here
+                    place = _scalar(part)
+                    written = part is whole is changed  # in `n += x` the value reads the same node
+                    yield root.declaration.path, written, None if place is None else place[1], here
 
 
 def _steps(function: Function, own: dict[str, Function]) -> Iterator[tuple[str, frozenset[ScalarCondition]]]:
@@ -261,23 +274,76 @@ def _forget(known: dict[Variable, _Told], body: list[Stmt]) -> None:
         known.pop(variable, None)
 
 
-def _read_elsewhere(function: Function) -> Iterator[Word]:
-    """The scalars at file scope that a function reads outside of the tests that `conditions` understands."""
-    known: dict[Variable, _Told] = {}
-    for statement, _ in _under(function.body, _NOTHING, known):
-        understood: set[int] = set()
-        test = statement.test if isinstance(statement, If) else None
-        if test is not None and len(conditions(test) + failed(test)) >= sum(
-            isinstance(part, Load) for part in parts(test)
-        ):
-            understood = {id(part) for part in parts(test)}
-        for root in roots(statement):
-            for part in parts(root):
-                place = (
-                    _scalar(part.lvalue) if isinstance(part, Load | AddressOf) and id(part) not in understood else None
-                )
-                if place is not None:
-                    yield place
+#: What can decide: a local; or the path of an object at file scope, with the word of a scalar (None: any word).
+_Decider = Variable | tuple[str, int | None]
+
+
+def _deciding_elsewhere(functions: Iterable[Function]) -> set[Word]:
+    """The scalars at file scope on which functions may depend otherwise than by a test that `conditions` understands.
+
+    Such are those in other tests, in subscripts and pointers, in arguments and results, and what is assigned to another
+    object that decides.  A value that is only computed with (`position += direction`) decides nothing.
+    """
+    elsewhere: set[_Decider] = set()
+    tested: set[_Decider] = set()
+    flows: list[tuple[_Decider, set[_Decider]]] = []
+    for statement in (statement for function in functions for statement in statements(function.body)):
+        nodes = [part for root in roots(statement) for part in parts(root)]
+        match statement:
+            case Assign(target=target, value=value):
+                elsewhere |= _read_at(inner for part in nodes for inner in _choosing(part))
+                if isinstance(target, LValue) and isinstance(target.root, Variable):
+                    flows.append((_decider(target), _read_at(parts(value))))
+            case Declare(variable=variable, value=Expr() as value):
+                elsewhere |= _read_at(inner for part in nodes for inner in _choosing(part))
+                flows.append((variable, _read_at(parts(value))))
+            case If(test=test) if len(conditions(test) + failed(test)) >= sum(isinstance(part, Load) for part in nodes):
+                tested |= _read_at(nodes)
+            case _:
+                elsewhere |= _read_at(nodes)
+    deciding, known = elsewhere | tested, -1
+    while known != len(deciding):
+        known = len(deciding)
+        for given, values in flows:
+            if any(_may_be(given, one) for one in deciding):
+                elsewhere |= values
+                deciding |= values
+    return {(one[0], one[1]) for one in elsewhere if not isinstance(one, Variable) and one[1] is not None}
+
+
+def _may_be(one: _Decider, other: _Decider) -> bool:
+    """Whether two of them may be the same object."""
+    if isinstance(one, Variable) or isinstance(other, Variable):
+        return one is other
+    return one[0] == other[0] and (one[1] == other[1] or one[1] is None or other[1] is None)
+
+
+def _choosing(part: Any) -> list[Any]:
+    """What decides, within an expression, which object is used or which function runs."""
+    match part:
+        case Index(expr=chosen) | LValue(root=Expr() as chosen) | RegisterAt(block=chosen) | Conditional(test=chosen):
+            return parts(chosen)
+        case Logic() | Call() | CallPointer():
+            return parts(part)
+    return []
+
+
+def _read_at(nodes: Iterable[Any]) -> set[_Decider]:
+    """The objects whose values or addresses are used among the nodes of expressions."""
+    return {
+        _decider(part.lvalue)
+        for part in nodes if isinstance(part, Load | AddressOf) and isinstance(part.lvalue.root, Variable)
+    }  # fmt: skip
+
+
+def _decider(lvalue: LValue) -> _Decider:
+    """A named object, as what may decide."""
+    root = lvalue.root
+    assert isinstance(root, Variable)
+    if root.kind != "global":
+        return root
+    place = _scalar(lvalue)
+    return (root.declaration.path, None) if place is None else place
 
 
 def _scalar(lvalue: LValue) -> Word | None:
@@ -347,8 +413,41 @@ def _selected(body: list[Stmt]) -> Iterator[tuple[str, str]]:
             loads = (part for part in parts(statement.test) if isinstance(part, Load))
             asked = {path for load in loads if (path := object_path(load.lvalue)) is not None}
             if len(asked) == 1:
-                for path in written_objects(statement.then) ^ written_objects(statement.otherwise):
+                for path in (written_objects(statement.then) ^ written_objects(statement.otherwise)) - asked:
                     yield path, min(asked)
+
+
+def ring_indices(modules: Iterable[Module]) -> dict[Word, bool]:
+    """The scalars at file scope that statements only move round a ring buffer (`i = (i + 1) % N`), or set to a constant.
+
+    Each with whether it is volatile.
+    """
+    moved: dict[Word, bool] = {}
+    otherwise: set[Word] = set()
+    for function in (function for module in modules for function in module.functions):
+        for statement in statements(function.body):
+            match statement:
+                case Assign(target=LValue(root=Variable() as root) as target, value=value) if (
+                    place := _scalar(target)
+                ) is not None:
+                    if _round_a_ring(target, bare(value)):
+                        moved[place] = root.volatile or target.volatile
+                    elif not isinstance(bare(value), Const):
+                        otherwise.add(place)
+            for part in (part for root in roots(statement) for part in parts(root)):
+                if isinstance(part, AddressOf) and (place := _scalar(part.lvalue)) is not None:
+                    otherwise.add(place)
+    return {place: volatile for place, volatile in moved.items() if place not in otherwise}
+
+
+def _round_a_ring(target: LValue, value: Expr) -> bool:
+    """Whether a value is that of its target plus a constant, within the size of a ring."""
+    match value:
+        case Binary(op="%" | "&", left=left, right=size) if isinstance(bare(size), Const):
+            match bare(left):
+                case Binary(op="+" | "-", left=old, right=by) if isinstance(bare(by), Const):
+                    return isinstance(index := bare(old), Load) and index.lvalue == target
+    return False
 
 
 def written_objects(body: Iterable[Stmt]) -> set[str]:

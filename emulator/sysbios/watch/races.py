@@ -24,7 +24,14 @@ from emulator.c28x.memory import Memory, Object
 from emulator.c28x.symbols import Module
 from emulator.clock import us
 from emulator.sysbios.watch.accesses import NONE, LatestAccess, ReadyFlag, SharedCell
-from emulator.sysbios.watch.kept_off import ScalarCondition, UseConditions, alternating, rereading_lines
+from emulator.sysbios.watch.kept_off import (
+    ScalarCondition,
+    UseConditions,
+    Word,
+    alternating,
+    rereading_lines,
+    ring_indices,
+)
 from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.pairs import (
     HandOver,
@@ -121,6 +128,8 @@ class Races:
         self._of_path: dict[str, SharedObject] = {}
         #: Arrays of flags, from the source; None: not read yet.
         self._flags: set[str] | None = None
+        #: Indices of ring buffers, from the source; None: not read yet.
+        self._indices: dict[Word, bool] | None = None
         self._threads = threads
         self._locator = locator
         self._names = names
@@ -184,7 +193,7 @@ class Races:
         if conflicts or by_time:
             access = LatestAccess(thread, write, protection, thread.clock, statement, self._clock.now)
             for other in conflicts:
-                if not self._held_off(shared, other, thread) and not self._reread(other, access):
+                if not self._held_off(shared, offset, other, thread) and not self._reread(other, access):
                     self._conflict(shared, cell, offset, other, access)
             for other in by_time:
                 self._alone(shared, offset, other, access)
@@ -217,12 +226,12 @@ class Races:
                     return True
         return False
 
-    def _held_off(self, shared: SharedObject, other: LatestAccess, thread: Thread) -> bool:
+    def _held_off(self, shared: SharedObject, offset: int, other: LatestAccess, thread: Thread) -> bool:
         """Whether a flag keeps an access of a higher level off, as far as the source does not say that it does not."""
         path, what = shared.object.declaration.path, other.thread.what
         routine = what.name if isinstance(what, Routine) else ""
         return any(
-            not self._conditions.denies(routine, path, other.write, (flag.path, flag.word))
+            not self._conditions.denies(routine, path, offset, other.write, (flag.path, flag.word))
             for flag in other.held_off(thread)
         )
 
@@ -373,6 +382,8 @@ class Races:
                 if rule == "race-word" and not goes_on:
                     return  # a flag, counter or index: programs without a kernel rightly do it so
                 rule = "race" if goes_on else "unmasked-long"
+        if rule == "race-word" and self._is_index(shared, cell, offset, lower, higher):
+            return
         if _RANK[rule] <= shared.rank:
             self._again(shared, other, access)
             return
@@ -391,6 +402,18 @@ class Races:
         elif early and not lost:
             said += f", because {early} is handed over before that"
         self._report(shared, rule, said, other, at)
+
+    def _is_index(
+        self, shared: SharedObject, cell: SharedCell, offset: int, lower: LatestAccess, higher: LatestAccess
+    ) -> bool:  # fmt: skip
+        """Whether a word is an index of a ring buffer that one thread moves, and that the other one sees move.
+
+        It does if it is volatile, or if nobody can move it while the other one runs.
+        """
+        if self._indices is None:
+            self._indices = ring_indices(self._modules)
+        place = shared.object.declaration.path, offset
+        return len(cell.writers) == 1 and place in self._indices and (self._indices[place] or not higher.write)
 
     def _alone(self, shared: SharedObject, offset: int, other: LatestAccess, access: LatestAccess) -> None:
         """A read that only time keeps apart from a write: a 32-bit scalar by itself may be read in two halves."""

@@ -39,8 +39,9 @@ _NO_GATES: Final[frozenset[Gate]] = frozenset()
 
 #: A register, and the mask of a bit in it.
 Enable = tuple[Cell, int]
-#: The bits that let an interrupt through: its PIEIER bit must be set, and one of the enables at the peripheral.
-Enables = tuple[Enable, tuple[Enable, ...]]
+#: The bits that let an interrupt through: its own bit (PIEIER's, or a timer's TIE) must be set, one of the enables at
+#: the peripheral too, and none of those that stop the peripheral.
+Enables = tuple[Enable, tuple[Enable, ...], tuple[Enable, ...]]
 
 
 class Protection:
@@ -63,15 +64,19 @@ class Protection:
 class _Gated:
     """An interrupt with a handler, that a driver can hold off by the enables of its peripheral."""
 
-    __slots__ = ("_bit", "_line", "_mask", "_sources")
+    __slots__ = ("_bit", "_line", "_mask", "_sources", "_stops")
 
-    def __init__(self, bit: int, line: Enable, sources: tuple[Enable, ...]) -> None:
+    def __init__(self, bit: int, line: Enable, sources: tuple[Enable, ...], stops: tuple[Enable, ...]) -> None:
         self._bit = bit
         self._line, self._mask = line
         self._sources = sources
+        self._stops = stops
 
     def held_off(self) -> int:
         """Its bit while it cannot come through, else 0."""
+        for register, mask in self._stops:
+            if register.value & mask:
+                return self._bit
         if self._line.value & self._mask:
             for register, mask in self._sources:
                 if register.value & mask:
@@ -190,7 +195,7 @@ class ThreadWatch:
         self._bits: dict[int, int] = {}
         #: Interrupts that Hwi_disableInterrupt holds off: their bits.
         self._disabled = 0
-        #: Interrupt -> the enables by which a driver can hold it off; those with a handler.
+        #: Interrupt -> the bits by which a driver can hold it off; those with a handler.
         self.enables: dict[int, Enables] = {}
         self._gated: list[_Gated] = []
         self._handlers = 0
@@ -236,7 +241,7 @@ class ThreadWatch:
                 self.routines.add(number)
                 if number >= FIRST_PIE and number not in self.enables and self.line is not None:
                     line = self.line(number)
-                    self.enables[number] = line, (line,)
+                    self.enables[number] = line, (line,), ()
                 self._update_handlers()
             self._nested.append(self.current)
             routine = self.of(Routine(number, name))

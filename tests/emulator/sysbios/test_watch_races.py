@@ -247,6 +247,47 @@ def test_its_correct_twin_is_silent(name: str) -> None:
     assert found(PAIRS[name][2]) == set()
 
 
+#: A handler fills a ring, a task empties it: each moves its own index and looks at the other one.
+INDICES = """
+ring: array[int16, 8]
+head: volatile[int16] = 0
+tail: int16 = 0
+
+def isr(arg: UArg) -> void:
+    following: int16 = (head + 1) % 8
+    if following != tail:
+        ring[head] = 7
+        head = following
+        Semaphore_post(semA)
+
+def Low(a0: UArg, a1: UArg) -> void:
+    n: int16
+    while 1:
+        Semaphore_pend(semA, BIOS_WAIT_FOREVER)
+        n = ring[tail]
+        {move}
+
+def main() -> void:
+    objects()
+    task(Low, 2)
+    Hwi_create(40, isr, NULL, NULL)
+    BIOS_start()
+"""
+
+
+@pytest.mark.parametrize(
+    ("move", "rules"),
+    [("tail = (tail + 1) % 8", set()), ("tail = (tail + 1) & 7", set()), ("tail = n", {"race-word"})],
+)
+def test_an_index_that_one_thread_moves_round_a_ring_is_told_nothing(move: str, rules: set[str]) -> None:
+    specimen = Watched(INDICES.format(move=move))
+    specimen.run(3)
+    for tick in range(4, 40, 3):
+        specimen.interrupt(40)
+        specimen.run(tick)
+    assert specimen.rules() == rules
+
+
 SILENT = {
     "initialised by one task, read by another": two_tasks(
         "d: float32 = 0\nready: int16 = 0", "if ready == 0:\n    d = 1\n    ready = 1", "x = d",

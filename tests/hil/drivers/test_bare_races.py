@@ -16,7 +16,14 @@ volatile Uint16 Count, Waiting, Head, Tail, Ready, Flags, Bytes[8];
 volatile struct { Uint16 head; Uint16 tail; Uint16 words[8]; } Ring;
 volatile Uint32 Millis; volatile struct TIME Now; struct TIME Seen; Uint16 Words[8], Sum; Uint32 Copy;
 Uint16 Halves[2][4], Half; volatile Uint16 Full[2] = {1, 1}; Uint16 * volatile Fill = Halves[0];
+volatile struct { Uint16 running; int16 way; int32 togo, place, ramp; } Motor;
 """
+
+#: A routine that works while a flag is up, in the same structure.
+STEPPED = "Motor.place += Motor.way; Motor.ramp++; if (--Motor.togo <= 0) Motor.running = 0;"
+STEP = f"if (Motor.running) {{ {STEPPED} }}"
+RETURN = f"if (!Motor.running) {{ PieCtrlRegs.PIEACK.all = PIEACK_GROUP1; return; }} {STEPPED}"
+START = "Motor.way = Sum & 8 ? 1 : -1; Motor.togo = 30; Motor.ramp = 0; Motor.running = 1;"
 
 MAIN = """
 void main(void)
@@ -114,6 +121,9 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
         ("Uint16 i; for (i = 0; i < 8; i++) Words[i] = Count; Ready = 1;",
          "Uint16 i; if (Ready) { Ready = 0; for (i = 0; i < 8; i++) { DELAY_US(9); Sum += Words[i]; } }",
          [("race", "Words")]),
+        # The routine may still be at work when main sets what it works with.
+        (STEP, f"if (++Sum % 7 == 5) {{ {START} }}", [("race", "Motor")]),
+        (RETURN, f"if (++Sum % 7 == 5) {{ {START} }}", [("race", "Motor")]),
         # The flag is another one than that which keeps the routine off; it comes too late; the routine opens it itself.
         ("Uint16 i; if (!Ready) for (i = 0; i < 8; i++) Words[i] = Count;",
          "Uint16 i; Waiting = 1; for (i = 0; i < 8; i++) Sum += Words[i]; Waiting = 0;", [("race", "Words")]),
@@ -141,6 +151,12 @@ def test_what_an_interrupt_can_come_into_is_told(
         ("Count++;", "IER &= ~M_INT1; Count--; IER |= M_INT1;"),
         ("Count++;", "PieCtrlRegs.PIEIER1.bit.INTx7 = 0; Count--; PieCtrlRegs.PIEIER1.bit.INTx7 = 1;"),
         ("Count++;", "CpuTimer0Regs.TCR.bit.TIE = 0; Count--; CpuTimer0Regs.TCR.bit.TIE = 1;"),
+        ("Count++;", "CpuTimer0Regs.TCR.bit.TSS = 1; Count--; CpuTimer0Regs.TCR.bit.TSS = 0;"),
+        # The routine stands while its flag is down, or its timer: main sets what it works with.
+        (STEP, f"Motor.running = 0; Motor.togo = 0; Sum++; {START}"),
+        (RETURN, f"Motor.running = 0; Motor.togo = 0; Sum++; {START}"),
+        (STEP, f"if (++Sum % 7 == 3) {{ Motor.running = 0; Motor.ramp = 0; }} if (!Motor.running) {{ {START} }}"),
+        (STEP, f"CpuTimer0Regs.TCR.bit.TSS = 1; {START} Motor.togo = 7; Sum++; CpuTimer0Regs.TCR.bit.TSS = 0;"),
         ("Flags = 1;", "if (Flags) { Flags = 0; Sum++; }"),
         ("Flags = 1;", "if (Flags) { Sum = Flags; Flags = 0; }"),
         ("Flags |= 1;", "DINT; Sum = Flags; Flags = 0; EINT;"),
