@@ -81,9 +81,9 @@ and the finding only says that such a word exists. Check three things: the word 
 function; the compiler may keep it in a register unless it is `volatile`; it orders only data that are written before it
 and read after it.
 
-If a lower thread reads and writes the word in one statement while a higher one writes it, the rule is `race`. Nothing is
-said of an index that one thread alone moves round a ring buffer (`i = (i + 1) % N`), if it is `volatile` or only
-the higher thread looks at it.
+If a lower thread reads and writes the word in one statement while a higher one writes it, the rule is `race`. An index
+that one thread alone moves round a ring buffer (`i = (i + 1) % N`) is not reported if it is `volatile`, or if only the
+higher thread looks at it.
 
 **Fix:** read it once into a local; declare it `volatile`; for more than a flag use a semaphore.
 """, "CPU, MOV; ISO C 6.7.3",

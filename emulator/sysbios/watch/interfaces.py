@@ -20,9 +20,10 @@ from emulator.c28x.findings import Findings
 from emulator.c28x.symbols import Module, library_headers
 from emulator.c28x.tree import Assign, Call, Expr, Function, LValue, RegisterLoad, RegisterRef, Stmt
 from emulator.c28x.tree_queries import assigned, bare, parts, roots, statements, variables, within
+from emulator.sysbios.watch.kept_off import Word, ring_indices
 from emulator.sysbios.watch.statements import StatementLocator
 from emulator.sysbios.watch.threads import Routine, ThreadWatch, excluded
-from emulator.sysbios.watch.ways import below, free_ways, interrupt_routines
+from emulator.sysbios.watch.ways import Ways, below, interrupt_routines, reached_freely
 
 #: The registers of an interface that a message is written to.
 WRITTEN: Final = ("MSK", "ARB", "MCTL", "DATA", "DATB", "CMD")
@@ -57,8 +58,10 @@ class Interfaces:
         self._told: set[tuple[str, str]] = set()
         #: Interface -> the routines that have written to it.
         self._used: dict[str, set[str]] = {}
-        #: Routine -> the places of the user's functions that are reached whatever it has done.
+        #: Routine -> the places of the user's functions that are reached whatever it has done; of all functions, where
+        #: registers are named.
         self._free: dict[str, set[_At]] = {}
+        self._reached: dict[str, set[_At]] = {}
 
     def watch(self, regs: CanBlock) -> None:
         """Watch the two interfaces of a module."""
@@ -81,7 +84,7 @@ class Interfaces:
             what = routine.what
             if not isinstance(what, Routine) or (interface, what.name) in self._told:
                 continue
-            by_name = SharedInterface(interface, what.name, place[:2]) in self._shared
+            by_name = SharedInterface(interface, what.name, place[:2]) in self._shared and self._comes_freely(what.name)
             if not by_name and not (what.name in self._used.get(interface, ()) and self._freely(what.name)):
                 continue
             if not excluded(threads.main, threads.protection(), routine, routine.protection):
@@ -91,6 +94,11 @@ class Interfaces:
                     "the registers between two writes of main"
                 )
                 self._findings.report("transaction-cut", message, object=interface)
+
+    def _comes_freely(self, routine: str) -> bool:
+        """Whether `main` has come here, by each of its calls, whatever a routine has done."""
+        frames = {(place.file, place.line, place.column) for place in self._locator.frames()}
+        return self._reached[routine].issuperset(frames)
 
     def _freely(self, routine: str) -> bool:
         """Whether `main` is in a function of a library, and is there whatever a routine has done."""
@@ -114,12 +122,12 @@ class Interfaces:
         inside = {function.path for _, reached in routines for function in reached}
         mine = {f.path: f for f in own.values() if f.where.file not in self._libraries}
         others = [function for path, function in mine.items() if path not in inside]
-        telling = {path for routine, reached in routines if routine.name == name for path in _set(reached)}
-        ways = free_ways(others, own, telling, lambda part: _tells(part, own, telling) or _by_number(part, own))
-        free = [statement for way in ways for statement in way.undecided]
-        calls = [part for s in free for root in roots(s) for part in parts(root) if isinstance(part, Call)]
-        places = [statement.where for statement in free] + [call.where for call in calls]
-        return {(at.file, at.line, at.column) for at in places}
+        telling = {path for routine, reached in routines if routine.name == name for path in self._set(reached)}
+
+        def told(part: Call | RegisterLoad) -> bool:
+            return _tells(part, own, telling) or _by_number(part, own)
+
+        return _places(reached_freely(others, telling, told))
 
     @cached_property
     def _shared(self) -> set[SharedInterface]:
@@ -133,16 +141,39 @@ class Interfaces:
             used = {interface for statement in theirs for interface in _interface(statement)}
             if not used:
                 continue
-            telling = set(_set(reached))
+            telling = set(self._set(reached))
 
             def told(part: Call | RegisterLoad, telling: set[str] = telling) -> bool:
                 return _tells(part, own, telling)
 
-            for way in free_ways(others, own, telling, told):
+            ways = reached_freely(others, telling, told)
+            self._reached[routine.name] = _places(ways)
+            for way in ways:
                 for statement in way.undecided:
                     for interface in used.intersection(_interface(statement)):
                         found.add(SharedInterface(interface, routine.name, (way.function.where.file, statement.line)))
         return found
+
+    def _set(self, functions: Iterable[Function]) -> Iterator[str]:
+        """The shared objects that functions set, and that may hold them off.
+
+        The index of a queue does not: it only says that there is something, and more can come.
+        """
+        for path in _set(functions):
+            if (path, 0) not in self._indices:
+                yield path
+
+    @cached_property
+    def _indices(self) -> dict[Word, bool]:
+        return ring_indices(self._modules)
+
+
+def _places(ways: Iterable[Ways]) -> set[_At]:
+    """Where statements of this kind, and the calls in them, stand."""
+    free = [statement for way in ways for statement in way.undecided]
+    calls = [part for s in free for root in roots(s) for part in parts(root) if isinstance(part, Call)]
+    places = [statement.where for statement in free] + [call.where for call in calls]
+    return {(at.file, at.line, at.column) for at in places}
 
 
 def _interface(statement: Stmt) -> Iterator[str]:

@@ -176,7 +176,7 @@ def _uses(
     """
     for statement, here in _run(function, _NOTHING, own, ()):
         changed = statement.target if isinstance(statement, Assign | CopyStruct) else None
-        for whole, part in ((whole, part) for whole in roots(statement) for part in parts(whole)):
+        for whole, part in [(each, part) for each in roots(statement) for part in parts(each)]:
             match part:
                 case AddressOf(lvalue=LValue(root=Variable(kind="global") as root)):
                     yield root.declaration.path, True, None, here
@@ -418,21 +418,32 @@ def _selected(body: list[Stmt]) -> Iterator[tuple[str, str]]:
 
 
 def ring_indices(modules: Iterable[Module]) -> dict[Word, bool]:
-    """The scalars at file scope that statements only move round a ring buffer (`i = (i + 1) % N`), or set to a constant.
+    """The scalars at file scope that statements only move round a ring buffer, or set to a constant.
 
-    Each with whether it is volatile.
+    `i = (i + 1) % N`, or `next = (i + 1) % N; ... i = next`.  Each with whether it is volatile.
     """
     moved: dict[Word, bool] = {}
     otherwise: set[Word] = set()
     for function in (function for module in modules for function in module.functions):
+        given: dict[Variable, list[Expr]] = {}
+        for statement in statements(function.body):
+            match statement:
+                case Assign(target=LValue(root=Variable(kind="local") as local), value=value) | Declare(
+                    variable=local, value=Expr() as value
+                ):  # fmt: skip
+                    given.setdefault(local, []).append(value)
         for statement in statements(function.body):
             match statement:
                 case Assign(target=LValue(root=Variable() as root) as target, value=value) if (
                     place := _scalar(target)
                 ) is not None:
-                    if _round_a_ring(target, bare(value)):
+                    value = bare(value)
+                    of = value.lvalue.root if isinstance(value, Load) else None
+                    if isinstance(of, Variable) and of.plain and len(given.get(of, ())) == 1:
+                        value = bare(given[of][0])
+                    if _round_a_ring(target, value):
                         moved[place] = root.volatile or target.volatile
-                    elif not isinstance(bare(value), Const):
+                    elif not isinstance(value, Const):
                         otherwise.add(place)
             for part in (part for root in roots(statement) for part in parts(root)):
                 if isinstance(part, AddressOf) and (place := _scalar(part.lvalue)) is not None:

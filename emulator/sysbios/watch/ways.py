@@ -56,20 +56,45 @@ def free_ways(
     functions: Iterable[Function], own: dict[str, Function], telling: Collection[str],
     told: Callable[[Call | RegisterLoad], bool] = always_told,
 ) -> list[Ways]:  # fmt: skip
-    """The functions that are called whatever the routines have told, each with its statements of that kind.
+    """The functions that are only called whatever the routines have told, each with its statements of that kind.
 
     `telling` are the paths of the objects that the routines write.  `told` says whether a register or the result of a
     call may depend on what a routine has done.
     """
+    ways = _all_ways(functions, telling, told)
+    decided = {called.path for way in ways for path in way.decided for called in below(path, own)}
+    return [way for way in ways if way.function.path not in decided]
+
+
+def reached_freely(
+    functions: Iterable[Function], telling: Collection[str], told: Callable[[Call | RegisterLoad], bool] = always_told
+) -> list[Ways]:
+    """As `free_ways`, but with all functions that some path of such calls leads to, whoever else calls them."""
+    ways = {way.function.path: way for way in _all_ways(functions, telling, told)}
+    called = {path for way in ways.values() for path in way.function.calls if path != way.function.path}
+    waiting = [path for path in ways if path not in called]
+    reached: dict[str, Ways] = {}
+    while waiting:
+        path = waiting.pop()
+        if path in ways and path not in reached:
+            way = reached[path] = ways[path]
+            for statement in way.undecided:
+                waiting += [
+                    part.function.path for root in roots(statement) for part in parts(root) if isinstance(part, Call)
+                ]
+    return list(reached.values())
+
+
+def _all_ways(
+    functions: Iterable[Function], telling: Collection[str], told: Callable[[Call | RegisterLoad], bool]
+) -> list[Ways]:
     functions, known = list(functions), set(telling)
     while True:
         ways = [Ways(function, known, told) for function in functions]
         more = {path for way in ways for path in way.passed_on} - known
         if not more:
-            break
+            return ways
         known |= more
-    decided = {called.path for way in ways for path in way.decided for called in below(path, own)}
-    return [way for way in ways if way.function.path not in decided]
 
 
 class Ways:

@@ -10,9 +10,16 @@ from hil.drivers.check import DriverFiles, check_files
 
 PROGRAM = """#include "F28x_Project.h"
 #define CONFIGURE 0x00F00000UL
-volatile Uint16 Sent = 0, Free = 1, Ticks = 0;
+volatile Uint16 Sent = 0, Free = 1, Ticks = 0, Head = 0, Tail = 0;
 static Uint16 Number = 0;
 static void Busy1(void) { while (CanaRegs.CAN_IF1CMD.bit.Busy) ; }
+static void Send(void)
+{
+    CanaRegs.CAN_IF1DATA.all = Number++;
+    CanaRegs.CAN_IF1CMD.all = 0x00860000UL | 1;
+    Busy1();
+}
+static void Answer(void) { if (Free) { Free = 0; Send(); } }
 __interrupt void Ended(void)
 {
     @routine
@@ -90,6 +97,10 @@ def told(routine: str, turn: str, folder: Path) -> list[str]:
         (CLEAR, f"if (Ticks & 1)\n{SEND}", SEND),  # what another routine says keeps this one off by nothing
         (CLEAR, f"Busy1(); if (CanaRegs.CAN_IF1CMD.bit.Busy) continue;\n{SEND}", SEND),
         (f"if (Sent < 60000) {{ {CLEAR} }} else {{ {CLEAR_2} }}", f"\n{SEND}", SEND),
+        # One of two calls waits for the routine; the index of a queue holds nobody off.
+        (f"{CLEAR} Free = 1;", "Answer(); Send();", "CanaRegs.CAN_IF1DATA.all = Number++;"),
+        (f"{CLEAR} Head = (Head + 1) % 8;", f"if (Ticks < 3 && Head == Tail) continue; Tail = (Tail + 1) % 8;\n{SEND}",
+         SEND),
     ],
 )
 def test_an_interface_that_the_routine_can_change_is_told(routine: str, turn: str, line: str, tmp_path: Path) -> None:
@@ -110,6 +121,7 @@ def test_an_interface_that_the_routine_can_change_is_told(routine: str, turn: st
         (f"{CLEAR} Free = 1;", f"while (!Free) ; Free = 0; {SEND}"),
         (CLEAR, f"static Uint16 before = 1; Uint16 now = Sent; if (now != before) {{ before = now; {SEND} }}"),
         (CLEAR, f"if (CanaRegs.CAN_TXRQ_21 & 1) continue; {SEND}"),
+        (f"{CLEAR} Free = 1;", "Answer(); DINT; Send(); EINT;"),
     ],
 )
 def test_an_interface_that_is_kept_apart_is_not_told(routine: str, turn: str, tmp_path: Path) -> None:
