@@ -248,9 +248,10 @@ The loop does not write the object, and for C only this loop runs. So the compil
 loop, and the loop never sees what the interrupt or the other task writes. An `asm(" NOP")` in the loop changes
 nothing.
 
-The check reports a loop only if the compiler may do this. A loop that calls a function with an unknown body, or that
-writes through a pointer, is not reported. In files without a `main`, every function that others can call counts as
-another thread.
+The check reports a loop only if the compiler may do this. The turns of a main loop that begin anew are a loop, too
+(`for (;;) { if (Ticks == seen) continue; ... }`): nothing else runs as long as the test holds. A loop that calls a
+function with an unknown body, or that writes through a pointer, is not reported. In files without a `main`, every
+function that others can call counts as another thread.
 
 **Fix:** `volatile` at every declaration of the object (`volatile[uint16]` in C-shaped Python), or wait for a
 semaphore.

@@ -19,6 +19,7 @@ from emulator.c28x.tree import (
     CallPointer,
     Compare,
     Const,
+    Continue,
     Convert,
     CopyStruct,
     Declare,
@@ -116,17 +117,33 @@ def check_waiting(function: Function, threads: WriterAnalysis, report: StaticRep
     """Report loops of a function that wait for an object which another thread writes and which is not `volatile`."""
     for loop in statements(function.body):
         if isinstance(loop, While | For):
-            for variable in dict.fromkeys(_Loop(loop, function, threads).polled()):
-                found = threads.writer(variable, function)
-                if found is not None:
+            told: set[Variable] = set()
+            for turning in (loop, *_continued(loop)):
+                for variable in dict.fromkeys(_Loop(turning, function, threads).polled()):
+                    found = threads.writer(variable, function)
+                    if found is None or variable in told:
+                        continue
+                    told.add(variable)
                     path, (writer, s) = variable.declaration.path, found
                     place = f"{s.where.file.rsplit('/', 1)[-1]}:{s.where.line}"
                     message = f"the loop waits on {path}, which {writer.path} writes ({place}) and which is not "
                     message += "volatile: the compiler may read it once, before the loop"
                     report.report(
-                        function, loop.where, "poll-not-volatile", message, object=path,
+                        function, turning.where, "poll-not-volatile", message, object=path,
                         declaration=variable.declaration,
                     )  # fmt: skip
+
+
+def _continued(loop: While | For) -> Iterator[While]:
+    """The turns that end at a `continue`, as loops of their own: `for (;;) { if (Ticks == seen) continue; ... }`.
+
+    Nothing behind the `continue` runs as long as its test holds.  A loop that ends by itself does not wait there.
+    """
+    if isinstance(loop, While) and isinstance(loop.test, Const) and not loop.step:
+        for n, s in enumerate(loop.body):
+            match s:
+                case If(test=test, then=[*before, Continue()], otherwise=[]):
+                    yield While(s.where, test, [*loop.body[:n], *before])
 
 
 class _Loop:
@@ -188,18 +205,22 @@ class _Loop:
         return {variable for variable in variables(parts(e)) if variable in self.given}
 
     def read(self, e: Expr | None) -> list[Variable]:
-        """The objects of static storage that an expression reads; none if a part of it must be read every time."""
+        """The objects of static storage that an expression reads; none if a part of it must be read every time.
+
+        A volatile object that no other thread writes is read every time too, but it does not change.
+        """
         found = []
         for p in parts(e):
             match p:
                 case RegisterLoad() | Call() | CallPointer() | LValue(root=Expr()) | LValue(volatile=True):
                     return []
-                case LValue(root=Variable(volatile=True)):
+                case LValue(root=Variable(volatile=True) as root) if self.threads.writer(root, self.function):
                     return []
                 case Load(lvalue=LValue(root=Variable(kind="global", constant=False) as root)):
                     if root in self.written:
                         return []
-                    found.append(root)
+                    if not root.volatile:
+                        found.append(root)
         return found
 
     def transparent(self) -> bool:

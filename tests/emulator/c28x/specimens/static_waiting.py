@@ -9,6 +9,98 @@ from tests.emulator.c28x.specimens import static_pair
 PAIRS: Final = (
     static_pair(
         "poll-not-volatile",
+        "a main loop that begins anew until a tick has come",
+        """
+ticks: uint16 = 3
+done: uint16 = 0
+def Isr() -> void:
+    ticks += 1
+def Loop() -> int16:
+    seen: uint16 = 0
+    while 1:
+        if ticks == seen:  # <-
+            continue
+        seen += 1
+        Step()
+        if done > 2:
+            return done
+def Step() -> void:
+    done += 1
+""",
+        """
+ticks: volatile[uint16] = 3
+done: uint16 = 0
+def Isr() -> void:
+    ticks += 1
+def Loop() -> int16:
+    seen: uint16 = 0
+    while 1:
+        if ticks == seen:
+            continue
+        seen += 1
+        Step()
+        if done > 2:
+            return done
+def Step() -> void:
+    done += 1
+enabled: uint16 = 1
+def Off() -> void:
+    enabled = 0
+def Some() -> void:
+    i: int16
+    for i in range(4):
+        if enabled == 0:
+            continue
+        Step()
+""",
+        ("Loop", ()),
+    ),
+    static_pair(
+        "poll-not-volatile",
+        "the index of a queue, beside a tick and an index of its own that are volatile",
+        """
+ticks: volatile[uint16] = 3
+head: uint16 = 2
+tail: volatile[uint16] = 0
+def Isr() -> void:
+    ticks += 1
+    head = (head + 1) % 8
+def Loop() -> int16:
+    seen: uint16 = 0
+    while 1:
+        if ticks == seen and tail == head:  # <-
+            continue
+        seen += 1
+        tail = (tail + 1) % 8
+        if tail > 1:
+            return tail
+""",
+        """
+ticks: volatile[uint16] = 3
+head: volatile[uint16] = 2
+tail: volatile[uint16] = 0
+last: uint16 = 5
+limit: uint16 = 2
+def Isr() -> void:
+    ticks += 1
+    head = (head + 1) % 8
+def Loop() -> int16:
+    seen: uint16 = 0
+    while 1:
+        last = tail
+        if ticks == seen and last == head:
+            continue
+        if limit == 3:
+            continue
+        seen += 1
+        tail = (tail + 1) % 8
+        if tail > 1:
+            return tail
+""",
+        ("Loop", ()),
+    ),
+    static_pair(
+        "poll-not-volatile",
         "a flag of an interrupt",
         """
 done: uint16 = 1
