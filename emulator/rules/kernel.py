@@ -43,7 +43,9 @@ threads that only time keeps apart (the routine sets a flag and does not wait; `
 interrupt) are reported if the run shows that the time is too short. If an interrupt routine uses the halves of a
 buffer in turn, `main` must use the other half: it has only the time until the routine turns. A flag that `main` clears
 before it has copied what the flag stands for lets the routine write again too early, if the routine tests this flag.
-What `main` did before it started a transfer is ordered before the interrupt at its end.
+What `main` did before it started a transfer is ordered before the interrupt at its end. If `main` sets the enable of a
+peripheral (`TXFFIENA = 1`) before the counts on which the routine depends, a request that waits lets the routine in:
+it finds nothing to do, and switches its interrupt off for good.
 
 Host tools see nothing: the host has none of these threads and locks.
 

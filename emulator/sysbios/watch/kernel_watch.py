@@ -25,6 +25,7 @@ from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.interfaces import CanBlock, Interfaces
 from emulator.sysbios.watch.inversion import Inversion
+from emulator.sysbios.watch.let_in import LetIn
 from emulator.sysbios.watch.lost_events import LostEvents
 from emulator.sysbios.watch.lost_posts import LostPosts
 from emulator.sysbios.watch.names import HandleNames
@@ -89,6 +90,7 @@ class KernelWatch:
         self.releases = Releases(threads, locator, names, findings, calls)
         self.lost_posts = LostPosts(locator, names, findings, calls, linked)
         self.lost_events = LostEvents(threads, locator, findings, linked.program.modules.values())
+        self.let_in = LetIn(threads, locator, findings, linked.program.modules.values())
         self.interfaces = Interfaces(threads, locator, findings, linked.program.modules.values())
         #: Register -> what hears of its writes, and knows the interrupts that these can bring.
         self._started: dict[Cell, _Beginnings] = {}
@@ -132,7 +134,10 @@ class KernelWatch:
     def vectors(self, vectors: Vectors, line: Callable[[int], Enable]) -> None:
         """Watch the routines of the vector table.  `line` returns the PIEIER bit of a PIE interrupt."""
         self.threads.line = line
+        # The routine is the running thread for all others.
         vectors.began.connect(self.threads.routine_begins)
+        vectors.began.connect(self.let_in.began)
+        vectors.ended.connect(self.let_in.ended)
         vectors.ended.connect(self.threads.routine_ends)
 
     def interrupt(self, number: int, enables: Enables) -> None:

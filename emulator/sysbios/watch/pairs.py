@@ -102,7 +102,7 @@ def _add_copied(own: dict[str, Function], found: dict[str, list[Pair]]) -> None:
         for function in reached:
             inside.add(function.path)
             telling |= written_objects(function.body) | _read_addresses(function)
-            for block in _blocks(function.body):
+            for block in all_blocks(function.body):
                 for path, words in _set_together(block).items():
                     together.setdefault(path, []).append((routine.name, words))
     others = [function for function in own.values() if together and function.path not in inside]
@@ -205,7 +205,7 @@ def continued(modules: Iterable[Module]) -> dict[str, set[tuple[str, str]]]:
     inside: set[str] = set()
     for routine, reached in interrupt_routines(own):
         inside |= {function.path for function in reached}
-        used = {path for function in reached for path in _used(function)}
+        used = {path for function in reached for path in decided_by(function)}
         steps = {path for function in reached for path in _steps(function)}
         for path in used & steps:
             stepped.setdefault(path, {})[routine.name] = used - {path}
@@ -267,7 +267,7 @@ def handed_over(modules: Iterable[Module]) -> dict[str, set[HandOver]]:
                     awaited.setdefault((flag, raised), {}).setdefault(routine.name, set()).update(used - {flag})
     found: dict[str, set[HandOver]] = {}
     for function in own.values() if awaited else ():
-        for block in _blocks(function.body) if function.path not in inside else ():
+        for block in all_blocks(function.body) if function.path not in inside else ():
             for number, statement in enumerate(block):
                 key = _flag(statement)
                 if key is None or key not in awaited:
@@ -321,11 +321,12 @@ def _flag(statement: Stmt) -> tuple[str, bool] | None:
     return None
 
 
-def _blocks(body: list[Stmt]) -> Iterator[list[Stmt]]:
+def all_blocks(body: list[Stmt]) -> Iterator[list[Stmt]]:
+    """A block, and all those in it."""
     yield body
     for statement in body:
         for block in blocks(statement):
-            yield from _blocks(block)
+            yield from all_blocks(block)
 
 
 def _read(body: Iterable[Stmt]) -> set[str]:
@@ -358,7 +359,7 @@ def _steps(function: Function) -> Iterator[str]:
                     yield root.declaration.path
 
 
-def _used(function: Function) -> Iterator[str]:
+def decided_by(function: Function) -> Iterator[str]:
     """The plain objects that a function reads in a test or in an array index."""
     for statement in statements(function.body):
         deciding: list[Any] = [statement.test] if isinstance(statement, If | While) else []
