@@ -74,6 +74,10 @@ def test_a_way_that_leaves_interrupts_off_is_told(tmp_path: Path, body: str, at:
     # The DINT before the loop is in force in all of its turns.
     ("Work", "DINT; for (i = 0; i < n; i++) { if (Late) continue; Seen++; } EINT;"),
     ("Work", "while (n) { DINT; Seen++; if (Late) break; n--; EINT; } EINT;"),
+    # A turn of the loop switches on, or a function in a condition does.
+    ("Work", "DINT; for (;;) { if (!Late) { Late = 1; EINT; break; } EINT; Seen++; DINT; } return n;"),
+    ("Work", "DINT; do { Seen++; n++; EINT; } while (n < 3); return n;"),
+    ("Work", "DINT; Seen++; if (n > 3 && (Unmask(), Late)) return 1; EINT;"),
     ("Sensor_Init", "DINT; Seen++; if (Late) return 1; Late = 0; EINT;"),
 ])  # fmt: skip
 def test_ways_that_switch_on_again_are_not_told(tmp_path: Path, name: str, body: str) -> None:

@@ -125,6 +125,8 @@ class _Walk:
                     self._around.append((off, first))
                     self.block(turn, off)
                     self._around.pop()
+                    if any(_switches_on(call.function, set()) for call in _calls(within([s]))):
+                        off = None  # on some ways through its turns, interrupts are on again
                 case Continue():
                     around, first = self._around[-1]
                     kept = off is around or off is before
