@@ -66,6 +66,11 @@ def _walk(body: list[Stmt], held: Held, outside: Held, found: list[GateExit]) ->
                 ways = [_walk(case, held, outside, found) for _, case in cases] + [held]
             case While(body=turn) | For(body=turn):
                 _walk(turn, held, held, found)
+                # A gate that some turn leaves may be held behind the loop or not.
+                for call in calls(turn):
+                    if call.function.name in LEAVE:
+                        path = first_argument(call)
+                        held = {each: at for each, at in held.items() if path not in (each, None)}
                 continue
             case Continue():
                 found.extend(GateExit(statement, path, at) for path, at in held.items() if path not in outside)

@@ -85,6 +85,9 @@ def test_a_way_that_does_not_leave_a_gate_is_told(tmp_path: Path, body: str, at:
     # Behind the loop inside the gate is left.
     "ENTER\nfor (;;) {\n    if (Wanted == Shown)\n        break;\n    Shown = Wanted;\n}\n"
     "LEAVE",
+    # Each turn of the loop leaves it.
+    "ENTER\nfor (;;) {\n    if (Wanted == Shown) {\n        LEAVE\n        break;\n    }\n    LEAVE\n"
+    "    Task_sleep(1);\n    ENTER\n}\nif (Shown == 0)\n    continue;\nENTER\nLEAVE",
     # On one way only.
     "if (Wanted != Shown)\n    ENTER\nif (Wanted != Shown)\n"
     "    LEAVE\nelse\n    continue;",
