@@ -15,9 +15,9 @@ meant: the conditions stand at each use.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from emulator.c28x.ctypes import ArrayType, IntType
 from emulator.c28x.passes.report import StaticReport
@@ -54,6 +54,8 @@ from emulator.c28x.tree_queries import (
     statements,
     within,
 )
+
+_Node = TypeVar("_Node", int, str)
 
 #: Names and comments of flags that are meant to stay.
 _LATCHED: Final = re.compile(r"latch|trip|fault|fail|lock|sticky|perman|for good|until reset", re.IGNORECASE)
@@ -152,7 +154,7 @@ class _Program:
     def _graph(self, function: Function, switch: Switch, state: Variable) -> dict[int, set[int]] | None:
         """The states, each with those that its case and the statements beside the switch lead to; None: not known."""
         inside = [s for _, body in switch.cases for s in statements(body)]
-        by_cases = _reached_by({f.path: f.calls for f in self.functions}, _called(inside))
+        by_cases = _reached({f.path: f.calls for f in self.functions}, _called(inside))
         beside = [s for f in self._elsewhere(function, by_cases) for s in self._again(f)]
         left_out = set(map(id, inside))
         always = self.states.of_statements((s for s in beside if id(s) not in left_out), state, by_cases)
@@ -175,7 +177,7 @@ class _Program:
         """The functions that run again and again, but those that the cases of a switch in `function` call."""
         begin = [f.path for f in self.functions if f.interrupt]
         begin += [path for f in self.functions if f.name == "main" for path in _called(self._again(f))]
-        repeated = _reached_by({f.path: f.calls for f in self.functions}, begin) - by_cases
+        repeated = _reached({f.path: f.calls for f in self.functions}, begin) - by_cases
         return [f for f in self.functions if f.path in repeated or f.name == "main" or f is function]
 
     @staticmethod
@@ -292,32 +294,20 @@ def _passed(s: If) -> Iterator[tuple[Variable, list[Stmt]]]:
             yield count, s.otherwise
 
 
-def _reached(graph: dict[int, set[int]], first: set[int]) -> set[int]:
-    """The states that can be reached from some, with these."""
-    found: set[int] = set()
+def _reached(graph: Mapping[_Node, Collection[_Node]], first: Iterable[_Node]) -> set[_Node]:
+    """What can be reached from some nodes, with these: states, or the functions that are called."""
+    found: set[_Node] = set()
     waiting = list(first)
     while waiting:
-        state = waiting.pop()
-        if state not in found:
-            found.add(state)
-            waiting += graph.get(state, ())
+        node = waiting.pop()
+        if node not in found:
+            found.add(node)
+            waiting += graph.get(node, ())
     return found
 
 
 def _called(body: Iterable[Stmt]) -> list[str]:
     return [p.function.path for s in body for root in roots(s) for p in parts(root) if isinstance(p, Call)]
-
-
-def _reached_by(calls_of: dict[str, set[str]], first: list[str]) -> set[str]:
-    """The functions that some call, with these."""
-    found: set[str] = set()
-    waiting = list(first)
-    while waiting:
-        path = waiting.pop()
-        if path not in found:
-            found.add(path)
-            waiting += calls_of.get(path, ())
-    return found
 
 
 def _roots_of(e: Any) -> set[Variable]:
