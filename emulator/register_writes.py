@@ -43,7 +43,7 @@ from emulator.c28x.tree import (
     Variable,
     Where,
 )
-from emulator.c28x.tree_queries import assigned, bare, blocks, last_loop, parts, roots, statements, within
+from emulator.c28x.tree_queries import assigned, bare, blocks, last_loop, own_nodes, parts, statements, within
 from emulator.chip import ECAP_INPUT, XINT_INPUT
 from emulator.peripherals.dma import CHANNELS, CHINTE, CONTINUOUS, ONESHOT, PERINTE, RUN
 from emulator.registers.cell import Cell
@@ -220,7 +220,7 @@ class RegisterWrites:
                 if s is loop or any(isinstance(inner, Return) for block in blocks(s) for inner in statements(block)):
                     break
                 found |= _places(f, s)
-                called = [part.function.path for root in roots(s) for part in parts(root) if isinstance(part, Call)]
+                called = [part.function.path for part in own_nodes(s) if isinstance(part, Call)]
                 waiting += [own[path] for path in called if path in own and path not in seen]
         return found
 
@@ -234,13 +234,13 @@ class RegisterWrites:
                     self._stored.add(variable)
                 case CopyStruct(target=LValue(root=Variable() as variable)):
                     self._stored.add(variable)
-            for part in (part for root in roots(s) for part in parts(root)):
+            for part in own_nodes(s):
                 if isinstance(part, AddressOf) and isinstance(part.lvalue.root, Variable):
                     self._stored.add(part.lvalue.root)
 
     def _read_calls(self, f: Function) -> None:
         for s in statements(f.body):
-            for part in (part for root in roots(s) for part in parts(root)):
+            for part in own_nodes(s):
                 if isinstance(part, FunctionRef):
                     self._free |= set(part.function.parameters)
                 elif isinstance(part, Call):
@@ -253,7 +253,7 @@ class RegisterWrites:
 
     def _read_accesses(self, f: Function, of_library: bool) -> None:
         for s in statements(f.body):
-            for part in (part for root in roots(s) for part in parts(root)):
+            for part in own_nodes(s):
                 if isinstance(part, RegisterLoad):
                     register = part.register
                     name = register.register if isinstance(register, RegisterRef) else register.name
@@ -489,7 +489,7 @@ def _place(f: Function, where: Where) -> Place:
 
 def _places(f: Function, s: Stmt) -> set[Place]:
     """The places of a statement and of the calls in it, without its inner blocks."""
-    nodes = [part for root in roots(s) for part in parts(root)]
+    nodes = own_nodes(s)
     return {_place(f, s.where)} | {_place(f, p.where) for p in nodes if isinstance(p, Call) and p.where.line}
 
 

@@ -44,8 +44,8 @@ from emulator.c28x.tree_queries import (
     bare,
     blocks,
     leaves,
+    own_nodes,
     parts,
-    roots,
     statements,
     variables,
 )
@@ -255,7 +255,7 @@ class _FollowedCall:
 
     def _expressions(self, s: Stmt) -> None:
         """The reads, calls and writes of one statement."""
-        for part in [part for root in roots(s) for part in parts(root)]:
+        for part in own_nodes(s):
             if isinstance(part, Load):
                 self._access(part.lvalue, s.where)
             elif isinstance(part, Call):

@@ -469,6 +469,8 @@ class Stmt:
     cycles: int = field(default=0, kw_only=True, repr=False, compare=False, metadata=FOUND)
     #: Pass `flow`: an expected way leads to it.
     reached: bool = field(default=True, kw_only=True, repr=False, compare=False, metadata=FOUND)
+    #: What `tree_queries.own_nodes` lists; None: nobody has asked.
+    nodes: list[Any] | None = field(default=None, init=False, repr=False, compare=False, metadata=FOUND)
 
     @property
     def line(self) -> int:

@@ -246,12 +246,11 @@ def passing(s: Stmt) -> bool:
     """Whether a statement accesses only named objects: no register, no call, no pointer, no inner block."""
     if not isinstance(s, Assign | Declare | Return):
         return False
-    for root in roots(s):
-        for part in parts(root):
-            if isinstance(part, (*OBSERVABLE, RegisterRef, RegisterAt)):
-                return False
-            if isinstance(part, LValue) and isinstance(part.root, Expr):
-                return False
+    for part in own_nodes(s):
+        if isinstance(part, (*OBSERVABLE, RegisterRef, RegisterAt)):
+            return False
+        if isinstance(part, LValue) and isinstance(part.root, Expr):
+            return False
     return True
 
 
@@ -299,6 +298,21 @@ def roots(s: Stmt) -> list[Any]:
     return found
 
 
+def own_nodes(s: Stmt) -> list[Any]:
+    """Every expression, lvalue and subscript of a statement itself, roots before their parts.  Do not change the list.
+
+    The statement keeps it: dozens of passes ask, and after the builder nothing changes what a tree consists of.
+    """
+    if s.nodes is None:
+        s.nodes = [part for root in roots(s) for part in parts(root)]
+    return s.nodes
+
+
+def runs_function(s: Stmt) -> bool:
+    """Whether the expressions of a statement itself call a function."""
+    return any(isinstance(part, Call | CallPointer) for part in own_nodes(s))
+
+
 def assigned(s: Stmt) -> Variable | None:
     """The variable that a statement itself assigns."""
     match s:
@@ -323,8 +337,7 @@ def addressed(nodes: Iterable[Any]) -> set[Variable]:
 def within(body: Iterable[Stmt]) -> Iterator[Any]:
     """Every expression and lvalue of statements."""
     for s in statements(body):
-        for root in roots(s):
-            yield from parts(root)
+        yield from own_nodes(s)
 
 
 def variables(nodes: Iterable[Any]) -> set[Variable]:

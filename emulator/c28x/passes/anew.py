@@ -13,7 +13,16 @@ from emulator.c28x.arithmetic import COMPARE
 from emulator.c28x.ctypes import IntType
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.tree import Assign, Binary, Compare, Const, Expr, Function, If, Index, Load, LValue, Stmt, Variable
-from emulator.c28x.tree_queries import bare, blocks, calls, parts, roots, source_text, statements, variables, within
+from emulator.c28x.tree_queries import (
+    bare,
+    blocks,
+    parts,
+    runs_function,
+    source_text,
+    statements,
+    variables,
+    within,
+)
 
 #: The value of an object, and whether it was counted since it was set.
 _Known = tuple[int, bool]
@@ -28,9 +37,9 @@ def check_begun_anew(function: Function, report: StaticReport) -> None:
         for s in block:
             if isinstance(s, If) and isinstance(s.test, Compare):
                 _compare(function, s, s.test, known, report)
-            if blocks(s) or any(calls(root) for root in roots(s)):
+            if blocks(s) or runs_function(s):
                 changed = {v for inner in statements([s]) if (v := _target(inner)) is not None}
-                opaque = any(calls(root) for inner in statements([s]) for root in roots(inner))
+                opaque = any(map(runs_function, statements([s])))
                 known = {} if opaque else {v: value for v, value in known.items() if v not in changed}
             else:
                 _follow(s, known)

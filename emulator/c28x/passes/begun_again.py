@@ -47,10 +47,11 @@ from emulator.c28x.tree_queries import (
     assigned,
     bare,
     blocks,
-    calls,
     last_loop,
+    own_nodes,
     parts,
     roots,
+    runs_function,
     statements,
     within,
 )
@@ -307,7 +308,7 @@ def _reached(graph: Mapping[_Node, Collection[_Node]], first: Iterable[_Node]) -
 
 
 def _called(body: Iterable[Stmt]) -> list[str]:
-    return [p.function.path for s in body for root in roots(s) for p in parts(root) if isinstance(p, Call)]
+    return [p.function.path for s in body for p in own_nodes(s) if isinstance(p, Call)]
 
 
 def _roots_of(e: Any) -> set[Variable]:
@@ -338,7 +339,7 @@ def _refuses(s: If, mark: Variable) -> bool:
         if len(tests) > 1 and negated != turned:
             continue
         kept = s.then if negated else s.otherwise
-        return any(calls(root) for x in statements(kept) for root in roots(x))
+        return any(map(runs_function, statements(kept)))
     return False
 
 

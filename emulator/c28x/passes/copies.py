@@ -26,7 +26,15 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import OBSERVABLE, bare, blocks, calls, parts, roots, source_text, statements
+from emulator.c28x.tree_queries import (
+    OBSERVABLE,
+    bare,
+    blocks,
+    own_nodes,
+    runs_function,
+    source_text,
+    statements,
+)
 
 #: Operator -> its result for an object and its copy.
 _RESULT: Final = {"-": 0, "/": 1, "^": 0}
@@ -43,7 +51,7 @@ def _block(function: Function, body: list[Stmt], copies: _Copies, report: Static
     for s in body:
         inner = blocks(s)
         copies = _copies_within(s, copies)
-        for e in (part for root in roots(s) for part in parts(root)) if copies else ():
+        for e in own_nodes(s) if copies else ():
             if isinstance(e, Binary) and e.op in _RESULT and _are_copies(e, copies):
                 message = f"{source_text(e)} is always {_RESULT[e.op]}: one has just been copied to the other"
                 report.report(function, s.where, "own-copy", message, object=source_text(e))
@@ -68,16 +76,16 @@ def _copies_within(s: Stmt, copies: _Copies) -> _Copies:
     if not copies:
         return copies
     if not isinstance(s, While | For):
-        return _kept(copies, None, called=any(map(calls, roots(s))))
+        return _kept(copies, None, called=runs_function(s))
     turns = list(statements([s]))
     for turn in turns:
         copies = _kept(copies, _written(turn), called=False)
-    return _kept(copies, None, called=any(calls(root) for turn in turns for root in roots(turn)))
+    return _kept(copies, None, called=any(map(runs_function, turns)))
 
 
 def _copies_after(s: Assign | Declare | Evaluate, copies: _Copies) -> _Copies:
     """The copies that are valid after a statement."""
-    called = any(isinstance(part, OBSERVABLE) for root in roots(s) for part in parts(root))
+    called = any(isinstance(part, OBSERVABLE) for part in own_nodes(s))
     written = _written(s)
     target: LValue | None = None
     match s:

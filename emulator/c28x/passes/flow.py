@@ -61,7 +61,7 @@ from emulator.c28x.tree import (
     Where,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import assigned_variables, bare, blocks, children, parts, roots, statements
+from emulator.c28x.tree_queries import assigned_variables, bare, blocks, children, own_nodes, parts, roots, statements
 
 #: After so many turns, the walk gives up what it knows at the head of a loop.
 _TURNS: Final = 8
@@ -567,7 +567,7 @@ def _may_store(s: Stmt) -> bool:
     """Whether a statement may store in any object of the program: it copies a structure, or calls a function."""
     return isinstance(s, CopyStruct) or any(
         isinstance(p, CallPointer) or (isinstance(p, Call) and not p.function.extern)
-        for root in roots(s) for p in parts(root)
+        for p in own_nodes(s)
     )
 
 

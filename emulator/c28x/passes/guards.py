@@ -109,10 +109,10 @@ from emulator.c28x.tree_queries import (
     computes_alone,
     different,
     named_scalar,
+    own_nodes,
     parts,
     polls,
     register_text,
-    roots,
     source_text,
     statements,
     variables,
@@ -201,7 +201,7 @@ class Guards:
 
     def follow_parts(self, s: Stmt) -> None:
         """Check the words that have a sign in a statement, and follow the parts of regulators in it."""
-        for p in (p for root in roots(s) for p in parts(root)) if self.regulators or self.words else ():
+        for p in own_nodes(s) if self.regulators or self.words else ():
             word = self.words.get(id(p))
             if word is not None and p.leaving is None:
                 site = self.site(p.ctype, source_text(p), at=p.where, bound=word.largest, widened=word.use)

@@ -31,7 +31,7 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import assigned, bare, last_loop, parts, roots, statements, variables, within
+from emulator.c28x.tree_queries import assigned, bare, last_loop, own_nodes, parts, roots, statements, variables, within
 
 #: A function that gives a key -> the functions that switch on again.
 KEYS: Final = {
@@ -159,7 +159,7 @@ class _Walk:
         return off
 
     def _named(self, s: Stmt, name: str) -> Iterator[Call]:
-        return (call for root in roots(s) for call in _calls(parts(root)) if call.function.name == name)
+        return (call for call in _calls(own_nodes(s)) if call.function.name == name)
 
     def _joined(self, ways: list[tuple[bool, Stmt | None]]) -> tuple[bool, Stmt | None]:
         """A DINT that is in force on some ways only is not followed further."""

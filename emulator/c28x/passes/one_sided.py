@@ -34,7 +34,17 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import addressed, assigned, bare, parts, roots, source_text, statements, within
+from emulator.c28x.tree_queries import (
+    addressed,
+    assigned,
+    bare,
+    own_nodes,
+    parts,
+    roots,
+    source_text,
+    statements,
+    within,
+)
 
 #: Names of objects that are set by hand, with a debugger.
 _BY_HAND: Final = re.compile(r"debug|test|sim|trace|verbose|enable|option|config|dbg", re.IGNORECASE)
@@ -88,10 +98,9 @@ def _tests(s: Stmt) -> Iterator[Expr]:
     match s:
         case If(test=test) | While(test=test) | Switch(subject=test):
             yield test
-    for root in roots(s):
-        for p in parts(root):
-            if isinstance(p, Conditional):
-                yield p.test
+    for p in own_nodes(s):
+        if isinstance(p, Conditional):
+            yield p.test
 
 
 def _begins_again(writes: list[Stmt], variable: Variable) -> bool:
@@ -142,13 +151,12 @@ def _asked(functions: list[Function]) -> dict[Variable, list[_Asked]]:
             if isinstance(s, Switch) and (v := named(s.subject)) is not None:
                 cases = [(label, body) for labels, body in s.cases for label in labels or ()]
                 found.setdefault(v, []).extend((function, body[0] if body else s, label) for label, body in cases)
-            for root in roots(s):
-                for p in parts(root):
-                    if isinstance(p, Compare) and p.op == "==":
-                        for side, other in ((p.left, p.right), (p.right, p.left)):
-                            v, label = named(side), constant_of(other)
-                            if v is not None and label is not None:
-                                found.setdefault(v, []).append((function, s, label))
+            for p in own_nodes(s):
+                if isinstance(p, Compare) and p.op == "==":
+                    for side, other in ((p.left, p.right), (p.right, p.left)):
+                        v, label = named(side), constant_of(other)
+                        if v is not None and label is not None:
+                            found.setdefault(v, []).append((function, s, label))
     return found
 
 

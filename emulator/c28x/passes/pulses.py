@@ -10,7 +10,7 @@ from __future__ import annotations
 from emulator.c28x.ctypes import FloatType, IntType
 from emulator.c28x.passes.stamps import CAPTURES, STAMP, Stamps
 from emulator.c28x.tree import Assign, Binary, Const, Convert, Declare, Load, LValue, Stmt, Variable
-from emulator.c28x.tree_queries import parts, roots, statements, within
+from emulator.c28x.tree_queries import own_nodes, statements, within
 
 
 def pulses(image: Stamps) -> dict[int, str]:
@@ -61,5 +61,5 @@ def _split(body: list[Stmt], cut: Convert) -> bool:
     """Whether the function keeps the upper half of the same difference too."""
     return any(
         isinstance(p, Binary) and p.op == ">>" and isinstance(p.right, Const) and p.left == cut.operand
-        for s in statements(body) for root in roots(s) for p in parts(root)
+        for s in statements(body) for p in own_nodes(s)
     )  # fmt: skip

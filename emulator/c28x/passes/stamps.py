@@ -46,7 +46,7 @@ from emulator.c28x.tree import (
     Unary,
     Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import addressed, assigned, bare, different, parts, roots, statements, within
+from emulator.c28x.tree_queries import addressed, assigned, bare, different, own_nodes, parts, roots, statements, within
 
 #: The kinds of expressions: neither of the others; a stamp; a deadline, which is a stamp plus or minus something.
 NONE: Final = 0
@@ -131,10 +131,9 @@ class Stamps:
                     self.given.append(((variable, 0), value))
                 case Return(value=Expr() as value):
                     self.given.append((("result", function.path), value))
-            for root in roots(s):
-                for p in parts(root):
-                    if isinstance(p, Call):
-                        self.passed(p)
+            for p in own_nodes(s):
+                if isinstance(p, Call):
+                    self.passed(p)
 
     def passed(self, call: Call) -> None:
         """Collect the arguments of a call."""
@@ -256,18 +255,17 @@ class Stamps:
             set_ |= {root for s in statements(function.body) if (root := assigned(s)) is not None}
         for function in self.functions:
             for s in statements(function.body):
-                for root in roots(s):
-                    for p in parts(root):
-                        match p:
-                            case Binary(op="-", ctype=IntType(bits=16, signed=False), left=now, right=right):
-                                load = bare(right)
-                            case _:
-                                continue
-                        match load:
-                            case Load(lvalue=LValue(root=Variable(kind="global") as stamp, indices=[])):
-                                plain = isinstance(stamp.ctype, IntType) and not stamp.constant and not stamp.escapes
-                                if plain and stamp not in set_ and self.kind(now) == STAMP and stamp.initial:
-                                    yield function, s, p, stamp
+                for p in own_nodes(s):
+                    match p:
+                        case Binary(op="-", ctype=IntType(bits=16, signed=False), left=now, right=right):
+                            load = bare(right)
+                        case _:
+                            continue
+                    match load:
+                        case Load(lvalue=LValue(root=Variable(kind="global") as stamp, indices=[])):
+                            plain = isinstance(stamp.ctype, IntType) and not stamp.constant and not stamp.escapes
+                            if plain and stamp not in set_ and self.kind(now) == STAMP and stamp.initial:
+                                yield function, s, p, stamp
 
     # Suspicions
 

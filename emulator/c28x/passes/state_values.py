@@ -19,7 +19,7 @@ from emulator.c28x.tree import (
     Stmt,
     Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import assigned, bare, parts, roots, statements
+from emulator.c28x.tree_queries import assigned, bare, own_nodes, statements
 
 #: What a function may give to a state: a constant, the parameter with this number, or anything.
 Given = tuple[str, int]
@@ -39,12 +39,11 @@ class StateValues:
             for s in statements(function.body):
                 if (variable := assigned(s)) is not None:
                     self._assigns.setdefault(variable, []).append((function, s))
-                for root in roots(s):
-                    for p in parts(root):
-                        if isinstance(p, Call):
-                            self._callers.setdefault(p.function.path, []).append((function, p))
-                        elif isinstance(p, FunctionRef):
-                            self._by_pointer.add(p.function.path)
+                for p in own_nodes(s):
+                    if isinstance(p, Call):
+                        self._callers.setdefault(p.function.path, []).append((function, p))
+                    elif isinstance(p, FunctionRef):
+                        self._by_pointer.add(p.function.path)
         self._given: dict[Variable, dict[str, set[Given]]] = {}
 
     def of(self, state: Variable) -> set[int] | None:
@@ -69,13 +68,12 @@ class StateValues:
         for s in body:
             if assigned(s) is state:
                 found |= _values(s.value, parameters) if isinstance(s, Assign) else {ANYTHING}
-            for root in roots(s):
-                for p in parts(root):
-                    if isinstance(p, Call):
-                        given = summaries.get(p.function.path, set())
-                        if called is not None and p.function.path not in called:
-                            given = {one for one in given if one[0] == "parameter"}
-                        found |= _passed_on(given, p, parameters)
+            for p in own_nodes(s):
+                if isinstance(p, Call):
+                    given = summaries.get(p.function.path, set())
+                    if called is not None and p.function.path not in called:
+                        given = {one for one in given if one[0] == "parameter"}
+                    found |= _passed_on(given, p, parameters)
         return {one for one in found if one[0] != "parameter"}  # their callers say which
 
     def _summaries(self, state: Variable) -> dict[str, set[Given]]:

@@ -50,7 +50,7 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import addressed, bare, blocks, parts, roots, source_text, statements, within
+from emulator.c28x.tree_queries import addressed, bare, blocks, own_nodes, parts, roots, source_text, statements, within
 
 #: The largest number of values of one object that are followed.
 _MOST: Final = 3000
@@ -186,7 +186,7 @@ class States:
                     case While(body=body) | For(body=body):
                         again |= {id(inner) for inner in statements(body)}
                         repeated += [
-                            p.function.path for inner in statements(body) for root in roots(inner) for p in parts(root)
+                            p.function.path for inner in statements(body) for p in own_nodes(inner)
                             if isinstance(p, Call)
                         ]  # fmt: skip
             for state, _, body in _states(f):
@@ -376,7 +376,7 @@ class States:
         if any((goal - start) % step == 0 and ((goal - start) * step >= 0 or not one_way) for start in starts):
             return
         bounds = (
-            p for g in self.functions.values() for s in statements(g.body) for root in roots(s) for p in parts(root)
+            p for g in self.functions.values() for s in statements(g.body) for p in own_nodes(s)
             if isinstance(p, Compare) and p.op not in ("==", "!=")
             and any(isinstance(q, Load) and q.lvalue.root is v for q in parts(p))
         )  # fmt: skip
@@ -400,7 +400,7 @@ class States:
         for module, report in reports.items():
             for f in module.functions:
                 for s in statements(f.body):
-                    for p in (p for root in roots(s) for p in parts(root)):
+                    for p in own_nodes(s):
                         match p:
                             case Compare(op="<" | "<=" | ">" | ">=", left=left, right=right):
                                 for side, other in ((left, right), (right, left)):

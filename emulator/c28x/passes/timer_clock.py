@@ -12,7 +12,7 @@ from typing import Final
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Call, Const, Function, RegisterRef, Stmt
-from emulator.c28x.tree_queries import bare, parts, roots, source_text, statements
+from emulator.c28x.tree_queries import bare, own_nodes, source_text, statements
 
 #: What InitSysCtrl makes (HDR F2837xS_SysCtrl.c).
 SYSCLK_MHZ: Final = 200
@@ -50,6 +50,5 @@ def check_timer_clocks(reports: Mapping[Module, StaticReport]) -> None:
 def _nodes(function: Function) -> Iterator[tuple[Stmt, object]]:
     """Every part of a function, with its statement."""
     for s in statements(function.body):
-        for root in roots(s):
-            for p in parts(root):
-                yield s, p
+        for p in own_nodes(s):
+            yield s, p

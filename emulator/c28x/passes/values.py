@@ -44,8 +44,8 @@ from emulator.c28x.tree_queries import (
     bare,
     calls,
     different,
+    own_nodes,
     parts,
-    roots,
     source_text,
     statements,
 )  # fmt: skip
@@ -173,10 +173,9 @@ class ValueChecks(ConstantChecks):
                 case Assign(value=value) | Declare(value=value) | Return(value=value):
                     for item in different(value) if isinstance(value, list) else [value]:
                         self.given(item)
-            for root in roots(s):
-                for part in parts(root):
-                    if isinstance(part, Expr):
-                        self.expression(part)
+            for part in own_nodes(s):
+                if isinstance(part, Expr):
+                    self.expression(part)
 
     def outside(self, variable: Variable, value: Expr) -> None:
         """Report a constant above all constants of its enumeration; not flags, nor a value that means "none"."""

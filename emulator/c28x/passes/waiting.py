@@ -44,8 +44,8 @@ from emulator.c28x.tree_queries import (
     assigned,
     bare,
     blocks,
+    own_nodes,
     parts,
-    roots,
     statements,
     variables,
 )
@@ -76,7 +76,7 @@ class WriterAnalysis:
         found: dict[Variable, dict[str, Stmt]] = {}
         for path, function in self.functions.items():
             for s in statements(function.body):
-                for variable in {assigned(s)} | addressed(part for root in roots(s) for part in parts(root)):
+                for variable in {assigned(s)} | addressed(own_nodes(s)):
                     if variable is not None and variable.kind == "global":
                         found.setdefault(variable, {}).setdefault(path, s)
         return found
@@ -304,10 +304,9 @@ def _leaves(block: list[Stmt], *, inner: bool) -> bool:
 def _calls(body: list[Stmt]) -> Iterator[Call | CallPointer]:
     """The calls of statements, without those of their inner blocks."""
     for s in body:
-        for root in roots(s):
-            for part in parts(root):
-                if isinstance(part, Call | CallPointer):
-                    yield part
+        for part in own_nodes(s):
+            if isinstance(part, Call | CallPointer):
+                yield part
 
 
 def _written(s: Stmt) -> set[Variable]:

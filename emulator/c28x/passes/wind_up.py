@@ -48,7 +48,7 @@ from emulator.c28x.tree import (
     Stmt,
     Variable,
 )
-from emulator.c28x.tree_queries import bare, parts, roots, statements
+from emulator.c28x.tree_queries import bare, own_nodes, parts, statements
 
 #: Functions of the libraries that limit a value, their first argument or any.
 _LIMITERS: Final = frozenset({
@@ -125,7 +125,7 @@ def _unlimited(keys: set[Key], functions: list[Function], added: set[int]) -> di
                 taken_over = isinstance(bare(s.value), Load)  # from the same member of another regulator
                 if key in free and id(s.value) not in added and not taken_over and _mentions(s.value, key):
                     free[key].clear()
-            for p in (p for root in roots(s) for p in parts(root)):
+            for p in own_nodes(s):
                 match p:
                     case AddressOf(lvalue=lvalue) if (key := key_of(lvalue)) in free:
                         free[key].clear()
@@ -176,11 +176,10 @@ def _outputs(function: Function) -> Iterator[tuple[Expr, list[Expr]]]:
                 given.append((object, value))
             case Declare(variable=variable, value=Expr() as value):
                 given.append((variable, value))
-        for root in roots(s):
-            for p in parts(root):
-                operand = _limits(p)
-                if operand is not None and _summed(operand):
-                    yield operand, [p]
+        for p in own_nodes(s):
+            operand = _limits(p)
+            if operand is not None and _summed(operand):
+                yield operand, [p]
     for target, value in given:
         if _summed(bare(value)):
             limited = [e for s in statements(function.body) for e in _limited(s, target)]
@@ -254,11 +253,10 @@ def _limited(s: Stmt, target: LValue | Variable) -> Iterator[Expr]:
                                 if isinstance(bare(value), Const) or _same(value, limit):
                                     yield value
             return
-    for root in roots(s):
-        for p in parts(root):
-            operand = _limits(p)
-            if operand is not None and _is(operand, target):
-                yield p
+    for p in own_nodes(s):
+        operand = _limits(p)
+        if operand is not None and _is(operand, target):
+            yield p
 
 
 def _is(e: Expr, target: LValue | Variable) -> bool:

@@ -19,7 +19,7 @@ from emulator.c28x.ctypes import IntType
 from emulator.c28x.findings import Findings
 from emulator.c28x.symbols import Module, library_headers
 from emulator.c28x.tree import Assign, Call, Expr, Function, LValue, RegisterLoad, RegisterRef, Stmt
-from emulator.c28x.tree_queries import assigned, bare, parts, roots, statements, variables, within
+from emulator.c28x.tree_queries import assigned, bare, own_nodes, statements, variables, within
 from emulator.sysbios.watch.kept_off import Word, ring_indices
 from emulator.sysbios.watch.statements import StatementLocator
 from emulator.sysbios.watch.threads import Routine, ThreadWatch, excluded
@@ -171,7 +171,7 @@ class Interfaces:
 def _places(ways: Iterable[Ways]) -> set[_At]:
     """Where statements of this kind, and the calls in them, stand."""
     free = [statement for way in ways for statement in way.undecided]
-    calls = [part for s in free for root in roots(s) for part in parts(root) if isinstance(part, Call)]
+    calls = [part for s in free for part in own_nodes(s) if isinstance(part, Call)]
     places = [statement.where for statement in free] + [call.where for call in calls]
     return {(at.file, at.line, at.column) for at in places}
 

@@ -39,7 +39,17 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import assigned_variables, bare, blocks, leaves, parts, roots, statements, within
+from emulator.c28x.tree_queries import (
+    assigned_variables,
+    bare,
+    blocks,
+    leaves,
+    own_nodes,
+    parts,
+    roots,
+    statements,
+    within,
+)
 from emulator.sysbios.watch.ways import interrupt_routines
 
 
@@ -204,7 +214,7 @@ def _run(
     """
     for statement, here in _under(function.body, now, {}):
         yield statement, here
-        inner = (part for root in roots(statement) for part in parts(root))
+        inner = own_nodes(statement)
         for called in {part.function.path for part in inner if isinstance(part, Call)}:
             if called in own and called not in callers and called != function.path:
                 yield from _run(own[called], here, own, (*callers, function.path))
@@ -288,7 +298,7 @@ def _deciding_elsewhere(functions: Iterable[Function]) -> set[Word]:
     tested: set[_Decider] = set()
     flows: list[tuple[_Decider, set[_Decider]]] = []
     for statement in (statement for function in functions for statement in statements(function.body)):
-        nodes = [part for root in roots(statement) for part in parts(root)]
+        nodes = own_nodes(statement)
         match statement:
             case Assign(target=target, value=value):
                 elsewhere |= _read_at(inner for part in nodes for inner in _choosing(part))
@@ -401,7 +411,7 @@ def _selected(body: list[Stmt]) -> Iterator[tuple[str, str]]:
     """(path of an array, or of a pointer that statements go through; path of what selects it)."""
     for statement in statements(body):
         named = [statement.target] if isinstance(statement, Assign) else []
-        named += [part.lvalue for root in roots(statement) for part in parts(root) if isinstance(part, Load)]
+        named += [part.lvalue for part in own_nodes(statement) if isinstance(part, Load)]
         for lvalue in named:
             match lvalue:
                 case LValue(root=Variable(kind="global") as root, indices=[Index(expr=first), _, *_]):
@@ -445,7 +455,7 @@ def ring_indices(modules: Iterable[Module]) -> dict[Word, bool]:
                         moved[place] = root.volatile or target.volatile
                     elif not isinstance(value, Const):
                         otherwise.add(place)
-            for part in (part for root in roots(statement) for part in parts(root)):
+            for part in own_nodes(statement):
                 if isinstance(part, AddressOf) and (place := _scalar(part.lvalue)) is not None:
                     otherwise.add(place)
     return {place: volatile for place, volatile in moved.items() if place not in otherwise}

@@ -31,7 +31,7 @@ from emulator.c28x.tree import (
     Variable,
     Where,
 )
-from emulator.c28x.tree_queries import bare, parts, roots, statements
+from emulator.c28x.tree_queries import bare, own_nodes, statements
 from emulator.sysbios.watch.accesses import SharedCell
 from emulator.sysbios.watch.pairs import all_blocks, decided_by
 from emulator.sysbios.watch.statements import StatementLocator
@@ -142,7 +142,7 @@ class LetIn:
         behind = list(statements(by.following))
         called = {
             part.function.path
-            for statement in behind for root in roots(statement) for part in parts(root) if isinstance(part, Call)
+            for statement in behind for part in own_nodes(statement) if isinstance(part, Call)
         }  # fmt: skip
         for path in called:
             behind += [inner for function in below(path, self._own) for inner in statements(function.body)]

@@ -12,7 +12,7 @@ from typing import Final
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked
 from emulator.c28x.tree import Call, Convert, For, Function, Load, LValue, Stmt, Variable, While
-from emulator.c28x.tree_queries import blocks, parts, roots, statements
+from emulator.c28x.tree_queries import blocks, own_nodes, statements
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.names import HandleNames
@@ -72,7 +72,7 @@ class LostPosts:
 
 def _in(body: list[Stmt], around: Stmt | None, own: dict[str, Function]) -> Iterator[tuple[str | None, bool]]:
     for statement in body:
-        for call in (part for root in roots(statement) for part in parts(root) if isinstance(part, Call)):
+        for call in (part for part in own_nodes(statement) if isinstance(part, Call)):
             if call.function.name == "Semaphore_pend":
                 argument = call.arguments[0]
                 path = None
@@ -92,7 +92,7 @@ def _loops(loop: Stmt, own: dict[str, Function]) -> bool:
         statement = waiting.pop()
         if isinstance(statement, While):
             return True
-        for call in (part for root in roots(statement) for part in parts(root) if isinstance(part, Call)):
+        for call in (part for part in own_nodes(statement) if isinstance(part, Call)):
             path = call.function.path
             if path in own and path not in seen:
                 seen.add(path)

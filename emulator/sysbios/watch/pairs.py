@@ -39,7 +39,16 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import assigned_variables, bare, blocks, leaves, parts, roots, statements, within
+from emulator.c28x.tree_queries import (
+    assigned_variables,
+    bare,
+    blocks,
+    leaves,
+    own_nodes,
+    parts,
+    statements,
+    within,
+)
 from emulator.sysbios.watch.kept_off import Word, object_path, rereads, written_objects
 from emulator.sysbios.watch.ways import Ways, below, free_ways, interrupt_routines
 
@@ -225,7 +234,7 @@ def arrays_of_flags(modules: Iterable[Module]) -> set[str]:
     data: set[str] = set()
     for function in (function for module in modules for function in module.functions):
         for statement in statements(function.body):
-            for part in (inner for root in roots(statement) for inner in parts(root)):
+            for part in own_nodes(statement):
                 whole = part.lvalue if isinstance(part, AddressOf) else None
                 if whole is not None and isinstance(whole.root, Variable):
                     data.add(whole.root.declaration.path)
@@ -363,7 +372,7 @@ def decided_by(function: Function) -> Iterator[str]:
     """The plain objects that a function reads in a test or in an array index."""
     for statement in statements(function.body):
         deciding: list[Any] = [statement.test] if isinstance(statement, If | While) else []
-        deciding += [part for root in roots(statement) for part in parts(root) if isinstance(part, Index)]
+        deciding += [part for part in own_nodes(statement) if isinstance(part, Index)]
         for part in (part for expression in deciding for part in parts(expression)):
             root = part.root if isinstance(part, LValue) else None
             if isinstance(root, Variable) and root.kind == "global" and root.ctype.leaves == 1:
@@ -405,10 +414,9 @@ def _combined(function: Function, shared: set[str]) -> Iterator[frozenset[Word]]
                 given.setdefault(root, []).append(None)
     copies = {variable: words[0] for variable, words in given.items() if len(words) == 1 and words[0] is not None}
     for statement in _once(function.body, shared):
-        for root in roots(statement):
-            for expression in parts(root):
-                if isinstance(expression, Binary) and expression.op in _COMBINE:
-                    yield frozenset(_leaves(expression, copies))
+        for expression in own_nodes(statement):
+            if isinstance(expression, Binary) and expression.op in _COMBINE:
+                yield frozenset(_leaves(expression, copies))
 
 
 def _leaves(expression: Any, copies: dict[Variable, Word]) -> Iterator[Word]:

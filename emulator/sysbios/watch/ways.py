@@ -25,7 +25,7 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import assigned, blocks, parts, roots, statements
+from emulator.c28x.tree_queries import assigned, blocks, own_nodes, parts, roots, statements
 
 
 def interrupt_routines(own: dict[str, Function]) -> Iterator[tuple[Function, list[Function]]]:
@@ -80,7 +80,7 @@ def reached_freely(
             way = reached[path] = ways[path]
             for statement in way.undecided:
                 waiting += [
-                    part.function.path for root in roots(statement) for part in parts(root) if isinstance(part, Call)
+                    part.function.path for part in own_nodes(statement) if isinstance(part, Call)
                 ]
     return list(reached.values())
 
@@ -134,7 +134,7 @@ class Ways:
                 self.undecided.append(statement)
             else:
                 self.decided |= {
-                    part.function.path for root in roots(statement) for part in parts(root) if isinstance(part, Call)
+                    part.function.path for part in own_nodes(statement) if isinstance(part, Call)
                 }
                 root = assigned(statement)
                 if root is not None and root.kind == "global":
