@@ -10,12 +10,13 @@ a folder of its own, in one that is named after those sources: a part that was c
 
 from __future__ import annotations
 
+import ctypes
 import json
 import os
 import sys
 from hashlib import sha256
 from importlib import import_module
-from importlib.abc import MetaPathFinder
+from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from importlib.util import spec_from_file_location
 from pathlib import Path
@@ -25,22 +26,61 @@ from typing import Any, Final
 
 #: The folder of the packages.  Sources are named relative to it.
 ROOT: Final = Path(__file__).parent.parent
-#: In the folder of a build: which sources it was made from, and where its modules are.
+#: In the folder of a build: which sources it was made from, its modules, and the library that they are in.
 MANIFEST: Final = "manifest.json"
 #: The build for this interpreter; another one has its own beside it.
 STORE: Final = Path(__file__).with_name("_compiled") / str(get_config_var("SOABI"))
 
 
 class Finder(MetaPathFinder):
-    """Finds modules by name in a fixed table."""
+    """Finds compiled modules: `files` has, for each by its name, the library that it is in."""
 
     def __init__(self, files: dict[str, str]) -> None:
         self.files = files
+        self._libraries = {_library(file): file for file in files.values()}
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
-        """The extension module of that name, if there is one."""
+        """A library, or a module that is in one."""
+        if fullname in self._libraries:
+            return spec_from_file_location(fullname, self._libraries[fullname])
         file = self.files.get(fullname)
-        return None if file is None else spec_from_file_location(fullname, file)
+        return None if file is None else ModuleSpec(fullname, _InLibrary(_library(file)), origin=file)
+
+
+class _InLibrary(Loader):
+    """Makes modules that are in a library of mypyc.
+
+    mypyc writes an extension module for each, which does only this.  The 160 of them would take the C compiler 13 s.
+    """
+
+    def __init__(self, library: str) -> None:
+        self.library = library
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        """The module, after its own statements have run."""
+        library = import_module(self.library)
+        if hasattr(library, "ensure_deps"):  # it takes something from another library
+            prepare = ctypes.PYFUNCTYPE(ctypes.c_int)(self._address(library.ensure_deps, "ensure_deps"))
+            if prepare() < 0:
+                raise ImportError(f"{self.library} does not fit the libraries that it needs", name=spec.name)
+        name = f"init_{spec.name.replace('.', '___')}"
+        made: ModuleType = ctypes.PYFUNCTYPE(ctypes.py_object)(self._address(getattr(library, name), name))()
+        return made
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Nothing is left to do."""
+
+    def _address(self, capsule: Any, name: str) -> int:
+        """The function of the library that a capsule holds."""
+        take = ctypes.pythonapi.PyCapsule_GetPointer
+        take.restype, take.argtypes = ctypes.c_void_p, [ctypes.py_object, ctypes.c_char_p]
+        address: int = take(capsule, f"{self.library}.{name}".encode())
+        return address
+
+
+def _library(file: str) -> str:
+    """The name under which a library is imported."""
+    return os.path.basename(file).partition(".")[0]
 
 
 def digest(source: Path) -> str:
@@ -54,15 +94,15 @@ def parts_of(store: Path, sources: dict[str, str]) -> Path:
 
 
 def find_build(store: Path = STORE, root: Path = ROOT) -> tuple[str, dict[str, str]]:
-    """The state of the build in `store` ("none", "stale", "fresh"), and the paths of its modules if it is fresh."""
+    """The state of the build in `store` ("none", "stale", "fresh"); if it is fresh, its modules and their libraries."""
     try:
         manifest = json.loads((store / MANIFEST).read_text("utf-8"))
         sources = manifest["sources"]
         fresh = all(digest(root / name) == known for name, known in sources.items())
-        files = {name: str(store / file) for name, file in manifest["modules"].items()}
-        if fresh and all(map(os.path.exists, files.values())):
+        library = str(store / manifest["library"])
+        if fresh and os.path.exists(library):
             parts = parts_of(store, sources).glob("*/*")
-            return "fresh", files | {file.name.partition(".")[0]: str(file) for file in parts}
+            return "fresh", dict.fromkeys(manifest["modules"], library) | {p.parent.name: str(p) for p in parts}
     except (OSError, ValueError, LookupError, TypeError, AttributeError):
         pass  # no manifest, a source that is gone, a file of another form
     return ("stale" if store.exists() else "none"), {}

@@ -105,7 +105,7 @@ KEPT: Final = "translated"
 OBJECTS: Final = "objects"
 
 #: Compiled with `-O2`, as mypyc's own library: each has 0.4 % or more of a mission's instructions, ideal, realistic or
-#: watched.  All else, parts of firmware too, has `-O1`: it takes the compiler 0.6 of the CPU time.
+#: watched.  All else has `-O1`: it takes the compiler 0.6 of the CPU time.
 HOT: Final = (
     "emulator/clock.py", "emulator/noise.py", "emulator/signals.py", "emulator/trace.py",
     "emulator/c28x/arithmetic.py", "emulator/c28x/memory.py", "emulator/c28x/runtime.py",
@@ -118,6 +118,9 @@ HOT: Final = (
     "emulator/sysbios/watch/threads.py", "emulator/sysbios/watch/transactions.py",
 )  # fmt: skip
 HOT_LEVEL: Final = "-O2"
+#: The level for parts of firmware that are watched.  It takes the compiler half of the time of `-O1`; their own
+#: instructions are few beside those of who watches them.
+WATCHED_LEVEL: Final = "-Og"
 
 
 class BuildError(ValueError):
@@ -266,6 +269,16 @@ def _group(part: str) -> str:
     return f"c2000_{part}"
 
 
+def _c_file(source: str) -> str:
+    """The C file that mypyc writes for a source."""
+    return f"__native_{source.replace('/', '___')}.c"
+
+
+def _library(name: str) -> str:
+    """The library of a part of firmware, or of the emulator (`GROUP`)."""
+    return f"{name if name == GROUP else _group(name)}__mypyc"
+
+
 def build(
     own: Iterable[Path] = (), *, root: Path = ROOT, store: Path = STORE,
     progress: Callable[[float], None] = lambda fraction: None,
@@ -296,24 +309,23 @@ def build(
         if any(digest(root / name) != before for name, before in sources.items()):
             raise BuildError("a source changed during the build: run hil build again")
         by_name = {e.name: e for e in extensions}
-        made_of = {name: (f"{_group(name)}__mypyc", name) for name in wanted}
-        ours = [module for both in made_of.values() for module in both]
-        core = [] if fresh else [name for name in by_name if name not in ours]
-        if missing := {*modules, *ours} - set(by_name):
+        if missing := {*modules, *wanted} - set(by_name):
             raise BuildError(f"mypyc did not compile {', '.join(sorted(missing))}")
-        # The C of firmware takes longest: it is begun first.
-        _compile([by_name[name] for name in (*ours, *core)], work, made, progress)
+        # The C of firmware takes longest: it is begun first.  `emulator/compiled.py` needs no more than the libraries.
+        libraries = [*map(_library, wanted), *([] if fresh else [_library(GROUP)])]
+        levels = {_c_file(name.removesuffix(".py")): HOT_LEVEL for name in HOT}
+        levels |= {_c_file(name): WATCHED_LEVEL for name, (_, part) in wanted.items() if part.watch}
+        _compile([by_name[name] for name in libraries], work, made, progress, levels)
         place = parts_of(made, sources)
-        for name, both in made_of.items():
+        for name in wanted:
             (place / name).mkdir(parents=True)
-            for module in both:
-                file = made / _file(made, module)
-                file.rename(place / name / file.name)
+            file = made / _file(made, _library(name))
+            file.rename(place / name / file.name)
         # Running processes keep the files that they have.
         if fresh:
             _put_beside(place, parts_of(store, sources))
         else:
-            manifest = {"sources": sources, "modules": {name: _file(made, name) for name in core}}
+            manifest = {"sources": sources, "modules": modules, "library": _file(made, _library(GROUP))}
             (made / MANIFEST).write_text(json.dumps(manifest, indent=1), "utf-8")
             reduce(kept(work))
             (work / KEPT).rename(made / KEPT)
@@ -389,17 +401,20 @@ def _try_tools(work: Path) -> None:
 
     source = work / "probe.c"
     source.write_text("#include <Python.h>\nPyMODINIT_FUNC PyInit_probe(void) { return NULL; }\n", "ascii")
-    _compile([Extension("probe", [str(source)])], work, work / "probe", lambda fraction: None)
+    _compile([Extension("probe", [str(source)])], work, work / "probe", lambda fraction: None, {})
 
 
-def _compile(extensions: list[Any], work: Path, made: Path, progress: Callable[[float], None]) -> None:
+def _compile(
+    extensions: list[Any], work: Path, made: Path, progress: Callable[[float], None], levels: Mapping[str, str]
+) -> None:  # fmt: skip
+    """Compile extensions, and put what they become in `made`.  `levels`: C files that have another level than `-O1`."""
     from setuptools import Distribution
     from setuptools.command.build_ext import build_ext
     from setuptools.errors import BaseError, CCompilerError
 
     class SideBySide(build_ext):
         def build_extensions(self) -> None:
-            more: dict[str, list[str]] = {}
+            headers: dict[str, list[str]] = {}
             if self.compiler.compiler_type == "unix":
                 for extension in extensions:  # else a product and a sum become one operation where there is one (ARM)
                     extension.extra_compile_args.append("-ffp-contract=off")
@@ -407,8 +422,8 @@ def _compile(extensions: list[Any], work: Path, made: Path, progress: Callable[[
                     extension.extra_compile_args.append("-Wno-all")
                     # Each C file of a library defines the table of the other one that it uses: one table for all.
                     extension.extra_compile_args.append("-fcommon")
-                    more |= _read_headers_once(self.compiler, extension, work)
-            _build_extensions(self, work, progress, more)
+                    headers |= _read_headers_once(self.compiler, extension, work)
+            _build_extensions(self, work, progress, levels, headers)
 
     command = SideBySide(Distribution({"name": GROUP, "ext_modules": extensions}))
     command.build_lib, command.build_temp = str(made), str(work / "objects")
@@ -425,7 +440,7 @@ def _read_headers_once(compiler: Any, extension: Any, work: Path) -> dict[str, l
 
     They are two megabytes, and there are 160 files.
     """
-    if extension.name != f"{GROUP}__mypyc":
+    if extension.name != _library(GROUP):
         return {}
     header = work / f"{GROUP}.h"
     header.write_text(f'#include "__native_{GROUP}.h"\n#include "__native_internal_{GROUP}.h"\n', "ascii")
@@ -436,18 +451,18 @@ def _read_headers_once(compiler: Any, extension: Any, work: Path) -> dict[str, l
 
 
 def _build_extensions(
-    command: Any, work: Path, progress: Callable[[float], None], more: Mapping[str, list[str]]
+    command: Any, work: Path, progress: Callable[[float], None], levels: Mapping[str, str],
+    headers: Mapping[str, list[str]],
 ) -> None:  # fmt: skip
     """Compile one C file a core, each once, though libraries share some; setuptools does one after the other.
 
-    Those that are not in `work` are mypyc's own: their objects are kept, and not made again if they are there.  `more`
-    is flags for files that are not `HOT`.
+    Those that are not in `work` are mypyc's own: their objects are kept, and not made again if they are there.
+    `headers` is flags for files that have no level of their own.
     """
     library = str(kept(work) / OBJECTS)
     total, done = len({source for extension in command.extensions for source in extension.sources}), 0
     compile_in_turn = command.compiler.compile
     objects: dict[str, Future[list[str]]] = {}
-    hot = {f"__native_{name.removesuffix('.py').replace('/', '___')}.c" for name in HOT}
 
     def compiled(source: str, options: dict[str, Any]) -> list[str]:
         nonlocal done
@@ -457,7 +472,8 @@ def _build_extensions(
             options = {**options, "output_dir": library}
             made = command.compiler.object_filenames([source], output_dir=library)
         # gcc takes headers that it has read for another level, too, and fails later.
-        flags = [HOT_LEVEL] if Path(source).name in hot or not ours else more.get(source, [])
+        level = levels.get(Path(source).name, "" if ours else HOT_LEVEL)
+        flags = [level] if level else headers.get(source, [])
         options = {**options, "extra_postargs": [*options["extra_postargs"], *flags]}
         if not made or not all(map(os.path.exists, made)):
             made = compile_in_turn([source], **options)

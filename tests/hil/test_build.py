@@ -6,6 +6,7 @@ import ast
 import itertools
 import json
 import os
+import pickle
 import shutil
 import subprocess
 import sys
@@ -16,7 +17,7 @@ from typing import Any
 
 import pytest
 
-from emulator import compiled
+from emulator import clock, compiled
 from emulator.c28x.sites import Place
 from firmware_model.image import link
 from hil import build
@@ -26,6 +27,7 @@ from hil.robot.board import RobotBoard
 from tests.emulator.c28x import as_methods
 
 MODULE = "emulator.clock"
+LIBRARY = "emulator.so"
 
 
 def python(root: Path, *arguments: str, pure: bool = False) -> str:
@@ -57,8 +59,8 @@ def tree(tmp_path: Path) -> Path:
     shutil.copytree(compiled.ROOT / "hil" / "world", tmp_path / "hil" / "world", ignore=leave)
     store = tmp_path / compiled.STORE.relative_to(compiled.ROOT)
     store.mkdir(parents=True)
-    (store / "clock.so").touch()
-    manifest = {"sources": sources_of(tmp_path), "modules": {MODULE: "clock.so"}}
+    (store / LIBRARY).touch()
+    manifest = {"sources": sources_of(tmp_path), "modules": [MODULE], "library": LIBRARY}
     (store / compiled.MANIFEST).write_text(json.dumps(manifest), "utf-8")
     return tmp_path
 
@@ -95,7 +97,7 @@ def test_a_build_that_is_not_whole_is_left_alone(tree: Path, damage: str) -> Non
     if damage == "source gone":
         (tree / "emulator" / "trace.py").unlink()
     elif damage == "module gone":
-        (store / "clock.so").unlink()
+        (store / LIBRARY).unlink()
     elif damage == "no manifest":
         manifest.unlink()
     elif damage == "manifest cut":
@@ -114,13 +116,13 @@ def test_a_part_of_firmware_is_found_beside_the_build_that_it_was_compiled_with(
     state, files = compiled.find_build(store, tree)
     assert state == "fresh"
     assert files == {
-        MODULE: str(store / "clock.so"), "part_1": str(one / "part_1" / "part_1.cpython.so"),
+        MODULE: str(store / LIBRARY), "part_1": str(one / "part_1" / "part_1.cpython.so"),
     }  # fmt: skip
 
 
 @pytest.fixture
 def small(tree: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
-    """`hil build` in `tree` for parts of firmware of these identities: a module of C each, and its library."""
+    """`hil build` in `tree` for parts of firmware of these identities: a library of C each."""
     setuptools = pytest.importorskip("setuptools", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
     pytest.importorskip("mypyc", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
     if shutil.which(os.environ.get("CC", "cc")) is None:
@@ -133,14 +135,15 @@ def small(tree: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
         assert [file.name for file in target.iterdir()] == ["emulator"]
         extensions = []
         for part in map(compiled.part_name, parts):
-            for name in (f"{build._group(part)}__mypyc", part):
-                source = target / f"{name}.c"
-                source.write_text(f"#include <Python.h>\nPyMODINIT_FUNC PyInit_{name}(void) {{ return NULL; }}\n")
-                extensions.append(setuptools.Extension(name, [str(source)]))
+            name = build._library(part)
+            source = target / f"{name}.c"
+            source.write_text(f"#include <Python.h>\nPyMODINIT_FUNC PyInit_{name}(void) {{ return NULL; }}\n")
+            extensions.append(setuptools.Extension(name, [str(source)]))
+            extensions.append(setuptools.Extension(part, ["what makes one module of it.c"]))
         return [*extensions, setuptools.Extension(MODULE, ["of the build that is there.c"])]
 
     def made(*identities: str, meanwhile: Callable[[], object] = lambda: None) -> int:
-        monkeypatch.setattr(build, "parts", lambda own, alone: dict.fromkeys(identities))
+        monkeypatch.setattr(build, "parts", lambda own, alone: dict.fromkeys(identities, SimpleNamespace(watch=True)))
         monkeypatch.setattr(build, "translate", lambda *of: (meanwhile(), translate(*of))[1])
         return build.build(root=tree, store=store_of(tree))
 
@@ -152,12 +155,13 @@ def test_a_part_that_is_missing_is_compiled_alone_and_put_beside_the_others(
 ) -> None:
     assert small("a" * 64) == 1
     _, one = compiled.find_build(store_of(tree), tree)
-    assert set(one) == {MODULE, f"part_{'a' * 16}", f"c2000_part_{'a' * 16}__mypyc"}
+    assert set(one) == {MODULE, f"part_{'a' * 16}"}
+    assert Path(one[f"part_{'a' * 16}"]).name.startswith(f"c2000_part_{'a' * 16}__mypyc.")
     assert small("b" * 64, "a" * 64) == 1
     state, both = compiled.find_build(store_of(tree), tree)
     assert state == "fresh"
     assert both.items() > one.items()
-    assert set(both) - set(one) == {f"part_{'b' * 16}", f"c2000_part_{'b' * 16}__mypyc"}
+    assert set(both) - set(one) == {f"part_{'b' * 16}"}
     assert small("a" * 64, "b" * 64, meanwhile=lambda: pytest.fail("it was translated")) == 0
     assert [each.name for each in store_of(tree).parent.iterdir()] == [store_of(tree).name]
 
@@ -174,7 +178,7 @@ def test_what_another_mypyc_has_translated_is_not_used(
 
 def test_two_builds_of_a_part_at_once_leave_one(tree: Path, small: Callable[..., int]) -> None:
     assert small("a" * 64, meanwhile=lambda: small("a" * 64)) == 1
-    assert len(compiled.find_build(store_of(tree), tree)[1]) == 3
+    assert len(compiled.find_build(store_of(tree), tree)[1]) == 2
 
 
 @pytest.mark.parametrize("change", ["a source", "the build"])
@@ -248,11 +252,11 @@ def test_no_compiler_makes_one_operation_of_a_product_and_a_sum(
     setuptools = pytest.importorskip("setuptools", reason="needs the extra speed: pip install 'c2000-hil[speed]'")
     seen: list[tuple[str, list[str]]] = []
 
-    def seen_by(command: Any, _work: Path, _progress: object, _more: object) -> None:
+    def seen_by(command: Any, _work: Path, *_more: object) -> None:
         seen.extend((command.compiler.compiler_type, each.extra_compile_args) for each in command.extensions)
 
     monkeypatch.setattr(build, "_build_extensions", seen_by)
-    build._compile([setuptools.Extension("one", ["one.c"])], tmp_path, tmp_path / "made", lambda fraction: None)
+    build._compile([setuptools.Extension("one", ["one.c"])], tmp_path, tmp_path / "made", lambda fraction: None, {})
     ((kind, options),) = seen
     assert kind != "unix" or "-ffp-contract=off" in options
 
@@ -364,7 +368,7 @@ def test_a_part_is_translated_alone_with_what_a_build_keeps(tmp_path: Path) -> N
     identity, part = next((i, p) for i, p in build.parts().items() if p.functions[0].function.module == "us")
     extensions = {each.name: each for each in build.translate(compiled.ROOT, there, {identity: part})}
     name = compiled.part_name(identity)
-    sources = {Path(file).name for file in extensions[f"{build._group(name)}__mypyc"].sources}
+    sources = {Path(file).name for file in extensions[build._library(name)].sources}
     assert {f"__native_{name}.c", f"__native_{build._group(name)}.c"} < sources
     assert {file.name for file in (there / "c").glob("__native*.c")} < sources
     assert before == {file: file.read_bytes() for file in before}
@@ -508,19 +512,33 @@ def test_files_are_compiled_side_by_side_each_once_and_linked_in_their_order(tmp
     objects = tmp_path / "objects"
     command = Command(objects, names, [part, hot, *names])
     compiler = command.compiler
-    more = {name: ["-include", "read.h"] for name in (*names, hot)}
-    build._build_extensions(command, tmp_path, told.append, more)
+    headers = {name: ["-include", "read.h"] for name in (*names, hot)}
+    build._build_extensions(command, tmp_path, told.append, {Path(hot).name: "-O2"}, headers)
     made = [str(objects / f"{Path(name).name}.o") for name in (part, hot, *names)]
     assert sorted(command.linked, key=len) == [made[2:], made]
     cold = {name: ["-O1", "-include", "read.h"] for name in names} | {part: ["-O1"]}
-    assert compiler.options == cold | {hot: ["-O1", build.HOT_LEVEL]}
+    assert compiler.options == cold | {hot: ["-O1", "-O2"]}
     assert told == pytest.approx([number / 10 for number in range(1, 11)])
     with pytest.raises(OSError, match=r"bad\.c"):
-        build._build_extensions(Command(objects, [*names, str(tmp_path / "bad.c")], [part]), tmp_path, told.append, {})
+        build._build_extensions(
+            Command(objects, [*names, str(tmp_path / "bad.c")], [part]), tmp_path, told.append, {}, {}
+        )
 
 
 def test_each_hot_source_is_compiled() -> None:
     assert set(build.HOT) <= set(build.listed())
+
+
+@pytest.mark.skipif(compiled.MODE != "compiled", reason="needs `hil build` (extra speed)")
+def test_a_build_has_a_library_for_the_emulator_and_one_a_part_and_modules_know_who_they_are() -> None:
+    files = sorted(compiled.STORE.rglob(f"*{Path(clock.__file__).suffix}"))
+    parts = [file for file in files if file.parent.name.startswith("part_")]
+    assert [file.parent for file in files if file not in parts] == [compiled.STORE]
+    assert len({file.parent for file in parts}) == len(parts)
+    assert (clock.__name__, clock.__package__) == (MODULE, "emulator")
+    assert clock.__spec__.name == MODULE
+    assert Path(clock.__file__).is_relative_to(compiled.STORE)
+    assert pickle.loads(pickle.dumps(clock.Clock)) is clock.Clock
 
 
 def test_what_every_library_contains_is_compiled_once_and_kept(tmp_path: Path) -> None:
@@ -529,7 +547,7 @@ def test_what_every_library_contains_is_compiled_once_and_kept(tmp_path: Path) -
     compiled_then, linked = [], []
     for number in range(2):
         command = Command(objects, [str(work / f"{number}.c"), library])
-        build._build_extensions(command, work, lambda fraction: None, {})
+        build._build_extensions(command, work, lambda fraction: None, {}, {})
         compiled_then.append({Path(source).name for source in command.compiler.options})
         linked.append(command.linked[0][1])
     assert compiled_then == [{"0.c", "int_ops.c"}, {"1.c"}]
