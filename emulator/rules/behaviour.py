@@ -192,18 +192,19 @@ they come from rounding, or from a comment that says something else.
 """, how="static",
     ),
     _rule(
-        "period-by-name", Severity.WARNING, "A constant states another period than its routine has.", """
+        "period-by-name", Severity.WARNING, "A name states another period than its routine has.", """
 Speeds and integrals are wrong by a power of ten: the program computes with a period that it does not have.
 
 The name of a constant says that it is a period or a rate (`CONTROL_S`, `LOOP_MS`, `SAMPLE_HZ`), and each run of an
 interrupt routine multiplies with it or divides by it. In the run, the routine's period is a power of ten longer or
-shorter. Somebody has changed the timer and not the constant, or the other way round.
+shorter. Somebody has changed the timer and not the constant, or the other way round. The same is told of a count that
+each run of a routine adds to, and that is a time by its name (`tickMs++`, `Time_us += 100`).
 
 It is reported for routines that run steadily, for statements that every run executes (a control in each tenth run has
 another period), and for functions that nothing else calls. Times that are no period by their name (`_TAU_`, `_FILTER_`,
 `_DELAY_`, `_TIMEOUT_`) are not meant.
 
-**Fix:** compute the timer's period from the constant.
+**Fix:** compute the timer's period from the constant, or correct the timer or the name.
 """,
     ),
     _rule(

@@ -1,18 +1,20 @@
-"""Compares constants that are named after a routine's period with the period that a run shows.
+"""Compares what names say about a routine's period with the period that a run shows.
 
 `CONTROL_S 0.01` says that a control runs each 10 ms.  Where an interrupt routine always divides by it, or multiplies
-with it, the routine has to run so often.  A difference by a power of ten is told: the timer or the constant changed,
-and the other one did not.
+with it, the routine has to run so often.  `tickMs++` says that a routine runs each millisecond.  A difference by a
+power of ten is told: the timer or the name changed, and the other one did not.
 """
 
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from math import isclose, log10
 from typing import Final
 
 from emulator.c28x.declarations import lines_with_comments
+from emulator.c28x.passes.begun_again import is_number, step_of
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
@@ -26,10 +28,14 @@ from emulator.c28x.tree import (
     LeaveSwitch,
     Return,
     Stmt,
+    Variable,
+    Where,
 )  # fmt: skip
-from emulator.c28x.tree_queries import bare, parts, roots, statements
+from emulator.c28x.tree_queries import assigned, bare, parts, roots, statements
 from emulator.clock import SYSCLK_HZ
 from hil.board import Board
+from hil.drivers.stated_units import comment_beside, stated
+from hil.drivers.unit_names import PhysicalUnit
 from hil.drivers.units import UnitMismatch
 
 #: A period is known after so many intervals, none of which differs from their mean by more than this part of it.
@@ -76,6 +82,8 @@ def wrong_periods(modules: Iterable[Module], periods: dict[str, float]) -> Itera
     """The uses of constants that are named after a period, in routines that run with another one."""
     functions = [function for module in modules for function in module.functions]
     by_path = {function.path: function for function in functions}
+    steps = (s for function in functions for s in statements(function.body))
+    counted = Counter(v for s in steps if (v := assigned(s)) is not None and step_of(s, v) is not None)
     for routine in functions:
         if routine.name not in periods or sum(f.name == routine.name for f in functions) > 1:
             continue
@@ -85,19 +93,53 @@ def wrong_periods(modules: Iterable[Module], periods: dict[str, float]) -> Itera
         for function, s in _always(routine, by_path, set()):
             if function.path not in elsewhere:
                 yield from _told(function, s, routine, periods[routine.name])
+                time = _counts_time(s)
+                if time is not None and counted[time[0]] == 1:
+                    yield from _told_of_count(function, s, *time, routine, periods[routine.name])
+
+
+def _counts_time(s: Stmt) -> tuple[Variable, PhysicalUnit, float] | None:
+    """An object that a statement counts up and whose name states a unit of time, with that unit, and by how many."""
+    variable = assigned(s)
+    step = step_of(s, variable) if variable is not None else None
+    if variable is None or not step or step < 0 or variable.kind != "global" or not is_number(variable):
+        return None
+    declaration = variable.declaration
+    if re.search(r"\d", declaration.name):
+        return None  # `ticks10ms` counts ticks of 10 ms
+    said = comment_beside(Where(declaration.file, declaration.line), declaration.name)
+    found = stated(declaration.name, said)
+    if found is None or found.unit.quantity != "time" or found.by != "name":
+        return None
+    return variable, found.unit, float(step)
+
+
+def _told_of_count(
+    function: Function, s: Stmt, counter: Variable, unit: PhysicalUnit, step: float, routine: Function, period: float
+) -> Iterator[UnitMismatch]:  # fmt: skip
+    """Report a count of time that does not go with the time."""
+    ratio = step * unit.scale / period
+    power = round(log10(ratio))
+    if power and isclose(ratio, 10.0**power, rel_tol=_EXACT):
+        name = counter.declaration.name
+        message = f"{name} counts {unit.name} by its name, and {routine.name} adds {step:g} every {period:.4g} s"
+        yield UnitMismatch(_place(function, s), message, name, "period-by-name")
+
+
+def _place(function: Function, s: Stmt) -> Place:
+    return Place(function.where.file, s.where.line, function.name, function.c_file, s.where.column)
 
 
 def _told(function: Function, s: Stmt, routine: Function, period: float) -> Iterator[UnitMismatch]:
     for root in roots(s):
         for factor in _factors(root):
-            name, stated = _stated(factor)
-            if not name or not stated:
+            name, seconds = _stated(factor)
+            if not name or not seconds:
                 continue
-            power = round(log10(stated / period))
-            if power and isclose(stated / period, 10.0**power, rel_tol=_EXACT):
-                place = Place(function.where.file, s.where.line, function.name, function.c_file, s.where.column)
-                message = f"{name} is {stated:g} s by its name, and {routine.name} runs every {period:.4g} s"
-                yield UnitMismatch(place, message, name, "period-by-name")
+            power = round(log10(seconds / period))
+            if power and isclose(seconds / period, 10.0**power, rel_tol=_EXACT):
+                message = f"{name} is {seconds:g} s by its name, and {routine.name} runs every {period:.4g} s"
+                yield UnitMismatch(_place(function, s), message, name, "period-by-name")
 
 
 def _factors(e: object) -> Iterator[Const]:

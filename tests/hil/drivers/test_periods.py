@@ -85,3 +85,26 @@ def test_a_period_that_is_wrong_by_a_power_of_ten_is_told(tmp_path: Path, given:
 ])  # fmt: skip
 def test_another_time_or_another_rhythm_is_silent(tmp_path: Path, given: dict[str, str]) -> None:
     assert told(tmp_path, **given) == []
+
+
+@pytest.mark.parametrize(("count", "declared"), [
+    ("tickMs++;", "volatile Uint32 tickMs = 0;"), ("Time_us += 10;", "volatile Uint32 Time_us = 0;"),
+    ("ms = ms + 1;", "volatile Uint16 ms = 0; // since the start"),
+])  # fmt: skip
+def test_a_count_of_time_that_does_not_go_with_the_time_is_told(tmp_path: Path, count: str, declared: str) -> None:
+    assert told(tmp_path, define=f"COUNT\n{declared}", use="", call=count) == [count]
+
+
+@pytest.mark.parametrize(("count", "declared"), [
+    ("Time_us += 100;", "volatile Uint32 Time_us = 0;"),
+    # Other units, by name or comment; a time that is not counted; only in some runs; counted somewhere else, too.
+    ("tenths_ms++;", "volatile Uint32 tenths_ms = 0;"), ("tickMs++;", "volatile Uint32 tickMs = 0; // tenths of a ms"),
+    ("ticks100us++;", "volatile Uint32 ticks100us = 0;"), ("ticks++;", "volatile Uint32 ticks = 0;"),
+    ("if (Runs % 10 == 0) tickMs++;", "volatile Uint32 tickMs = 0;"),
+    ("tickMs++; if (Slow) tickMs += 2;", "volatile Uint32 tickMs = 0;"),
+    ("waitMs--;", "volatile Uint32 waitMs = 60000;"),
+])  # fmt: skip
+def test_a_count_that_goes_with_the_time_or_counts_other_things_is_silent(
+    tmp_path: Path, count: str, declared: str
+) -> None:
+    assert told(tmp_path, define=f"COUNT\n{declared}", use="", call=count) == []
