@@ -97,7 +97,12 @@ def same_type(one: CType, other: CType) -> bool:
         return one == other
     if isinstance(one, PointerType) and isinstance(other, PointerType):
         return same_type(one.target, other.target)
-    return one.name == other.name
+    return _without_tag(one.name) == _without_tag(other.name)
+
+
+def _without_tag(name: str) -> str:
+    """The name of a type as a typedef gives it: in a file without the definition, `thing` is only a `struct thing`."""
+    return name.replace("struct ", "").replace("union ", "")
 
 
 def computed_together(left: Expr, right: Expr) -> tuple[Expr, Expr]:

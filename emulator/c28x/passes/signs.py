@@ -124,6 +124,8 @@ def _asked(function: Function) -> Iterator[tuple[NamedScalar, str]]:
 def _word(e: Expr) -> Expr | None:
     """The unsigned word or octet that an expression widens; None: it does something else."""
     while isinstance(e, Convert):
+        if not isinstance(e.operand.ctype, IntType):
+            return None
         if isinstance(e.ctype, IntType) and e.ctype.signed and e.ctype.bits == 16:
             low, high = bounds_of(e.operand)
             if low < 0 or high > e.ctype.high:

@@ -155,6 +155,15 @@ def test_a_declaration_that_is_not_the_definition_of_another_file_is_remarked() 
     assert "declared as long g(int), defined as int g(long)" in found.message
 
 
+def test_a_structure_that_only_one_file_defines_is_the_one_that_others_point_to() -> None:
+    head = "typedef struct thing *thing_t;\nthing_t opened(int kind);\nint kind_of(thing_t t);\n"
+    whole = "typedef struct thing { int kind; } thing;\nstatic thing one;\n"
+    whole += "thing_t opened(int kind) { one.kind = kind; return &one; }\nint kind_of(thing_t t) { return t->kind; }\n"
+    shop = CWorkshop({"a.c": f"{head}int f(int n) {{ return kind_of(opened(n)); }}\n", "b.c": head + whole}, static=True)
+    assert shop.call("f", 7) == 7
+    assert shop.rules() == []
+
+
 def test_a_function_of_a_header_of_ours_joins_the_file_only_where_it_is_used() -> None:
     program = read({"drv.c": "#include <ctype.h>\nint f(int c)\n{\n    return isdigit(c);\n}\n"})
     program.translate()

@@ -159,3 +159,10 @@ def test_the_not_of_bit_0_is_told_of_a_word_with_other_flags(shared: str, wrong:
 def test_a_mask_of_a_number_that_is_no_power_of_two_is_told(size: str, statement: str, wrong: bool) -> None:
     head = f"#define SIZE {size}\n#define MASK (SIZE - 1u)\n\nunsigned f(unsigned x)\n{{\n"
     assert (("mask-gaps", 6) in findings_of(f"{head}    {statement}\n    return x;\n}}\n")) == wrong
+
+
+def test_a_fraction_that_was_cut_to_an_integer_has_its_sign() -> None:
+    text = "int f(float x)\n{\n    int whole = (int)(x * 2.0f);\n    return whole < -5 ? -5 : whole;\n}\n"
+    shop = CWorkshop(text, static=True)
+    assert (shop.call("f", -1.6), shop.call("f", -8.0)) == (-3, -5)
+    assert shop.rules() == []
