@@ -159,7 +159,8 @@ class Crossbar:
                 if self._mux(pin_a) == a[pin_a] and self._mux(pin_b) == b[pin_b]:
                     stops.append(source.moved.connect(target.move))
                     stops.append(target.looked_at.connect(source.sync))
-            target.missing = self._nowhere(a, target.name) or self._nowhere(b, target.name)
+            target.missing_a = self._nowhere(a, f"{target.name}A")
+            target.missing_b = self._nowhere(b, f"{target.name}B")
             lines.connect(self._carrier(a), self._carrier(b))
 
         self._follow({**a, **b}, follow)

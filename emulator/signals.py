@@ -436,15 +436,15 @@ class QuadratureWire:
 
     The source calls `move(edges, start, end)`: `edges` equally spaced edges between two times; positive means A
     leads B.  A reader calls `sync` first, so that a plant that is integrated on demand (a listener of `looked_at`) has
-    moved up to now.  `missing` says why no pins carry the pair, while none do.
+    moved up to now.  `missing_a` and `missing_b` say why no pin carries the line, while none does.
     """
 
-    __slots__ = ("clashed", "looked_at", "missing", "moved", "name", "position")
+    __slots__ = ("clashed", "looked_at", "missing_a", "missing_b", "moved", "name", "position")
 
     def __init__(self, name: str) -> None:
         self.name = name
         self.position = 0
-        self.missing = ""
+        self.missing_a = self.missing_b = ""
         #: (edges, start_cycles, end_cycles): every movement.
         self.moved: Signal[int, int, int] = Signal()
         #: (cycles): both lines changed at once, so the direction is not known.

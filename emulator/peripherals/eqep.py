@@ -355,8 +355,10 @@ class EQep:
     # -- position ------------------------------------------------------------------------------------------------
 
     def _read_QPOSCNT(self) -> int:
-        self.quadrature.sync()
-        if not self._on or not self._maximum.value or self.quadrature.missing:
+        quadrature = self.quadrature
+        quadrature.sync()
+        missing = quadrature.missing_a or quadrature.missing_b
+        if not self._on or not self._maximum.value or (missing and self._checks.missing):
             self._checks.position_read()
         if not self._control.value & _QCLM:
             self._capture.latch()

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Final
 
 from emulator.cpu import Cpu
-from emulator.registers.eqep import QEPCTL, QFLG, EQepRegs
+from emulator.registers.eqep import QDECCTL, QEPCTL, QFLG, EQepRegs
 from emulator.signals import QuadratureWire
 
 _INT: Final = QFLG.INT.mask
@@ -39,6 +39,15 @@ class EQepChecks:
 
     # Counters
 
+    @property
+    def missing(self) -> str:
+        """Why the counter does not get the lines that it needs: QSRC 2 and 3 have a fixed direction (TRM)."""
+        decoder = self._regs.QDECCTL.value
+        a, b = self._quadrature.missing_a, self._quadrature.missing_b
+        if decoder >> QDECCTL.QSRC.lo & 3 < 2:
+            return a or b
+        return b if decoder & QDECCTL.SWAP.mask else a
+
     def position_read(self) -> None:
         """QPOSCNT was read.  Report it if the counter cannot have counted right."""
         name = self._regs.name
@@ -47,7 +56,7 @@ class EQepChecks:
         elif not self._regs.registers["QPOSMAX"].value:
             self._report(f"{name}.QPOSMAX", "QPOSCNT", "= 0: every edge wraps the counter to 0")
         else:
-            self._report(self._quadrature.name, "QPOSCNT", f"has no pins: {self._quadrature.missing}")
+            self._report(self._quadrature.name, "QPOSCNT", f"has no pins: {self.missing}")
 
     def latch_read(self) -> None:
         """QPOSLAT was read.  Only a unit time-out writes it, with the value of QPOSCNT."""
@@ -60,8 +69,8 @@ class EQepChecks:
             self._report(f"{name}.QUPRD", "QPOSLAT", "= 0: the unit timer that latches it never ends")
         elif not self._regs.registers["QPOSMAX"].value:
             self._report(f"{name}.QPOSMAX", "QPOSLAT", "= 0: every edge wraps the counter to 0")
-        elif self._quadrature.missing:
-            self._report(self._quadrature.name, "QPOSLAT", f"has no pins: {self._quadrature.missing}")
+        elif self.missing:
+            self._report(self._quadrature.name, "QPOSLAT", f"has no pins: {self.missing}")
 
     def _report(self, what: str, register: str, why: str) -> None:
         self._cpu.findings.report(

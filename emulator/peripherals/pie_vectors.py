@@ -68,6 +68,11 @@ class VectorTable:
         routine = self._routines.get(number)
         return routine.__name__ if routine is not None else None
 
+    def stands_for_all(self, number: int) -> bool:
+        """Whether the routine of vector `number` is in most entries that have one: it handles what nobody expects."""
+        routine = self._routines.get(number)
+        return 2 * sum(other == routine for other in self._routines.values()) > len(self._routines) > 2
+
     def _read(self, number: int) -> Any:
         return self._routines.get(number, NULL)
 

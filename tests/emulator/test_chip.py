@@ -289,7 +289,7 @@ def test_an_eqep_asks_the_encoder_on_its_pins_to_move_up_to_now(chip: Chip, pair
 def test_an_eqep_with_both_phases_on_pins_of_different_pairs_is_configured(chip: Chip) -> None:
     mux(chip, 10, 5)
     mux(chip, 21, 1)
-    assert chip.eqep[1].quadrature.missing == ""
+    assert (chip.eqep[1].quadrature.missing_a, chip.eqep[1].quadrature.missing_b) == ("", "")
 
 
 def test_an_encoder_counts_only_on_muxed_pins(chip: Chip) -> None:

@@ -826,6 +826,14 @@ def test_a_timer_that_the_program_has_stopped_has_asked_before(
     assert all(f.place is not None and "IER " in lines[f.place.line - 1] for f in findings)
 
 
+@pytest.mark.parametrize(("others", "count"), [("", 1), ("XINT1_INT", 1), ("XINT1_INT XINT2_INT XINT3_INT", 0)])
+def test_a_handler_of_all_vectors_waits_for_no_timer(tmp_path: Path, others: str, count: int) -> None:
+    entered = "".join(f"PieVectTable.{entry} = &{'Turn' if count == 0 else 'Tick'}; " for entry in others.split())
+    text = STIRRER.replace("GIVE", "IER |= M_INT1;").replace("EDIS;\n    InitCpu", f"{entered}EDIS;\n    InitCpu")
+    findings = told(tmp_path, text, seconds=0.008)
+    assert ["waits for CPU timer 1" in f.message for f in findings] == [True] * count
+
+
 @pytest.mark.parametrize(("bits", "count"), [("M_INT9", 1), ("M_INT1 | M_INT9", 0)])
 def test_a_line_that_is_enabled_for_a_while_is_let_through_by_ier_too(tmp_path: Path, bits: str, count: int) -> None:
     # The program takes the line away for good after half of the time.

@@ -66,6 +66,22 @@ def test_a_position_that_cannot_count(setting: dict[str, object], name: str) -> 
     assert driver.only("not-configured").object == name
 
 
+@pytest.mark.parametrize(("source", "swap", "told"), [
+    (0, 0, True), (1, 0, True), (2, 0, False), (3, 0, False), (2, 1, True),
+])  # fmt: skip
+def test_a_direction_that_is_fixed_needs_no_pin(source: int, swap: int, told: bool) -> None:
+    # GPIO11, the only pin of B here, has another function.
+    driver = eqep(f"""
+# drv.c: mode
+def mode() -> void:
+    EQep1Regs.QDECCTL.bit.QSRC = {source}
+    EQep1Regs.QDECCTL.bit.SWAP = {swap}
+""", gmux=0)
+    driver.mode()
+    driver.position()
+    assert [str(rule) for rule in driver.rules()] == ["not-configured"] * told
+
+
 @pytest.mark.parametrize(("setting", "name"), [
     ({"on": 0}, "EQep1Regs.QEPCTL.QPEN"), ({"unit": 0}, "EQep1Regs.QEPCTL.UTE"), ({"period": 0}, "EQep1Regs.QUPRD"),
     ({"maximum": "0"}, "EQep1Regs.QPOSMAX"),

@@ -159,7 +159,8 @@ def test_a_structure_that_only_one_file_defines_is_the_one_that_others_point_to(
     head = "typedef struct thing *thing_t;\nthing_t opened(int kind);\nint kind_of(thing_t t);\n"
     whole = "typedef struct thing { int kind; } thing;\nstatic thing one;\n"
     whole += "thing_t opened(int kind) { one.kind = kind; return &one; }\nint kind_of(thing_t t) { return t->kind; }\n"
-    shop = CWorkshop({"a.c": f"{head}int f(int n) {{ return kind_of(opened(n)); }}\n", "b.c": head + whole}, static=True)
+    user = f"{head}int f(int n) {{ return kind_of(opened(n)); }}\n"
+    shop = CWorkshop({"a.c": user, "b.c": head + whole}, static=True)
     assert shop.call("f", 7) == 7
     assert shop.rules() == []
 
