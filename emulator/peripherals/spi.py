@@ -20,7 +20,7 @@ from emulator.c28x.findings import Cause
 from emulator.clock import CYCLES_PER_US, SYSCLK_HZ, Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.peripherals.fifo import CHANNELS_RUN, ENHANCED, SHORT, Fifo
-from emulator.registers.spi import SpiRegs
+from emulator.registers.spi import SPIFFRX, SpiRegs
 from emulator.signal import Signal
 from emulator.signals import SpiBus, Wire
 
@@ -93,6 +93,9 @@ class Spi:
         self._received = self._premature = 0
         #: Whether reads of SPISTS are watched: INT_FLAG is still set by a word before the one that is shifting.
         self._old_flag = False
+        #: Whether SPIRXBUF was ever read; the first loss before that, with its statement.
+        self._reads = False
+        self._untold: tuple[str, Cause | None] | None = None
         #: Whether a chip select rose while the present word was shifting.
         self._cut = False
         #: The statements that wrote the word that is being sent and the words that wait.
@@ -262,6 +265,8 @@ class Spi:
         return fifo.words[0] if fifo.enabled and fifo.words else self._rxbuf.value
 
     def _read_SPIRXBUF(self) -> int:
+        if not self._reads:
+            self._first_read()
         if self._rx_fifo.enabled:
             if self._rx_fifo.words:
                 self._rxbuf.value = self._rx_fifo.pop()
@@ -422,7 +427,8 @@ class Spi:
         self._dat.value = received
         if self._tx_fifo.enabled:
             if not self._rx_fifo.push(received):
-                self._lost("SPIRXBUF", "the receive FIFO was full or held in reset: a word is lost")
+                wanted = bool(self._regs.registers["SPIFFRX"].value & SPIFFRX.RXFFIENA.mask)
+                self._not_taken("the receive FIFO was full or held in reset: a word is lost", wanted)
             if self._tx_fifo.words and self._may_start():
                 self._start(self._tx_fifo.pop(), self._ffct.value * self.bit_cycles())
             return
@@ -468,7 +474,8 @@ class Spi:
         """The word before this one was not read; `status` is SPISTS as it was."""
         # CHOICE: an INT_FLAG that is still set gives no new edge to the PIE; the overrun has its own enable.
         self._sts.value |= OVERRUN_FLAG
-        self._lost("SPIRXBUF", "a word came before the last one was read: the last one is lost")
+        wanted = bool(self._ctl.value & SPIINTENA)
+        self._not_taken("a word came before the last one was read: the last one is lost", wanted)
         if self._ctl.value & OVERRUNINTENA and not status & OVERRUN_FLAG:
             self._rx_interrupt()
 
@@ -482,6 +489,20 @@ class Spi:
         self._shift = None
         self._select(1)
 
-    def _lost(self, register: str, what: str) -> None:
+    def _not_taken(self, what: str, wanted: bool) -> None:
+        """A received word is lost.  A driver that only sends reads none of them: it is told with the first read."""
+        if wanted or self._reads:
+            self._lost("SPIRXBUF", what)
+        elif self._untold is None:
+            self._untold = what, self._cpu.findings.mark()
+
+    def _first_read(self) -> None:
+        self._reads = True
+        if self._untold is not None:
+            what, cause = self._untold
+            self._untold = None
+            self._lost("SPIRXBUF", what, cause)
+
+    def _lost(self, register: str, what: str, cause: Cause | None = None) -> None:
         path = f"{self._regs.name}.{register}"
-        self._cpu.findings.report("data-lost", f"{path}: {what}", object=path)
+        self._cpu.findings.report("data-lost", f"{path}: {what}", object=path, cause=cause)
