@@ -78,8 +78,8 @@ class Pie:
         self._served = [-1] * VECTORS
         #: For each vector, whether it was ever taken.
         self._has_run = [False] * VECTORS
-        #: (group, number) -> the flag that has kept a further event back, and the routine that left the flag.
-        self._blocked: dict[tuple[int, int], tuple[str, Place]] = {}
+        #: (group, number) -> the flag that has kept a event back, the routine that left it, when that ended.
+        self._blocked: dict[tuple[int, int], tuple[str, Place, int]] = {}
         regs.bind("PIECTRL", write=self._write_PIECTRL)
         regs.bind("PIEACK", write=self._write_PIEACK)
         for x in range(GROUPS):
@@ -124,16 +124,18 @@ class Pie:
         handler, begins = self._vectors.get(vector, (None, None))
         if since < 0 or begins is None or handler is None:
             return False
-        self._blocked[group, n] = flag, begins
+        self._blocked[group, n] = flag, begins, since
         if at_once or self._clock.now >= since + LONG_CYCLES:
             self._report_blocked(flag, begins, group, n)
         return True
 
     def finish(self) -> None:
-        """The run ends.  Report also flags that have kept an interrupt back for half of that time."""
-        for (group, n), (flag, begins) in self._blocked.items():
-            since = self._served[vector_id(group, n)]
-            if since >= 0 and self._clock.now >= since + LONG_CYCLES // 2:
+        """The run ends.  Report also flags that have kept an interrupt back for half of that time.
+
+        A routine that has run since then was called for what came: it had the flag to clear, and had not ended.
+        """
+        for (group, n), (flag, begins, since) in self._blocked.items():
+            if since == self._served[vector_id(group, n)] and self._clock.now >= since + LONG_CYCLES // 2:
                 self._report_blocked(flag, begins, group, n)
 
     def _report_blocked(self, flag: str, begins: Place, group: int, n: int) -> None:

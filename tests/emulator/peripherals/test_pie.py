@@ -289,3 +289,17 @@ def test_a_flag_that_the_routine_has_left_for_long_is_told_there() -> None:
     bench.clock.charge(LONG_CYCLES)
     ask()
     assert [(f.place, f.object) for f in bench.findings] == [(ROUTINE, "EPwm1Regs.ETFLG.INT")]
+
+
+@pytest.mark.parametrize("runs_again", [False, True])
+def test_a_flag_at_the_end_of_the_run_is_told_unless_the_routine_has_run_since(runs_again: bool) -> None:
+    bench = routine(acknowledges=True)
+    line = bench.pie.line(3, 1)
+    line()
+    bench.clock.charge(100)
+    bench.pie.flag_left(3, 1, "EPwm1Regs.ETFLG.INT")
+    if runs_again:
+        line()
+    bench.clock.charge(LONG_CYCLES)
+    bench.pie.finish()
+    assert [f.place for f in bench.findings.of("flag-not-cleared")] == ([] if runs_again else [ROUTINE])
