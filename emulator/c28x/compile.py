@@ -17,6 +17,7 @@ from emulator.c28x.float_division import float_division
 from emulator.c28x.passes import frame
 from emulator.c28x.passes.checks import check
 from emulator.c28x.passes.costs import Costs
+from emulator.c28x.passes.feedback import reversed_errors
 from emulator.c28x.passes.flow import Flow
 from emulator.c28x.passes.guards import Guards
 from emulator.c28x.passes.intervals import annotate_bounds
@@ -58,6 +59,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
     in_a_range = limited_scalars(f for module in modules for f in module.functions)
     regulators = wind_up(f for module in modules for f in module.functions) if options.watch else {}
     words = signed_words(f for module in modules for f in module.functions)
+    words |= reversed_errors(f for module in modules for f in module.functions)
     costs = Costs(float_division(options.float_division))
     owners: set[str] = set()
     functions = []

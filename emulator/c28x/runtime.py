@@ -58,6 +58,8 @@ _FINE: Final = 100
 _ALL_24: Final = 0xFF_FFFF
 _NEAR: Final = 1 << 20
 _BEFORE: Final = 3
+#: CHOICE: for so many passes the error of a regulator stays on one side of 0 only if it cannot get away.
+_ONE_SIDE: Final = 40
 #: A float above this one has hardly a fraction.
 _WHOLE: Final = 1e6
 #: CHOICE: a float passed for an integer parameter that never reaches this value was not meant as an integer.
@@ -92,7 +94,8 @@ class RuntimeSite(Site):
     """One check of a running image: its site, its number, and what it has found so far."""
 
     __slots__ = (
-        "ahead", "empty_at", "generation", "greatest", "initial", "last", "number", "planted", "seen", "turned", "zero",
+        "ahead", "empty_at", "first", "generation", "greatest", "initial", "last", "number", "passes", "planted",
+        "seen", "turned", "zero",
     )  # fmt: skip
 
     def __init__(self, site: Site, number: int) -> None:
@@ -102,6 +105,9 @@ class RuntimeSite(Site):
         self.generation = -1
         #: The largest float that was passed for an integer here.
         self.greatest = 0.0
+        #: The error of a regulator when it came to its side of 0, and the number of passes since.
+        self.first = 0.0
+        self.passes = 0
         #: The stamps compared here last; whether one of them has wrapped; awaited stamp -> how far it was ahead.
         self.last = (0, 0)
         self.turned = False
@@ -1115,6 +1121,27 @@ class Runtime:
             message = f"{site.name} is {value}: bit 23 is its sign, {meant} is meant, and it {site.widened}"
             self.hit(site, "sign-lost", message, value)
         return value
+
+    def error_side(self, value: int, number: int) -> int:
+        """An error of a regulator that may have the wrong sign, an integer."""
+        self._follow_error(float(value), number)
+        return value
+
+    def error_side_float(self, value: float, number: int) -> float:
+        """An error of a regulator that may have the wrong sign, a float."""
+        self._follow_error(value, number)
+        return value
+
+    def _follow_error(self, value: float, number: int) -> None:
+        """Report an error that has stayed on one side of 0, and has not become smaller since it came there."""
+        site = self.sites[number]
+        passes = site.passes + 1 if value * site.first > 0 else 0
+        if not passes:
+            site.first = value
+        site.passes = passes
+        if passes >= _ONE_SIDE and abs(value) >= abs(site.first):
+            message = f"{site.name} has had the same sign for {passes} passes, now {value:.7g}: it is {site.widened}"
+            self.hit(site, "feedback-reversed", message, value)
 
     def fraction(self, value: float, number: int) -> float:
         """A float that a cast makes an integer before it is multiplied by a scale."""

@@ -133,6 +133,28 @@ sum (a meter of energy, an odometer, a clock).
         "K. J. Astrom, R. M. Murray, Feedback Systems, 11.4",
     ),
     _rule(
+        "feedback-reversed",
+        Severity.WARNING,
+        "The error of a regulator seems to have the wrong sign: its output drives the value away.",
+        """
+The motor stands, the voltage stays at 0, or the output runs to its limit and stays there.
+
+The regulator computes the measured value less the wanted one, and its integral and its output grow with that. Above the
+target it gives more, below it less: a positive feedback. The output goes to one of its limits and never comes back.
+
+It is reported at the difference, when the error has kept its sign for 40 passes and is not smaller than at the first of
+them. Names say which operand is the wanted value (`target`, `reference`, `setpoint`...), and that the other one is a
+speed, a voltage, a current, a force, a pressure or a flow, which an output raises. A regulator without an integral is
+not judged, nor one whose error, integral or output is subtracted from something later: that turns the sign back. A
+temperature, a level or a position is not judged, nor a brake, a sink, a panel: there the output may lower the value.
+
+An output that is active low, or a gain that is negative only when the program runs, makes it right: accept it then.
+
+**Fix:** subtract the measured value from the wanted one.
+""",
+        "K. J. Astrom, R. M. Murray, Feedback Systems, 1.1",
+    ),
+    _rule(
         "no-case",
         Severity.WARNING,
         "A value reached a switch that has neither a case for it nor a default.",

@@ -810,6 +810,9 @@ class PythonWriter:
             return f"_c_fraction({text}, {number})"
         if guard.kind == "word-of-24":
             return f"_c_word_of_24({text}, {number})"
+        if guard.kind == "error-side":
+            helper = "_c_error_side_float" if isinstance(guard.site.ctype, FloatType) else "_c_error_side"
+            return f"{helper}({text}, {number})"
         if guard.kind == "shifted-sign":
             return f"(_t if 0 <= (_t := {text}) else _c_shifted_sign(_t, {number}))"
         if guard.kind == "sign-lost":

@@ -32,6 +32,7 @@ Kinds of guards:
 | `fraction` | floats that a cast makes integers in front of a factor | no fraction is lost that counts |
 | `shifted-sign` | signed shift registers (pass `signs`) | their highest bit is not set |
 | `word-of-24` | signed words of three octets (pass `signs`) | they take no step below 0 |
+| `error-side` | errors of regulators with a sign that seems wrong (pass `feedback`) | they get to the other side of 0 |
 | `signed-word` | unsigned words that the source takes for signed (pass `signs`) | their highest bit is not set |
 | `regulator` | parts of regulators (pass `wind_up`) | their integral does not run beyond the limits of the output |
 """

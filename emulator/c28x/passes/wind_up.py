@@ -177,7 +177,7 @@ def _outputs(function: Function) -> Iterator[tuple[Expr, list[Expr]]]:
             case Declare(variable=variable, value=Expr() as value):
                 given.append((variable, value))
         for p in own_nodes(s):
-            operand = _limits(p)
+            operand = limited_operand(p)
             if operand is not None and _summed(operand):
                 yield operand, [p]
     for target, value in given:
@@ -192,7 +192,7 @@ def _summed(e: Expr) -> bool:
     return any(isinstance(p, Binary) and p.op in ("+", "-") for p in parts(e))
 
 
-def _limits(e: Any) -> Expr | None:
+def limited_operand(e: Any) -> Expr | None:
     """What a call or a conditional expression limits; None: it limits nothing."""
     match e:
         case Call(function=function, arguments=arguments):
@@ -204,7 +204,7 @@ def _limits(e: Any) -> Expr | None:
             for argument in candidates:
                 inner = bare(argument)
                 if not isinstance(inner, Const):
-                    return _limits(inner) or inner
+                    return limited_operand(inner) or inner
         case Conditional(test=test, then=then, otherwise=otherwise):
             for p in parts(test):
                 if isinstance(p, Compare) and p.op not in ("==", "!="):
@@ -226,7 +226,7 @@ def _limiter(function: Function) -> int | None:
     body = list(statements(function.body))
     if function.extern or not body or not all(isinstance(s, If | Return | Assign | Declare) for s in body):
         return None
-    returned = [s.value for s in body if isinstance(s, Return) and s.value is not None]
+    returned = [each for s in body if isinstance(s, Return) and s.value is not None for each in _choices(s.value)]
     for n, parameter in enumerate(function.parameters):
         tests = [s.test for s in body if isinstance(s, If)]
         compared = any(
@@ -254,7 +254,7 @@ def _limited(s: Stmt, target: LValue | Variable) -> Iterator[Expr]:
                                     yield value
             return
     for p in own_nodes(s):
-        operand = _limits(p)
+        operand = limited_operand(p)
         if operand is not None and _is(operand, target):
             yield p
 

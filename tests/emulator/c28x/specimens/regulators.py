@@ -1,4 +1,4 @@
-"""Regulators whose integral runs beyond the limits of their output, beside right ones."""
+"""Regulators whose integral runs beyond the limits of their output, or whose error is backwards, beside right ones."""
 
 from __future__ import annotations
 
@@ -10,6 +10,11 @@ _HOLD = (("Hold", (40, 200)), ("Hold", (-30, 5)))
 
 def _regulator(name: str, defect: str, correct: str) -> Pair:
     return Pair("wind-up", name, _HOLD, defect, correct, watch=True)
+
+
+
+def _feedback(name: str, defect: str, correct: str) -> Pair:
+    return Pair("feedback-reversed", name, (("Drive", (50,)),), defect, correct)
 
 
 PAIRS = (
@@ -228,6 +233,280 @@ def Hold(error: int16, passes: int16) -> float32:
     for i in range(passes):
         last = Step(error)
     return last
+""",
+    ),
+    _feedback(
+        "an error in fixed point",
+        """
+speed_rpm: int16 = 0
+target_rpm: int16 = 900
+total: int32 = 0
+def Step() -> int16:
+    error: int32 = int32(speed_rpm) - target_rpm  # <-
+    duty: int32
+    total += error * 24
+    if total > 230400:
+        total = 230400
+    elif total < 0:
+        total = 0
+    duty = (error * 180 + total) / 256
+    if duty > 900:
+        duty = 900
+    elif duty < 0:
+        duty = 0
+    return int16(duty)
+def Drive(passes: int16) -> int16:
+    global speed_rpm
+    i: int16
+    for i in range(passes):
+        speed_rpm = (speed_rpm * 7 + Step()) / 8
+    return speed_rpm
+""",
+        """
+speed_rpm: int16 = 0
+target_rpm: int16 = 900
+total: int32 = 0
+def Step() -> int16:
+    error: int32 = int32(target_rpm) - speed_rpm
+    duty: int32
+    total += error * 24
+    if total > 230400:
+        total = 230400
+    elif total < 0:
+        total = 0
+    duty = (error * 180 + total) / 256
+    if duty > 900:
+        duty = 900
+    elif duty < 0:
+        duty = 0
+    return int16(duty)
+def Drive(passes: int16) -> int16:
+    global speed_rpm
+    i: int16
+    for i in range(passes):
+        speed_rpm = (speed_rpm * 7 + Step()) / 8
+    return speed_rpm
+""",
+    ),
+    _feedback(
+        "an integral of a structure, and its twin that subtracts the error",
+        """
+class Loop(struct):
+    integral: float32
+    setpoint: float32
+loop: Loop = (0.0, 3.5)
+pressure: float32 = 0.0
+def Within(value: float32, high: float32) -> float32:
+    if value < 0.0:
+        return 0.0
+    return high if value > high else value
+def Step() -> float32:
+    error: float32 = pressure - loop.setpoint  # <-
+    loop.integral = Within(loop.integral + error * 0.05, 10.0)
+    return Within(error * 0.5 + loop.integral, 10.0)
+def Drive(passes: int16) -> float32:
+    global pressure
+    i: int16
+    for i in range(passes):
+        pressure = pressure * 0.875 + Step() * 0.125
+    return pressure
+""",
+        """
+class Loop(struct):
+    integral: float32
+    setpoint: float32
+loop: Loop = (0.0, 3.5)
+pressure: float32 = 0.0
+def Within(value: float32, high: float32) -> float32:
+    if value < 0.0:
+        return 0.0
+    return high if value > high else value
+def Step() -> float32:
+    error: float32 = pressure - loop.setpoint
+    loop.integral = Within(loop.integral - error * 0.05, 10.0)
+    return Within(loop.integral - error * 0.5, 10.0)
+def Drive(passes: int16) -> float32:
+    global pressure
+    i: int16
+    for i in range(passes):
+        pressure = pressure * 0.875 + Step() * 0.125
+    return pressure
+""",
+    ),
+    _feedback(
+        "an output that another statement turns round",
+        """
+pressure: float32 = 0.0
+wanted: float32 = 3.5
+total: float32 = 0.0
+duty: float32 = 0.0
+def Step() -> float32:
+    error: float32 = pressure - wanted  # <-
+    total += error * 0.05
+    if total < -10.0:
+        total = -10.0
+    elif total > 0.0:
+        total = 0.0
+    duty = error * 0.5 + total
+    return duty
+def Drive(passes: int16) -> float32:
+    global pressure
+    i: int16
+    for i in range(passes):
+        pressure = pressure * 0.875 + Step() * 0.125
+    return pressure
+""",
+        """
+pressure: float32 = 0.0
+wanted: float32 = 3.5
+total: float32 = 0.0
+duty: float32 = 0.0
+def Step() -> float32:
+    error: float32 = pressure - wanted
+    total += error * 0.05
+    if total < -10.0:
+        total = -10.0
+    elif total > 0.0:
+        total = 0.0
+    duty = error * 0.5 + total
+    return -duty
+def Drive(passes: int16) -> float32:
+    global pressure
+    i: int16
+    for i in range(passes):
+        pressure = pressure * 0.875 + Step() * 0.125
+    return pressure
+""",
+    ),
+    _feedback(
+        "a fan that cools has the other sign",
+        """
+flow: float32 = 18.0
+flow_target: float32 = 22.0
+total: float32 = 0.0
+def Step() -> float32:
+    error: float32 = flow - flow_target  # <-
+    total += error * 0.05
+    if total < 0.0:
+        total = 0.0
+    return error * 0.5 + total
+def Drive(passes: int16) -> float32:
+    i: int16
+    last: float32 = 0.0
+    for i in range(passes):
+        last = Step()
+    return last
+""",
+        """
+current_temperature: float32 = 18.0
+temperature_target: float32 = 22.0
+total: float32 = 0.0
+def Step() -> float32:
+    error: float32 = current_temperature - temperature_target
+    total += error * 0.05
+    if total < 0.0:
+        total = 0.0
+    return error * 0.5 + total
+def Drive(passes: int16) -> float32:
+    i: int16
+    last: float32 = 0.0
+    for i in range(passes):
+        last = Step()
+    return last
+""",
+    ),
+    _feedback(
+        "an error that is written twice, and a gain below 0",
+        """
+flow: float32 = 0.0
+flow_target: float32 = 4.0
+ki: float32 = 0.05
+total: float32 = 0.0
+def Step() -> float32:
+    total += (flow - flow_target) * ki  # <-
+    if total < 0.0:
+        total = 0.0
+    return (flow - flow_target) * 0.5 + total
+def Drive(passes: int16) -> float32:
+    i: int16
+    last: float32 = 0.0
+    for i in range(passes):
+        last = Step()
+    return last
+""",
+        """
+flow: float32 = 0.0
+flow_target: float32 = 4.0
+ki: float32 = -0.05
+total: float32 = 0.0
+def Step() -> float32:
+    total += (flow - flow_target) * ki
+    if total < 0.0:
+        total = 0.0
+    return (flow - flow_target) * 0.5 + total
+def Drive(passes: int16) -> float32:
+    i: int16
+    last: float32 = 0.0
+    for i in range(passes):
+        last = Step()
+    return last
+""",
+    ),
+    _feedback(
+        "a motor that turns both ways",
+        """
+out_speed: int16 = 0
+goal_speed: int16 = -900
+total: int32 = 0
+way: int16 = 0
+def Turn(duty: int16) -> None:
+    global out_speed
+    global way
+    if duty < 0:
+        way = -1
+        out_speed = (out_speed * 7 + duty) / 8
+    else:
+        way = 1
+        out_speed = (out_speed * 7 + duty) / 8
+def Drive(passes: int16) -> int16:
+    error: int32
+    i: int16
+    for i in range(passes):
+        error = int32(out_speed) - goal_speed  # <-
+        total += error * 24
+        if total > 230400:
+            total = 230400
+        elif total < -230400:
+            total = -230400
+        Turn(int16((error * 180 + total) / 256))
+    return out_speed
+""",
+        """
+out_speed: int16 = 0
+goal_speed: int16 = -900
+total: int32 = 0
+way: int16 = 0
+def Turn(duty: int16) -> None:
+    global out_speed
+    global way
+    if duty < 0:
+        way = -1
+        out_speed = (out_speed * 7 + duty) / 8
+    else:
+        way = 1
+        out_speed = (out_speed * 7 + duty) / 8
+def Drive(passes: int16) -> int16:
+    error: int32
+    i: int16
+    for i in range(passes):
+        error = int32(out_speed) - goal_speed
+        total += error * 24
+        if total > 230400:
+            total = 230400
+        elif total < -230400:
+            total = -230400
+        Turn(int16((error * -180 - total) / 256))
+    return out_speed
 """,
     ),
 )
