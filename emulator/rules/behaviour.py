@@ -208,6 +208,23 @@ another period), and for functions that nothing else calls. Times that are no pe
 """,
     ),
     _rule(
+        "scale-by-face", Severity.WARNING, "An object follows a part of the board in another scale than its unit.", """
+A weight of 1250 g is shown as 125 g, a limit in tenths of a degree is never reached: the object is wrong by a power of
+ten.
+
+The name or the comment of an object states its unit (`// tenths of a gram`), and a face of a part of the board has the
+same quantity in its own unit. In the run the face changed, and the object changed with it, by a factor that is a power
+of ten but not the one between the units.
+
+It is reported at the object's declaration if the values agree before and behind a step, or if two steps of different
+height agree, as after a tare. Objects with a stated unit at file scope are looked at, and members of structures there,
+but no arrays. Nothing is reported if two faces of the board have the quantity, if no face changes, or if any object
+follows the face in the right scale.
+
+**Fix:** correct the factor of the conversion, or the unit that the comment states.
+""",
+    ),
+    _rule(
         "limit-unused",
         Severity.NOTE,
         "A limit is defined, and nothing applies it.",

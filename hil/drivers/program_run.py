@@ -16,6 +16,7 @@ from emulator.clock import SYSCLK_HZ, seconds
 from emulator.devices.lv_maxsonar_ring import SonarRing
 from emulator.registers.i2c import I2CSTR
 from hil.drivers.budget import RUN, TimeBudget, computed
+from hil.drivers.face_scale import FaceScales
 from hil.drivers.periods import RoutinePeriods, wrong_periods
 from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
@@ -175,6 +176,7 @@ def _run(
         image.board.clock.after(round(parts_s * SYSCLK_HZ), lambda: cut_off(image.board))
     arrivals = ArrivalWatch(image.board) if roles.main is not None and parts_s is None else None
     routines = RoutinePeriods(image.board)
+    scales = FaceScales(image, build.files, for_s)
     budget = TimeBudget(RUN)
     stop: BaseException | None = None
     stood = EndPosition()
@@ -208,7 +210,7 @@ def _run(
     for hung in image.board.findings.of("endless-poll"):
         if hung.task == "main" and hung.place is not None and not waits_for_others(hung, roles):
             image.board.watchdog.report_hung_main(hung.time_cycles - image.linked.runtime.poll_limit, hung.place)
-    for wrong in wrong_periods(build.modules, routines.periods()):
+    for wrong in (*wrong_periods(build.modules, routines.periods()), *scales.wrong()):
         image.board.findings.report_at(wrong.place, wrong.rule, wrong.message, object=wrong.object, how="dynamic")
     seen = [anchored(finding, build.files, build.others) for finding in image.board.findings if finding.how != "static"]
     # Behind the end only the poll that was waited for is the run's, and what its close shows.

@@ -60,6 +60,7 @@ def _units() -> Iterator[tuple[PhysicalUnit, tuple[str, ...], tuple[str, ...]]]:
         ("W", "power", "", ("watts",), ("w", "watt")), ("s", "time", "", ("sec", "secs", "seconds"), ("s", "second")),
         ("m", "length", "", ("metres", "meters"), ("m", "metre", "meter")), ("J", "energy", "", ("joules",), ("j",)),
         ("Hz", "frequency", "", ("hz", "hertz"), ()), ("Pa", "pressure", "", ("pascals",), ("pa",)),
+        ("g", "mass", "", ("grams",), ("g", "gram")),
         ("bar", "pressure", "", (), ("bar",)), ("rad", "angle", "", ("radians",), ("radian", "rad")),
         ("degree", "angle", "deg", ("deg", "degs", "degrees"), ("degree", "°")),
         ("degree Celsius", "temperature", "c", ("celsius", "degc", "degreesc"),
@@ -72,7 +73,7 @@ def _units() -> Iterator[tuple[PhysicalUnit, tuple[str, ...], tuple[str, ...]]]:
     #: Short names that occur in programs; others (`cV`, `dA`) are not worth a mistake.
     usual = {
         "mv", "uv", "kv", "ua", "mw", "kw", "ms", "us", "ns", "mm", "cm", "um", "km", "khz", "mj", "mbar", "kpa", "hpa",
-        "mdeg", "ddeg", "cdeg", "mrad",
+        "kg", "mdeg", "ddeg", "cdeg", "mrad",
     }  # fmt: skip
     for symbol, quantity, brief, words, more in whole:
         size = {"rad": 180 / pi, "bar": 1e5}.get(symbol, 1.0)
@@ -106,7 +107,7 @@ _TEXTS: Final = {
     "ma": _BY_NAME["mA"],
 }  # fmt: skip
 #: Symbols of one letter, as they are written.
-_LETTERS: Final = "VAWJCsm"
+_LETTERS: Final = "VAWJCgsm"
 #: Ends that have other meanings: each with its unit, and the beginnings of words one of which the name must have too.
 _AMBIGUOUS: Final = {
     "s": ("s", ("time", "timeout", "delay", "period", "interval", "duration", "elapsed", "wait", "uptime")),
