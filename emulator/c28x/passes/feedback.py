@@ -45,7 +45,7 @@ from emulator.c28x.tree import (
     Unary,
     Variable,
 )
-from emulator.c28x.tree_queries import bare, parts, roots, source_text, statements
+from emulator.c28x.tree_queries import bare, own_nodes, parts, source_text, statements
 
 _WORD: Final = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 #: Words that say that a value is the wanted one; `set` and `point` count together.
@@ -95,12 +95,14 @@ def reversed_errors(functions: Iterable[Function]) -> dict[int, SignedWord]:
 def _errors(function: Function) -> Iterator[_Error]:
     """The differences in a function whose names say that they are the measured value less the wanted one."""
     body = list(statements(function.body))
+    if not any(isinstance(p, Binary) and p.op == "-" and _is_backwards(p) for s in body for p in own_nodes(s)):
+        return
     names = [function.name, *(target.text for s in body if (target := _target(s)) is not None)]
-    names += [p.function.name for s in body for root in roots(s) for p in parts(root) if isinstance(p, Call)]
+    names += [p.function.name for s in body for p in own_nodes(s) if isinstance(p, Call)]
     if (_LOWERED | _LOWERING).intersection(_words(function.name)) or _LOWERING.intersection(_words(" ".join(names))):
         return
     for n, s in enumerate(body):
-        for p in (p for root in roots(s) for p in parts(root)):
+        for p in own_nodes(s):
             if not isinstance(p, Binary) or p.op != "-" or not _is_backwards(p):
                 continue
             if isinstance(p.ctype, IntType) and not p.ctype.signed:
@@ -170,10 +172,9 @@ def _values(s: Stmt) -> Iterator[Expr]:
     match s:
         case Assign(value=value) | Declare(value=Expr() as value) | Return(value=Expr() as value):
             yield value
-    for root in roots(s):
-        for p in parts(root):
-            if isinstance(p, Call):
-                yield from p.arguments
+    for p in own_nodes(s):
+        if isinstance(p, Call):
+            yield from p.arguments
 
 
 def _nothing(_: Any) -> bool:
@@ -252,12 +253,11 @@ def _turned(functions: list[Function], error: _Error) -> bool:
         for function in functions:
             for s in statements(function.body):
                 direct = error.is_error if any(s is each for each in error.scope) else _nothing
-                for root in roots(s):
-                    for p in parts(root):
-                        if isinstance(p, Call) and limited_operand(p) is None:  # else it is what it limits
-                            given = zip(p.function.parameters, p.arguments, strict=False)
-                            passed = [v for v, a in given if any(depends(x) or direct(x) for x in parts(a))]
-                            keys |= {(v, 0) for v in passed}
+                for p in own_nodes(s):
+                    if isinstance(p, Call) and limited_operand(p) is None:  # else it is what it limits
+                        given = zip(p.function.parameters, p.arguments, strict=False)
+                        passed = [v for v, a in given if any(depends(x) or direct(x) for x in parts(a))]
+                        keys |= {(v, 0) for v in passed}
                 match s:
                     case Assign(target=LValue() as target, value=value) if any(depends(x) for x in parts(value)):
                         key = key_of(target)
@@ -280,7 +280,7 @@ def _turned(functions: list[Function], error: _Error) -> bool:
 def _taken_by_sign(function: Function) -> list[Expr]:
     """What a function compares with 0: it takes its size, or looks which way a motor has to turn."""
     compared = (
-        (bare(p.left), bare(p.right)) for s in statements(function.body) for root in roots(s) for p in parts(root)
+        (bare(p.left), bare(p.right)) for s in statements(function.body) for p in own_nodes(s)
         if isinstance(p, Compare)
     )  # fmt: skip
     return [left for left, right in compared if isinstance(right, Const) and right.value == 0]
