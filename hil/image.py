@@ -108,6 +108,11 @@ class Build:
         options = replace(self._options, follow=True, static=False, coverage=False)
         return compile_program(self.program, options, self._looked_at)
 
+    def counted(self) -> Compiled:
+        """The same program, which counts how often each statement is begun (`Linked.coverage`)."""
+        options = replace(self._options, static=False, coverage=True)
+        return compile_program(self.program, options, self._looked_at)
+
     @property
     def others(self) -> frozenset[str]:
         """The files of the modules that the named ones bring with them, and the headers of libraries among these."""
@@ -121,7 +126,7 @@ class Build:
     def image(self, *, driven: Callable[[], bool] | None = None, compiled: Compiled | None = None) -> Image:
         """A fresh board with the files linked to it.  Raises LinkError for a name that nothing defines.
 
-        `driven` is that of `runtime_of`; `compiled` replaces the program (`followed`).
+        `driven` is that of `runtime_of`; `compiled` replaces the program (`followed`, `counted`).
         """
         return Image(self, driven, compiled)
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from emulator.c28x.tree import Where
 
@@ -23,6 +23,15 @@ class FileCoverage:
     functions: dict[str, tuple[int, int]] = field(default_factory=dict)
 
 
+class CountedPlace(NamedTuple):
+    """What has a counter: a function of a file (`number` is 0), or its statement of that number."""
+
+    file: str
+    function: str
+    number: int
+    where: Where
+
+
 class Coverage:
     """The counters of several images.  Images that share a function share its counters."""
 
@@ -32,6 +41,14 @@ class Coverage:
     def counters(self, file: str, function: str, counted: Sequence[Where]) -> list[int]:
         """The counters of a function of `file`, one per place in `counted`; the first one counts its calls."""
         return self._counts.setdefault((file, function, tuple(counted)), [0] * len(counted))
+
+    def begun(self) -> dict[CountedPlace, int]:
+        """How often each counted place has been begun so far: the beginnings of functions, and their statements."""
+        return {
+            CountedPlace(file, function, n, place): count
+            for (file, function, counted), counts in self._counts.items()
+            for n, (place, count) in enumerate(zip(counted, counts, strict=True))
+        }
 
     def data(self) -> list[list[Any]]:
         """All counters as lists, texts and numbers, for another process."""

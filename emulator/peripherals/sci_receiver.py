@@ -56,7 +56,8 @@ class SciReceiver:
         self._clock = clock
         self._cpu = cpu
         self._regs = regs
-        self._line = line
+        #: What arrives at the module.
+        self.line = line
         self._interrupt = interrupt
         self._own_format = own_format
         self._break_bits = break_bits
@@ -128,7 +129,7 @@ class SciReceiver:
         self._run_by = self._cpu.findings.mark()
         self._busy_until = float(self._clock.now)
         self._update_ready()
-        if self._line.broken:
+        if self.line.broken:
             self._low_begins()
 
     def reset(self) -> None:
@@ -170,16 +171,16 @@ class SciReceiver:
     # --- the line --------------------------------------------------------------------------------------------------
 
     def _on_frame(self, frame: SerialFrame) -> None:
-        if not self.loopback and not self._line.broken:
+        if not self.loopback and not self.line.broken:
             self.accept(frame)
 
     def _on_missed(self, pin: int) -> None:
         if self._running and not self.loopback and self._ctl1.value & RXENA and self._regs.clocked:
             self._cpu.findings.report(
                 "not-configured",
-                f"a character came to GPIO{pin}, and {self._regs.name} is waiting for one, but {self._line.missing}: "
+                f"a character came to GPIO{pin}, and {self._regs.name} is waiting for one, but {self.line.missing}: "
                 "it is lost",
-                object=self._line.name, cause=self._run_by,
+                object=self.line.name, cause=self._run_by,
             )  # fmt: skip
 
     def _on_break(self, low: bool) -> None:

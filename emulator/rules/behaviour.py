@@ -328,6 +328,27 @@ tolerate, do what is safe: stop, or report that there is no value.
 """,
     ),
     _rule(
+        "cut-message", Severity.WARNING, "After a message that was cut off, the next one is not understood.", """
+A cable that is pulled, a sender that restarts or a lost character ends a message too early. A receiver that counts
+characters and never gives up takes the beginning of the next message for the missing rest, and that one is lost, too.
+If it does not look for the beginning of a message then, all later ones are lost.
+
+With `--silence`, `hil check` runs a whole program once more. When the usual time is over, all serial lines fall silent.
+Then the program gets one of its own messages again, the last one of the usual length: three times whole, with pauses of
+0.6 and 1.2 s; once only its first half; and after 0.6 s three times whole. Something that ran for each whole message
+before, when it was complete, does not run for the first one after the half. The finding is at what first
+runs for a character of that one and did not for the same character before; its details say what did not run.
+
+A start character that is known in any state is right, and so is a limit for the time between two characters. A limit
+of more than 0.6 s is reported: accept it in the source. A line of text that ends with CR or LF may lose the line behind
+the cut one, but no later one. Nothing is said about messages that a program does not take when they are sent again,
+like an answer that it has not asked for.
+
+**Fix:** give the rest of a message a limit of some characters' time, and begin anew behind it. Or use a start character
+that occurs nowhere else, and begin anew whenever it comes.
+""",
+    ),
+    _rule(
         "declared-property", Severity.ERROR, "A function does not have the property that its author declares.", """
 A comment above a function declares a property, and `hil check` found arguments for which it does not hold. The finding
 gives the smallest example that it met. `hil check` generates the arguments.

@@ -98,7 +98,8 @@ def check(
     silence: Annotated[
         bool | None,
         typer.Option("--silence", help="Run driver files again, longer, with silent serial lines, I2C parts and CAN "
-                     "nodes: find outputs that follow old values, and waits that hang."),
+                     "nodes, and a message that is cut off: find outputs that follow old values, waits that hang, "
+                     "receivers that lose the next message."),
     ] = None,
     fail_on: Annotated[
         str | None,

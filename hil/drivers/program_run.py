@@ -16,13 +16,14 @@ from emulator.clock import SYSCLK_HZ, seconds
 from emulator.devices.lv_maxsonar_ring import SonarRing
 from emulator.registers.i2c import I2CSTR
 from hil.drivers.budget import RUN, TimeBudget, computed
+from hil.drivers.cut_messages import TRIAL, CutTrial, cut_messages
 from hil.drivers.face_scale import FaceScales
 from hil.drivers.periods import RoutinePeriods, wrong_periods
 from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
 from hil.drivers.sources import ArrivalWatch
 from hil.drivers.stale import AgeWatch, watched
-from hil.drivers.used_sources import buses, cut_off, silent_sources
+from hil.drivers.used_sources import buses, cut_off, receives_characters, silent_sources
 from hil.drivers.waiting import (
     EndedParties,
     in_last_loop,
@@ -91,7 +92,7 @@ def run_program(
     Findings of tasks without a `main` are notes: the part of their program that creates objects before they run is not
     in these files.  If `main` ends in a loop that waits for objects of interrupt routines, it runs again, and such
     loops are allowed.  `board_named`: the program is meant for this board.  `silence`: run it once more with sources
-    that fall silent (`stale`).
+    that fall silent (`stale`), and once with a message that is cut off (`cut_messages`).
     """
     ran = _run(build, roles, for_s, progress, patient=False, board_named=board_named)
     if any(f.rule == "endless-loop" and is_intended(f, roles) for f in ran.findings):
@@ -103,6 +104,8 @@ def run_program(
         kept = (*kept, *(f for f in hung if (f.rule, f.place) not in known))
     if roles.main is not None and (silence or ran.lost):  # without it, it is not known what releases its tasks
         kept = (*kept, *_stale(build, roles, for_s, asked=silence))
+    if silence and roles.main is not None and receives_characters(build):
+        kept = (*kept, *_cut(build, roles, for_s))
     left = () if silence or roles.main is None else silent_sources(build, roles)
     return replace(ran, findings=kept, not_silenced=left)
 
@@ -144,6 +147,23 @@ def _stale(build: Build, roles: Roles, for_s: float, *, asked: bool) -> list[Fin
         return whole
 
     seen = (anchored(finding, build.files, build.others) for finding in watched(build, roles, run, asked=asked))
+    return [finding for finding in seen if finding is not None]
+
+
+def _cut(build: Build, roles: Roles, for_s: float) -> list[Finding]:
+    """Receivers that do not understand the message after one that was cut off, found by a run with more messages."""
+
+    def run(prepare: Callable[[Image], CutTrial]) -> None:
+        image = _begin(build, roles, build.counted())
+        trial = prepare(image)
+        usual = image.board.clock.now + round(for_s * SYSCLK_HZ)
+        image.allow_loops(2 * _LONGER * usual + 2 * TRIAL + SYSCLK_HZ)
+        with suppress(*STOPS):
+            _go(image, roles, lambda: trial.until(usual), TimeBudget(_OBSERVED), lambda fraction: None)
+        with suppress(*STOPS):
+            image.close()
+
+    seen = (anchored(finding, build.files, build.others) for finding in cut_messages(run))
     return [finding for finding in seen if finding is not None]
 
 

@@ -49,6 +49,12 @@ def buses(build: Build) -> list[str]:
     return _buses(RegisterWrites(build.modules, build.register_blocks))
 
 
+def receives_characters(build: Build) -> bool:
+    """Whether a program reads characters of a serial line."""
+    reads = RegisterWrites(build.modules, build.register_blocks).reads
+    return any(register == "SCIRXBUF" for _, register in reads)
+
+
 def _buses(registers: RegisterWrites) -> list[str]:
     used = {block[:3] for block, _ in registers.writes}
     return [kind for kind in ("I2c", "Can") if kind in used]

@@ -11,6 +11,7 @@
 #define CURRENT_LIMIT   1200        /* counts about the offset */
 #define SPEED_LIMIT     3600
 #define ORDER_MS        80U
+#define HALF_ORDER_MS   5
 #define CLOCK           200000000UL
 #define BLINK_SLOW      20U
 #define BLINK_FAST      64U
@@ -35,6 +36,7 @@ static int16_t currentOffset = 2048;
 static volatile int16_t current = 0;
 static volatile uint16_t overCount = 0;
 static volatile uint16_t refused = 0;
+static uint16_t halfMs = 0;
 static volatile uint32_t orderedAt = 0;
 static volatile uint16_t blink = BLINK_SLOW;
 static volatile uint16_t lampOn = 0;
@@ -198,6 +200,18 @@ interrupt void timerIsr(void)
     millis++;
     if (millis - orderedAt > ORDER_MS)
         targetRpm = 0;
+    if (ScibRegs.SCIFFRX.bit.RXFFST == 1)
+    {
+        if (++halfMs >= HALF_ORDER_MS)
+        {
+            ScibRegs.SCIFFRX.bit.RXFIFORESET = 0;
+            ScibRegs.SCIFFRX.bit.RXFIFORESET = 1;
+        }
+    }
+    else
+    {
+        halfMs = 0;
+    }
     speedRpm += (delta * (60000L / COUNTS_PER_REV) - speedRpm) / 4;
     switch (state)
     {
