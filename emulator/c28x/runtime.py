@@ -94,8 +94,8 @@ class RuntimeSite(Site):
     """One check of a running image: its site, its number, and what it has found so far."""
 
     __slots__ = (
-        "ahead", "empty_at", "first", "generation", "greatest", "initial", "last", "number", "passes", "planted",
-        "seen", "turned", "zero",
+        "ahead", "empty_at", "fine", "first", "generation", "greatest", "initial", "last", "number", "passes",
+        "planted", "seen", "turned", "zero",
     )  # fmt: skip
 
     def __init__(self, site: Site, number: int) -> None:
@@ -103,6 +103,8 @@ class RuntimeSite(Site):
         self.number = number
         self.seen: Finding | None = None
         self.generation = -1
+        #: A quotient here was so large that its remainder did not matter: then smaller ones are measured as coarsely.
+        self.fine = False
         #: The largest float that was passed for an integer here.
         self.greatest = 0.0
         #: The error of a regulator when it came to its side of 0, and the number of passes since.
@@ -1183,7 +1185,8 @@ class Runtime:
         """An integer quotient that is converted to float, or scaled, only after its remainder was lost."""
         site = self.sites[number]
         result = self.divide_ints(a, b, number)
-        if b and a % b and abs(result) < _FINE:
+        site.fine = site.fine or abs(result) >= _FINE
+        if b and a % b and not site.fine:
             then = "is scaled" if site.widened == "scaled" else "is converted to float"
             message = f"{site.name}: {a} / {b} is {result} in integers, and {then} only afterwards"
             self.hit(site, "remainder-lost", message, a)

@@ -43,6 +43,23 @@ def Rate(counts: int16) -> float32:
     ),
     Pair(
         "remainder-lost",
+        "a speed whose unit is too coarse; one that was large before it fell",
+        (("Speed", (700000,)), ("Speed", (41881986,))),
+        """
+def Speed(period: uint32) -> float32:
+    r: float32
+    r = uint32(3000000) / period  # <-
+    return r
+""",
+        """
+def Speed(period: uint32) -> float32:
+    r: float32
+    r = uint32(3000000000) / period
+    return r
+""",
+    ),
+    Pair(
+        "remainder-lost",
         "a float is cut before it is scaled; digits are taken apart so",
         (("Show", (21.75,)),),
         """
