@@ -153,7 +153,8 @@ One side of the comparison is unsigned, so C converts the other side too: -1 bec
 "larger" than every size. `sizeof` is unsigned, too.
 
 The finding is made while the program runs, when the value is negative. It is made before the program runs if the
-source has a minus or a negative constant there.
+source has a minus or a negative constant there: `wanted >= -250` is true from 65286 on if `wanted` is unsigned. -1 and
+`~MASK` may be meant as bits, and are not reported.
 
 **Fix:** test for negative values first, or make both sides signed.
 """,

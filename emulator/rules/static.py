@@ -124,6 +124,9 @@ range of values that decides. Examples:
 * after a loop, its counter has the value that ended the loop: `while (n-- > 0)` decrements once more when it ends, so
   `n` is then -1 (or 65535) and never 0;
 * a counter at file scope is set to 0 and counted right before it is compared: each pass begins it anew;
+* after `if (t > low) ... else if (t < high)` with `low < high` the second test is always true, so the band between the
+  two limits is none (the exact complement, `else if (t <= low)`, is not reported); after `if (t > 10) ... else if
+  (t > 20)` it is always false;
 * a pointer that was already used is not NULL: the test comes too late, or it should test another pointer.
 
 `while (1)` and conditions of constants only (build switches) are not reported.

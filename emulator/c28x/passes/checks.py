@@ -12,6 +12,7 @@ from typing import Any
 from emulator.c28x.passes.anew import check_begun_anew
 from emulator.c28x.passes.begun_again import check_begun_again
 from emulator.c28x.passes.copies import check_copies
+from emulator.c28x.passes.decided import check_decided
 from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.masked import check_masked
 from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
@@ -59,6 +60,7 @@ def check(
             Liveness(function, report).run()
             check_stores(function, report)
             check_copies(function, report)
+            check_decided(function, report)
             check_masked(function, report)
             check_begun_anew(function, report)
             NullTests(function, report).run()

@@ -376,6 +376,14 @@ class ValueChecks(ConstantChecks):
                     text = source_text(operand)
                     message = f"{text} may be negative and is compared as {to}: it then counts as large"
                     self.report_here("sign-compare", message, text)
+                case Const(
+                    ctype=IntType(signed=False) as to,
+                    source=Convert(operand=Const(value=int(written)) as constant, explicit=False),
+                ) if written < -1 and depends(e) and not _as_pattern(constant, to):
+                    # -1 is all ones, the largest number, and may be meant.
+                    text, number = source_text(e), source_text(constant)
+                    message = f"{number} is compared as {to}: {side.value}, and no unsigned number is negative"
+                    self.report_here("sign-compare", f"{text}: {message}", text, written)
 
 
 def file_scope(variable: Variable, values: list[Any], report: StaticReport) -> None:

@@ -460,6 +460,54 @@ def Room(size: int16, used: int16) -> int16:
         ("Room", (5, 3)),
     ),
     static_pair(
+        "sign-compare",
+        "an unsigned set point held against a negative limit",
+        """
+LEAST = -40
+def Allowed(ready: int16, high: uint16, low: uint16) -> int16:
+    asked: uint16 = high << 8 | low
+    if ready and asked >= LEAST and asked < 90:  # <-
+        return 1
+    return 0
+""",
+        """
+LEAST = -40
+def Allowed(ready: int16, high: uint16, low: uint16) -> int16:
+    asked: int16 = high << 8 | low
+    if ready and asked >= LEAST and asked < 90:
+        return 1
+    return 0
+""",
+        ("Allowed", (1, 0, 20)),
+    ),
+    static_pair(
+        "constant-condition",
+        "the band between two limits is turned inside out",
+        """
+Level: int16 = 40
+Pump: int16 = 0
+def Step(middle: int16) -> int16:
+    global Pump
+    if Level < middle + 8:
+        Pump = 1
+    elif Level > middle - 8:  # <-
+        Pump = 0
+    return Pump
+""",
+        """
+Level: int16 = 40
+Pump: int16 = 0
+def Step(middle: int16) -> int16:
+    global Pump
+    if Level < middle - 8:
+        Pump = 1
+    elif Level > middle + 8:
+        Pump = 0
+    return Pump
+""",
+        ("Step", (40,)),
+    ),
+    static_pair(
         "octet",
         "bits of an object counted with eight",
         """

@@ -166,3 +166,69 @@ def test_a_fraction_that_was_cut_to_an_integer_has_its_sign() -> None:
     shop = CWorkshop(text, static=True)
     assert (shop.call("f", -1.6), shop.call("f", -8.0)) == (-3, -5)
     assert shop.rules() == []
+
+
+def chain(first: str, second: str) -> list[int]:
+    """The lines of an `if` and its `else if` that are said to be constant."""
+    head = "typedef unsigned int Uint16;\nint t, s;\nfloat x;\nUint16 u;\nvolatile int v;\nint f(void)\n{\n"
+    text = f"{head}    if ({first}) return 1;\n    else if ({second}) return 2;\n    return 0;\n}}\n"
+    return [line for rule, line in findings_of(text) if rule == "constant-condition"]
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ("t > s - 5", "t < s + 5"),
+        ("t < s + 5", "t > s - 5"),
+        ("s - 5 < t", "s + 5 > t"),
+        ("t - s >= 0", "s - t >= -2"),  # t - s is below 0 here, and so not above 2
+        ("t > 10", "t > 20"),
+        ("t > 10", "t > 10"),
+        ("t < 10 || s < 3", "t < 9"),
+        ("x > 1.0f", "x < 1.5f"),
+        ("x >= 1.0f", "x >= 1.0f"),
+        ("u < 10", "u < 5"),
+    ],
+)
+def test_a_test_that_the_failed_one_before_decides_is_constant(first: str, second: str) -> None:
+    assert chain(first, second) == [9]
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ("t > s + 5", "t < s - 5"),
+        ("t > s - 5", "t <= s - 5"),  # the exact complement
+        ("t > s - 5", "t < s - 4"),  # the same, of integers
+        ("x > 1.0f", "x <= 1.0f"),
+        ("x > 1.0f", "x >= 1.0f"),  # 1
+        ("x >= 1.0f", "x < 1.0f"),
+        ("t > 20", "t > 10"),
+        ("t > 10 && s > 3", "t > 20"),
+        ("v > 10", "v > 20"),  # read twice
+        ("u > u * 2 - 5", "u < u * 2 + 5"),  # it wraps
+        ("t == 10", "t > 20"),
+        ("t > s", "t < u"),
+    ],
+)
+def test_a_test_that_the_failed_one_before_leaves_open_is_not_constant(first: str, second: str) -> None:
+    assert chain(first, second) == []
+
+
+@pytest.mark.parametrize(
+    ("test", "told"),
+    [
+        ("u >= -250 && t", True),
+        ("-20 < u && t", True),
+        ("w > -250L && t", True),
+        ("u < -1", False),  # all ones
+        ("u >= ~7", False),  # a mask
+        ("u > (unsigned int) -9", False),  # a cast says so
+        ("u > 0xFF00u", False),
+        ("u == -250", False),
+        ("t >= -250", False),
+    ],
+)
+def test_an_unsigned_object_held_against_a_negative_constant(test: str, told: bool) -> None:
+    text = f"int f(int t, unsigned int u, unsigned long w)\n{{\n    if ({test}) return 1;\n    return 0;\n}}\n"
+    assert (("sign-compare", 3) in findings_of(text)) == told

@@ -1,0 +1,160 @@
+"""Static check of tests that a failed test before them decides: `constant-condition`.
+
+    if (air > wanted - SLACK) cool();
+    else if (air < wanted + SLACK) rest();
+
+Where the second test is reached, `air <= wanted - SLACK` holds, so it is always true.  The check compares tests of one
+difference (`air - wanted`) with constants.  It looks only at tests without calls, registers and volatile objects, along
+`else if`: nothing runs between them.
+
+The exact complement (`else if (air <= wanted - SLACK)`) is a usual way to say what `else` means, and not reported.
+Nor is a difference of unsigned numbers, which wraps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final, NamedTuple
+
+from emulator.c28x.ctypes import FloatType, IntType
+from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.passes.values import volatile
+from emulator.c28x.tree import (
+    Binary,
+    Compare,
+    Const,
+    Convert,
+    Expr,
+    Function,
+    If,
+    Load,
+    Logic,
+    Stmt,
+    Unary,
+)
+from emulator.c28x.tree_queries import calls, source_text, statements
+
+#: Comparison that fails -> the one that holds then.
+_FAILED: Final = {">": "<=", ">=": "<", "<": ">=", "<=": ">"}
+#: Comparison -> the same with both sides multiplied by -1.
+_TURNED: Final = {">": "<", ">=": "<=", "<": ">", "<=": ">="}
+
+
+class _Linear(NamedTuple):
+    """A sum of objects, each by its source text with a factor, and of a constant."""
+
+    terms: frozenset[tuple[str, float]]
+    constant: float
+
+
+class _Limit(NamedTuple):
+    """A sum of objects, compared with a constant: `terms op limit`."""
+
+    terms: frozenset[tuple[str, float]]
+    op: str
+    limit: float
+    whole: bool
+    test: Compare
+
+
+def check_decided(function: Function, report: StaticReport) -> None:
+    """Report the tests after an `else` that a test before it decides."""
+    inner: set[int] = set()
+    for s in statements(function.body):
+        if isinstance(s, If) and id(s) not in inner:
+            known: list[_Limit] = []
+            for test in _chain(s):
+                inner.add(id(test))
+                _check(test, known, function, report)
+                known += [limit for limit in map(_limit, _each(test.test)) if limit is not None]
+
+
+def _chain(first: If) -> Iterator[If]:
+    """An `if`, and those that its `else` leads to at once."""
+    s: Stmt | None = first
+    while isinstance(s, If):
+        yield s
+        s = s.otherwise[0] if s.otherwise else None
+
+
+def _each(test: Expr) -> list[Expr]:
+    """The comparisons that have all failed where a test has failed."""
+    return test.operands if isinstance(test, Logic) and test.op == "or" else [test]
+
+
+def _check(s: If, known: list[_Limit], function: Function, report: StaticReport) -> None:
+    now = _limit(s.test)
+    if now is None:
+        return
+    for before in known:
+        if before.terms != now.terms:
+            continue
+        outcome = _decided(before, now)
+        if outcome is not None:
+            text = source_text(now.test)
+            message = f"{text} is always {'true' if outcome else 'false'} here: not {source_text(before.test)}"
+            report.report(function, s.where, "constant-condition", message, object=text)
+            return
+
+
+def _decided(before: _Limit, now: _Limit) -> bool | None:
+    """What the failed test before says of the present one: true (beyond the complement), false, or nothing."""
+    holds, last, op, limit = _FAILED[before.op], before.limit, now.op, now.limit
+    if before.whole:  # of integers, make both comparisons inclusive
+        last += {"<": -1, ">": 1}.get(holds, 0)
+        limit += {"<": -1, ">": 1}.get(op, 0)
+        holds, op = holds[0] + "=", op[0] + "="
+    if holds[0] == op[0]:
+        return True if (limit > last if op[0] == "<" else limit < last) else None
+    apart = limit - last if holds[0] == "<" else last - limit
+    excluded = apart > 0 or (apart == 0 and not ("=" in holds and "=" in op))
+    return False if excluded else None
+
+
+def _limit(test: Expr) -> _Limit | None:
+    """The limit that a comparison by order sets; None: it is none that stays the same."""
+    if not isinstance(test, Compare) or test.op not in _FAILED or calls(test) or volatile(test):
+        return None
+    left, right = _linear(test.left), _linear(test.right)
+    if left is None or right is None:
+        return None
+    terms = dict(left.terms)
+    for text, factor in right.terms:
+        terms[text] = terms.get(text, 0) - factor
+    terms = {text: factor for text, factor in terms.items() if factor}
+    if not terms:
+        return None
+    op, limit = test.op, right.constant - left.constant
+    if terms[min(terms)] < 0:
+        terms, op, limit = {text: -factor for text, factor in terms.items()}, _TURNED[op], -limit
+    return _Limit(frozenset(terms.items()), op, limit, isinstance(test.left.ctype, IntType), test)
+
+
+def _linear(e: Expr) -> _Linear | None:
+    """An expression as a sum; None: it is none, or it may wrap."""
+    match e:
+        case Const(value=value):
+            return _Linear(frozenset(), value)
+        case Load(lvalue=lvalue) if lvalue.text and isinstance(e.ctype, IntType | FloatType):
+            return _Linear(frozenset({(lvalue.text, 1)}), 0)
+        case Convert(ctype=FloatType(), operand=operand):
+            return _linear(operand)
+        case Convert(ctype=IntType() as to, operand=Expr(ctype=IntType() as of) as operand):
+            return _linear(operand) if to.low <= of.low and of.high <= to.high else None
+        case Unary(op="-", operand=operand) if not _wraps(e) and (inner := _linear(operand)) is not None:
+            return _Linear(frozenset((text, -factor) for text, factor in inner.terms), -inner.constant)
+        case Binary(op="+" | "-" as op, left=left, right=right) if not _wraps(e):
+            a, b = _linear(left), _linear(right)
+            if a is None or b is None:
+                return None
+            sign = 1 if op == "+" else -1
+            terms = dict(a.terms)
+            for text, factor in b.terms:
+                terms[text] = terms.get(text, 0) + sign * factor
+            return _Linear(frozenset(terms.items()), a.constant + sign * b.constant)
+    return None
+
+
+def _wraps(e: Expr) -> bool:
+    """Whether an operation is one of unsigned numbers."""
+    return isinstance(e.ctype, IntType) and not e.ctype.signed
