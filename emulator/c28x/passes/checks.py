@@ -22,6 +22,7 @@ from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.stamps import Stamps
 from emulator.c28x.passes.states import States
 from emulator.c28x.passes.stores import check_stores
+from emulator.c28x.passes.tables import check_tables
 from emulator.c28x.passes.timer_clock import check_timer_clocks
 from emulator.c28x.passes.values import ValueChecks, file_scope, flag_words
 from emulator.c28x.passes.waiting import WriterAnalysis, check_waiting
@@ -73,6 +74,7 @@ def check(
     States(modules, entries, stamps).check(reports)
     check_begun_again(modules, reports)
     check_one_sided(modules, reports)
+    check_tables(modules, reports)
     owners = {function: report for module, report in reports.items() for function in module.functions}
     for function, s, stamp, against in stamps.cuts():
         name = source_text(stamp)

@@ -508,6 +508,58 @@ def Step(middle: int16) -> int16:
         ("Step", (40,)),
     ),
     static_pair(
+        "table-short",
+        "a table without a row for the last word",
+        """
+Pins: volatile[uint16] = 0x50
+Heights: array[int16, 3] = (4, 9, 16)
+def Word() -> uint16:
+    return Pins >> 4 & 3
+def Height() -> int16:
+    word: uint16 = Word()
+    return Heights[word]  # <-
+""",
+        """
+Pins: volatile[uint16] = 0x50
+Heights: array[int16, 3] = (4, 9, 16)
+def Word() -> uint16:
+    return Pins >> 4 & 3
+def Height() -> int16:
+    word: uint16 = Word()
+    if word == 3:
+        return 0
+    return Heights[word]
+""",
+        ("Height", ()),
+    ),
+    static_pair(
+        "table-short",
+        "the elements of a table are counted, and the rows are meant",
+        """
+Shades: array[array[int16, 2], 3] = ((1, 2), (3, 4), (5, 6))
+class LAMP(struct):
+    shade: uint16
+    level: uint16
+Lamp: LAMP = (0, 0)
+def Next() -> None:
+    Lamp.shade = (Lamp.shade + 1) % (sizeof(Shades) / sizeof(Shades[0][0]))
+def Show() -> int16:
+    return Shades[Lamp.shade][1]  # <-
+""",
+        """
+Shades: array[array[int16, 2], 3] = ((1, 2), (3, 4), (5, 6))
+class LAMP(struct):
+    shade: uint16
+    level: uint16
+Lamp: LAMP = (0, 0)
+def Next() -> None:
+    Lamp.shade = (Lamp.shade + 1) % (sizeof(Shades) / sizeof(Shades[0]))
+def Show() -> int16:
+    return Shades[Lamp.shade][1]
+""",
+        ("Show", ()),
+    ),
+    static_pair(
         "octet",
         "bits of an object counted with eight",
         """

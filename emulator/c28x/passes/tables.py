@@ -1,0 +1,187 @@
+"""Static check of tables that are shorter than a remainder or a mask allows: `table-short`.
+
+    static const STEP Steps[7] = ...;
+    Steps[Word() & 7]
+
+The check follows such an index through objects that get nothing but remainders, masks and constants, and through the
+results of functions.  What the program compares, or decides by, may have been tested: it is left alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, Final, NamedTuple
+
+from emulator.c28x.ctypes import IntType
+from emulator.c28x.passes.intervals import interval
+from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    AddressOf,
+    Assign,
+    Binary,
+    Call,
+    Compare,
+    Conditional,
+    Const,
+    Convert,
+    Declare,
+    Expr,
+    For,
+    Function,
+    If,
+    Load,
+    LValue,
+    Not,
+    RegisterLoad,
+    Return,
+    Stmt,
+    Switch,
+    Variable,
+    While,
+)  # fmt: skip
+from emulator.c28x.tree_queries import (
+    NamedScalar,
+    bare,
+    named_scalar,
+    own_nodes,
+    parts,
+    source_text,
+    statements,
+)
+
+#: Through how many objects and functions an index is followed.
+_DEEPEST: Final = 4
+
+
+class _Reach(NamedTuple):
+    """The largest value of an index, and the remainder or mask that allows it (None: a constant)."""
+
+    high: int
+    by: Binary | None
+
+
+def check_tables(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
+    """Report subscripts that a remainder or a mask lets go beyond the end of a table."""
+    program = _Program([function for module in modules for function in module.functions])
+    for module, report in reports.items():
+        for function in module.functions:
+            program.check(function, report)
+
+
+class _Program:
+    """What the objects of a program get, and which of them it tests."""
+
+    def __init__(self, functions: list[Function]) -> None:
+        #: Scalar -> the values that statements give to it; None among them: it gets others too.
+        self._given: dict[NamedScalar, list[Expr | None]] = {}
+        self._results: dict[str, list[Expr | None]] = {}
+        self._tested: set[NamedScalar] = set()
+        for function in functions:
+            for parameter in function.parameters:
+                self._given[parameter, 0] = [None]
+            for s in statements(function.body):
+                self._take(function, s)
+
+    def _take(self, function: Function, s: Stmt) -> None:
+        match s:
+            case Assign(target=LValue() as target, value=value) if (scalar := named_scalar(target)) is not None:
+                self._given.setdefault(scalar, []).append(value)
+            case Declare(variable=variable, value=Expr() as value):
+                self._given.setdefault((variable, 0), []).append(value)
+            case For(counter=counter):
+                self._given.setdefault((counter, 0), []).append(None)
+            case Return(value=value):
+                self._results.setdefault(function.path, []).append(value)
+        nodes = own_nodes(s)
+        for p in nodes:
+            if isinstance(p, AddressOf) and (scalar := named_scalar(p.lvalue)) is not None:
+                self._given.setdefault(scalar, []).append(None)
+        for test in _tests(s, nodes):
+            self._tested |= {scalar for p in parts(test) if isinstance(p, LValue) and (scalar := named_scalar(p))}
+
+    def check(self, function: Function, report: StaticReport) -> None:
+        """Report the subscripts of one function."""
+        texts: set[str] | None = None
+        for s in statements(function.body):
+            nodes = own_nodes(s)
+            pointed = {id(p.lvalue) for p in nodes if isinstance(p, AddressOf)}
+            for lvalue in nodes:
+                if not isinstance(lvalue, LValue) or not isinstance(lvalue.root, Variable):
+                    continue
+                for index in lvalue.indices:
+                    reach = self._reach(index.expr) if index.bound else None
+                    behind = 1 if id(lvalue) in pointed else 0  # a pointer just behind the end may be meant
+                    if reach is None or reach.by is None or index.bound is None or reach.high < index.bound + behind:
+                        continue
+                    if texts is None:
+                        texts = _tested_texts(function)
+                    if reach.by.op == "%" or not texts & _read(index.expr):
+                        self._report(function, s, lvalue, index.expr, index.bound, reach, report)
+
+    @staticmethod
+    def _report(
+        function: Function, s: Stmt, lvalue: LValue, index: Expr, bound: int, reach: _Reach, report: StaticReport
+    ) -> None:  # fmt: skip
+        assert isinstance(lvalue.root, Variable)
+        assert reach.by is not None
+        name, text = lvalue.root.declaration, source_text(index)
+        why = "" if bare(index) == reach.by else f", by {source_text(reach.by)}"
+        message = f"{text} may be {reach.high}{why}, and {lvalue.text or name.name} has only {bound} elements there"
+        report.report(
+            function, s.where, "table-short", message, object=name.path, declaration=name, value=reach.high
+        )  # fmt: skip
+
+    def _reach(self, e: Expr, depth: int = 0) -> _Reach | None:
+        """How far an index reaches; None: not known."""
+        if not isinstance(e.ctype, IntType) or depth > _DEEPEST:
+            return None
+        match e:
+            case Const(value=int(value)):
+                return _Reach(value, None)
+            case Convert(operand=operand):
+                inner = self._reach(operand, depth)
+                return inner if inner is not None and inner.high <= e.ctype.high else None
+            case Binary(op="%", right=Const(value=int(count))) if count > 0:
+                return _Reach(min(count - 1, interval(e, {})[1]), e)
+            case Binary(op="&", left=left, right=Const(value=int(mask))) if mask > 0 and not mask & mask + 1:
+                return _Reach(min(mask, _most(left)), e)
+            case Load(lvalue=lvalue) if (scalar := named_scalar(lvalue)) is not None and scalar not in self._tested:
+                return self._furthest(self._given.get(scalar, []), depth + 1)
+            case Call(function=function):
+                return self._furthest(self._results.get(function.path, []), depth + 1)
+        return None
+
+    def _furthest(self, values: list[Expr | None], depth: int) -> _Reach | None:
+        reached = [self._reach(value, depth) if value is not None else None for value in values]
+        known = [reach for reach in reached if reach is not None]
+        return max(known, key=lambda reach: reach.high) if known and len(known) == len(values) else None
+
+
+def _most(e: Expr) -> int:
+    """The largest value of the operand of a mask; of one that may be negative, all its bits."""
+    low, high = interval(e, {}) if isinstance(e.ctype, IntType) else (-1, 0)
+    return high if low >= 0 else 0xFFFF_FFFF
+
+
+def _tests(s: Stmt, nodes: Iterable[Any]) -> list[Expr]:
+    """What a statement decides by."""
+    found: list[Expr] = [p for p in nodes if isinstance(p, Compare | Not)]
+    found += [p.test for p in nodes if isinstance(p, Conditional)]
+    match s:
+        case If(test=test) | While(test=test) | Switch(subject=test):
+            found.append(test)
+    return found
+
+
+def _tested_texts(function: Function) -> set[str]:
+    """The text of each object and register by which a function decides."""
+    found: set[str] = set()
+    for s in statements(function.body):
+        for test in _tests(s, own_nodes(s)):
+            found |= _read(test)
+    return found
+
+
+def _read(e: Expr) -> set[str]:
+    return {source_text(p) for p in parts(e) if isinstance(p, Load | RegisterLoad)}
