@@ -152,7 +152,11 @@ others.
         """
 One half of something is there, and the other half has been forgotten or removed.
 
-* A `static` integer that begins with 0 is tested, and no statement writes it: what counted the events is gone.
+* A `static` integer that begins with 0 is tested or computed with, and no statement writes it: what counted the events
+  is gone. (If it is only computed with, it may be volatile, or an offset, a gain, a trim by its name.)
+* A member says by its name that the others of its structure are valid (`limit.valid = 1`, `fresh`, `online`). It is set
+  beside data that come again and again, tested elsewhere, and never taken back: when the sender falls silent, the last
+  data hold for ever. Not reported if the age of the data is known by anything else: a stamp, a count, what is set back.
 * A `static` integer is counted and set back, and nothing reads it: the test of it is missing.
 * A value of an enumeration has a case, or is asked for, and no statement gives it to its object: the way into this
   state is missing.

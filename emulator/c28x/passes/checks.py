@@ -16,6 +16,7 @@ from emulator.c28x.passes.decided import check_decided
 from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.masked import check_masked
 from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
+from emulator.c28x.passes.never_back import check_never_back
 from emulator.c28x.passes.null_tests import NullTests
 from emulator.c28x.passes.one_sided import check_one_sided
 from emulator.c28x.passes.report import StaticFinding, StaticReport
@@ -74,6 +75,7 @@ def check(
     States(modules, entries, stamps).check(reports)
     check_begun_again(modules, reports)
     check_one_sided(modules, reports)
+    check_never_back(modules, reports)
     check_tables(modules, reports)
     owners = {function: report for module, report in reports.items() for function in module.functions}
     for function, s, stamp, against in stamps.cuts():

@@ -2,7 +2,7 @@
 
 The check needs a whole program (one with a `main`), because it must see all statements.
 
-* A `static` integer that begins with 0 is tested, and no statement writes it.
+* A `static` integer that begins with 0 is tested or computed with, and no statement writes it.
 * A `static` integer is counted and set back, and nothing but its own count reads it.
 * A state has a case, or is asked for, and no statement gives it to its object.
 
@@ -25,9 +25,11 @@ from emulator.c28x.tree import (
     Assign,
     Compare,
     Conditional,
+    Evaluate,
     Expr,
     Function,
     If,
+    Load,
     LValue,
     Stmt,
     Switch,
@@ -48,6 +50,8 @@ from emulator.c28x.tree_queries import (
 
 #: Names of objects that are set by hand, with a debugger.
 _BY_HAND: Final = re.compile(r"debug|test|sim|trace|verbose|enable|option|config|dbg", re.IGNORECASE)
+#: Names of numbers that stay 0 until somebody measures them: they are no defect where they are only computed with.
+_ADJUSTED: Final = re.compile(r"offset|trim|cal|gain|bias|corr|adjust|default|scale|factor|zero", re.IGNORECASE)
 _STATIC: Final = re.compile(r"\bstatic\b")
 
 
@@ -82,15 +86,27 @@ def check_one_sided(modules: Iterable[Module], reports: dict[Module, StaticRepor
 
 
 def _never_written(variable: Variable, functions: list[Function], report: StaticReport) -> None:
-    """Report the first test of an object that is always 0."""
+    """Report the first test of an object that is always 0; if none tests it, the first use of its value."""
+    used: tuple[Function, Stmt] | None = None
+    name = variable.declaration
     for function in functions:
         for s in statements(function.body):
             for test in _tests(s):
-                if any(isinstance(p, LValue) and p.root is variable for p in parts(test)):
-                    name = variable.declaration
+                if _mentions(test, variable):
                     message = f"no statement writes {name.name}: it is always 0 in {source_text(test)}"
                     report.report(function, s.where, "one-sided", message, object=name.path, declaration=name)
                     return
+            if used is None and _computes_with(s, variable):
+                used = function, s
+    if used is not None and not variable.volatile and not _ADJUSTED.search(name.name):
+        message = f"no statement writes {name.name}: it is always 0 here"
+        report.report(used[0], used[1].where, "one-sided", message, object=name.path, declaration=name)
+
+
+def _computes_with(s: Stmt, variable: Variable) -> bool:
+    """Whether a statement uses the value of an object; `(void) x;` does not."""
+    named_alone = isinstance(s, Evaluate) and isinstance(bare(s.value), Load)
+    return not named_alone and any(_mentions(root, variable) for root in roots(s))
 
 
 def _tests(s: Stmt) -> Iterator[Expr]:

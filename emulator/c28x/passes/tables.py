@@ -63,13 +63,13 @@ class _Reach(NamedTuple):
 
 def check_tables(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
     """Report subscripts that a remainder or a mask lets go beyond the end of a table."""
-    program = _Program([function for module in modules for function in module.functions])
+    indices = _Indices([function for module in modules for function in module.functions])
     for module, report in reports.items():
         for function in module.functions:
-            program.check(function, report)
+            indices.check(function, report)
 
 
-class _Program:
+class _Indices:
     """What the objects of a program get, and which of them it tests."""
 
     def __init__(self, functions: list[Function]) -> None:

@@ -46,8 +46,8 @@ STATIC = (
     *(
         f"emulator/c28x/passes/{name}.py"
         for name in (
-            "anew", "begun_again", "blocks", "checks", "copies", "decided", "flow", "formats", "names", "null_tests",
-            "one_sided", "states", "stores", "tables", "values", "waiting",
+            "anew", "begun_again", "blocks", "checks", "copies", "decided", "flow", "formats", "names", "never_back",
+            "null_tests", "one_sided", "states", "stores", "tables", "values", "waiting",
         )
     ),
     "emulator/c28x/build/", "emulator/c28x/readers/",

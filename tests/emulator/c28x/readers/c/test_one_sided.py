@@ -77,6 +77,96 @@ def test_an_object_that_somebody_else_may_write_is_silent(tmp_path: Path, given:
     assert told(tmp_path, **given) == []
 
 
+def used(folder: Path, use: str, *, name: str = "number", storage: str = "static", write: str = "") -> list[int]:
+    """The lines at which a program that never tests an object is told `one-sided`."""
+    lines = [
+        "typedef unsigned int Uint16;", f"{storage} Uint16 number = 0;", "volatile Uint16 Sent, Raw;",
+        "void Send(Uint16 a, Uint16 b) { Sent = a | b << 8; }", f"int main(void) {{ for (;;) {{ {write}", use, "} }",
+    ]  # fmt: skip
+    file = folder / "a.c"
+    file.write_text("\n".join(lines).replace("number", name) + "\n", encoding="utf-8")
+    return [f.place.line for f in Build([str(file)]).compiled.findings if f.rule == "one-sided"]
+
+
+@pytest.mark.parametrize("use", [
+    "Send(Raw, number & 15);", "Sent = Raw << 4 | number;", "{ Uint16 n = number; Sent = n; }",
+])  # fmt: skip
+def test_an_object_that_goes_out_and_that_nobody_writes_is_told(tmp_path: Path, use: str) -> None:
+    assert used(tmp_path, use) == [6]
+
+
+@pytest.mark.parametrize("given", [
+    {"write": "number++;"}, {"storage": ""}, {"storage": "static volatile"}, {"storage": "static const"},
+    {"name": "zeroOffset"}, {"name": "testWord"}, {"use": "(void) number; Sent = 1;"}, {"use": "Sent = *&number;"},
+])  # fmt: skip
+def test_an_object_that_is_written_or_adjusted_by_hand_is_silent(tmp_path: Path, given: dict[str, str]) -> None:
+    assert used(tmp_path, **{"use": "Send(Raw, number & 15);", **given}) == []
+
+
+LINK = """typedef unsigned int Uint16;
+typedef struct {{ Uint16 most, speed, {more}valid; }} LIMIT;
+LIMIT Limit{start};
+volatile Uint16 Word, Ms, Out, Age;
+{helper}
+interrupt void Came(void)
+{{
+    if (Word & 1)
+    {{
+        {set}
+    }}
+}}
+int main(void)
+{{
+    for (;;)
+    {{
+        {back}
+        {test}
+    }}
+}}
+"""
+ENDLESS: dict[str, str] = {
+    "more": "", "start": "", "helper": "", "set": "Limit.most = Word >> 1; Limit.valid = 1;", "back": "",
+    "test": "Out = Limit.valid ? Limit.most : 0;",
+}  # fmt: skip
+
+
+def link(folder: Path, **given: str) -> list[int]:
+    """The lines at which a program with received limits is told `one-sided`."""
+    file = folder / "a.c"
+    file.write_text(LINK.format(**{**ENDLESS, **given}), encoding="utf-8")
+    return [f.place.line for f in Build([str(file)]).compiled.findings if f.rule == "one-sided"]
+
+
+@pytest.mark.parametrize("given", [
+    {},
+    {"test": "if (!Limit.valid) Out = 9; else Out = Limit.most;"},
+    {"test": "{ LIMIT mine; mine = Limit; if (mine.valid) Out = mine.most; }"},
+    {"set": "Limit.speed = Word & 7; Limit.most = Word >> 4; Limit.valid = 1;"},
+])  # fmt: skip
+def test_a_mark_of_data_that_nothing_takes_back_is_told(tmp_path: Path, given: dict[str, str]) -> None:
+    assert link(tmp_path, **given) == [10]
+
+
+@pytest.mark.parametrize("given", [
+    {"back": "if (Age > 100) Limit.valid = 0;"},
+    {"back": "if (Age > 100) { LIMIT none = {0, 0, 0}; Limit = none; }"},
+    {"back": "Kill(&Limit);", "helper": "static void Kill(LIMIT *l) { l->valid = 0; }"},
+    {"back": "Kill(&Limit.valid);", "helper": "static void Kill(Uint16 *v) { *v = 0; }"},
+    # The age is known by a stamp, by a count that is set back, by a count in the structure.
+    {"more": "ms, ", "set": "Limit.most = Word >> 1; Limit.ms = Ms; Limit.valid = 1;",
+     "test": "Out = Limit.valid && Ms - Limit.ms < 100 ? Limit.most : 0;"},
+    {"set": "Limit.most = Word >> 1; Age = 0; Limit.valid = 1;"},
+    {"more": "count, ", "set": "Limit.most = Word >> 1; Limit.count = Limit.count + 1; Limit.valid = 1;"},
+    # Once: under a test of the mark; a constant beside it; in main, before its loop; nothing tests it.
+    {"set": "if (!Limit.valid) { Limit.most = Word >> 1; Limit.valid = 1; }"},
+    {"set": "Limit.most = 5; Limit.valid = 1;"},
+    {"test": "Out = Limit.most;"},
+    {"start": " = {5, 5, 1}"},
+])  # fmt: skip
+def test_a_mark_that_is_taken_back_or_beside_an_age_is_silent(tmp_path: Path, given: dict[str, str]) -> None:
+    assert link(tmp_path, **given) == []
+
+
 @pytest.mark.parametrize("count", [
     "dry = Raw > 9 ? dry + 1 : 0;", "if (Raw > 9) dry++; else dry = 0;", "if (Raw > 9) dry += 2; if (Raw < 9) dry = 0;",
 ])  # fmt: skip
