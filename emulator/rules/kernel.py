@@ -53,6 +53,22 @@ Host tools see nothing: the host has none of these threads and locks.
 """, "BIOS, Task and Swi scheduling; TFG 3.1.5",
     ),
     _rule(
+        "published-early", Severity.WARNING,
+        "The index of a ring is written before the element that it guards.", """
+Rarely, an old character is sent in place of a new one.
+
+`main` fills a ring and an interrupt routine empties it: `ringIn = next; ring[old] = c;`. The routine compares `ringIn`
+with its own index. If it comes between the two statements, it takes an element that is not there yet. No mask is needed
+if the element is written first.
+
+The check reads the source of a whole program without a kernel. Not reported: a function that has switched interrupts
+off before (`DINT`, `..._disableInterrupt`, an enable bit), or whose caller has; an index that is written again behind
+the element; `ring[in++] = c`, whose order C leaves to the compiler.
+
+**Fix:** `ring[ringIn] = c; ringIn = next;`, both objects volatile.
+""", "ISO C 5.1.2.3 p2", how="static",
+    ),
+    _rule(
         "unmasked-long", Severity.NOTE,
         "main and an interrupt routine share a 32-bit scalar, and the interrupt is not masked.", """
 `main` and an interrupt routine share a 32-bit value, and `main` does not mask the interrupt while it uses it.

@@ -19,6 +19,7 @@ from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_na
 from emulator.c28x.passes.never_back import check_never_back
 from emulator.c28x.passes.null_tests import NullTests
 from emulator.c28x.passes.one_sided import check_one_sided
+from emulator.c28x.passes.published import check_published
 from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.stamps import Stamps
 from emulator.c28x.passes.states import States
@@ -77,6 +78,7 @@ def check(
     check_one_sided(modules, reports)
     check_never_back(modules, reports)
     check_tables(modules, reports)
+    check_published(modules, reports)
     owners = {function: report for module, report in reports.items() for function in module.functions}
     for function, s, stamp, against in stamps.cuts():
         name = source_text(stamp)

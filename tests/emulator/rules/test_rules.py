@@ -47,7 +47,7 @@ STATIC = (
         f"emulator/c28x/passes/{name}.py"
         for name in (
             "anew", "begun_again", "blocks", "checks", "copies", "decided", "flow", "formats", "names", "never_back",
-            "null_tests", "one_sided", "states", "stores", "tables", "values", "waiting",
+            "null_tests", "one_sided", "published", "states", "stores", "tables", "values", "waiting",
         )
     ),
     "emulator/c28x/build/", "emulator/c28x/readers/",
