@@ -380,6 +380,10 @@ A Clock function releases the task through a semaphore. The job lasts until the 
 is the period. The value is the longest response time in microseconds, from the release to the end of the job. The
 details list the CPU time of the other threads. The place is the statement of the task at its next release.
 
+A job ends, too, where the task waits without a time-out for another thing: a message, an event, a semaphore that begins
+at 0. It waits for its next order, and the Clock function may go on posting. A gate, or a semaphore that begins above 0
+(a mutex), does not end a job.
+
 **Fix:** less work, a longer period, a higher priority, or no busy wait above it.
 """, "TFG 3.4: response times against periods",
     ),

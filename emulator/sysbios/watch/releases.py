@@ -1,7 +1,9 @@
 """Releases of periodic tasks: `semaphore-pile-up`, `deadline`.
 
 A release is a post from a Clock function.  It releases the task that pends on the semaphore.  A job lasts from the pend
-that takes the release to the next pend on the same semaphore.  The deadline is the period.
+that takes the release to the next pend on the same semaphore.  The deadline is the period.  A task that waits without a
+timeout for a message, an event or another semaphore that nobody had filled has no job: it waits for its next order,
+while the Clock function goes on posting.
 """
 
 from __future__ import annotations
@@ -14,7 +16,10 @@ from typing import Any, Final
 from emulator.c28x.findings import Finding, Findings
 from emulator.clock import CYCLES_PER_US, SYSCLK_HZ, ms, us
 from emulator.sysbios.clock import ClockObject
-from emulator.sysbios.scheduler import TERMINATED, Task
+from emulator.sysbios.core import WAIT_FOREVER
+from emulator.sysbios.event import Event
+from emulator.sysbios.mailbox import Mailbox
+from emulator.sysbios.scheduler import BLOCKED, TERMINATED, Task
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.names import HandleNames
@@ -29,6 +34,8 @@ _FORGOTTEN: Final = 32
 _FORGOTTEN_CYCLES: Final = SYSCLK_HZ // 100
 #: At most this many releases are kept for one semaphore.
 _KEPT: Final = 10_000
+#: What a task can wait for as its next order.
+Order = Semaphore | Mailbox | Event
 
 
 @dataclass(slots=True)
@@ -70,11 +77,15 @@ class Releases:
         self._findings = findings
         self._clock = findings.clock
         self._sources: dict[Semaphore, SemaphoreState] = {}
+        #: What each task waits for without end, in a pend that has not returned.
+        self._orders: dict[Thread, Order] = {}
         calls.after("Semaphore_create", callback=self._create)
         calls.before("Semaphore_post", callback=self._posting)
         calls.after("Semaphore_post", callback=self._posted)
         calls.before("Semaphore_pend", callback=self._pending)
         calls.after("Semaphore_pend", callback=self._pended)
+        calls.before("Semaphore_pend", "Mailbox_pend", "Event_pend", callback=self._orders_pending)
+        calls.after("Semaphore_pend", "Mailbox_pend", "Event_pend", callback=self._orders_pended)
 
     def period(self, thread: Thread) -> int:
         """Cycles between the releases of a task; 0 if it has none."""
@@ -98,6 +109,11 @@ class Releases:
         if not isinstance(timer, ClockObject) or not timer.period:
             return
         source.period = timer.period * self._threads.kernel.clocks.tick_period_us * CYCLES_PER_US
+        if source.consumer is not None and self._waits_for_order(source.consumer, semaphore):
+            # The job of the last release ended before this wait, and this post begins none.
+            source.job, source.late = None, False
+            source.releases.clear()
+            return
         if source.consumer is not None and not semaphore.waiters and (source.job is not None or source.releases):
             self._report_miss(semaphore, source, source.consumer)
         if len(source.releases) < _KEPT:
@@ -136,6 +152,23 @@ class Releases:
                 if source.missed is not None:
                     source.missed.count = semaphore.count - 1
         self._job_done(source)
+
+    def _waits_for_order(self, thread: Thread, semaphore: Semaphore) -> bool:
+        """Whether the task waits without end for another object than `semaphore`, and not for what it shares."""
+        task, order = thread.what, self._orders.get(thread)
+        if not isinstance(task, Task) or task.mode != BLOCKED or order is None or order is semaphore.event:
+            return False
+        # The count of a mutex or of a pool begins above 0: it comes back, and the job goes on.
+        return order is not semaphore and not (isinstance(order, Semaphore) and self._source(order).initial)
+
+    def _orders_pending(self, order: Order, *arguments: int) -> None:
+        """A task begins to wait: keep for what, if it waits without end."""
+        thread = self._threads.current
+        if thread.is_task and arguments[-1] & WAIT_FOREVER == WAIT_FOREVER:
+            self._orders[thread] = order
+
+    def _orders_pended(self, *_arguments: Any) -> None:
+        self._orders.pop(self._threads.current, None)
 
     def _pended(self, taken: int, semaphore: Semaphore, timeout: int) -> None:
         source = self._source(semaphore)

@@ -247,6 +247,74 @@ def busy() -> void:
     assert "deadline" in found(source.format(call="Semaphore_post(semA)"), 42)
 
 
+#: High gets an order each 40 ticks, then works in three steps of 2 ticks; the Clock function posts all the time.
+ORDERS = """
+# drv.c: High
+def High(a0: UArg, a1: UArg) -> void:
+    n: int16
+    key: IArg
+    while 1:
+        {order}
+        while Semaphore_pend(semA, BIOS_NO_WAIT):
+            pass
+        for n in range(3):
+            DelayUs({work})
+            Semaphore_pend(semA, BIOS_WAIT_FOREVER)
+
+# drv.c: Low
+def Low(a0: UArg, a1: UArg) -> void:
+    key: IArg
+    while 1:
+        {give}
+
+def main() -> void:
+    binary: Semaphore_Params
+    objects()
+    Semaphore_Params_init(addressof(binary))
+    binary.mode = Semaphore_Mode_BINARY
+    semA = Semaphore_create(0, addressof(binary), NULL)
+    semC = Semaphore_create({count}, NULL, NULL)
+    orders = Event_create(NULL, NULL)
+    task(High, 6)
+    task(Low, 2)
+    every(postA, 2, 2)
+    BIOS_start()
+"""
+GIVE = "Semaphore_post(semC)\n        Task_sleep(40)"
+TAKE_ORDER = "Semaphore_pend(semC, BIOS_WAIT_FOREVER)"
+EVENT = "orders: Event_Handle\n"
+
+
+@pytest.mark.parametrize(
+    ("order", "give", "work", "count", "rules"),
+    [
+        (TAKE_ORDER, GIVE, 300, 0, set()),
+        ("Event_pend(orders, 0, 1, BIOS_WAIT_FOREVER)", "Event_post(orders, 1)\n        Task_sleep(40)", 300, 0, set()),
+        # A step that takes longer than the period is late, whatever comes before the job.
+        (TAKE_ORDER, GIVE, 2700, 0, {"deadline"}),
+        # A wait that has an end belongs to the job; so does the wait for what another task holds.
+        ("Task_sleep(15)", "Task_sleep(40)", 300, 0, {"deadline"}),
+        ("Semaphore_pend(semC, 30)", GIVE, 300, 0, {"deadline"}),
+        (
+            f"{TAKE_ORDER}\n        Semaphore_post(semC)",
+            f"{TAKE_ORDER}\n        DelayUs(9000)\n        Semaphore_post(semC)\n        Task_sleep(9)",
+            300, 1, {"deadline"},
+        ),
+        (
+            "key = GateMutexPri_enter(gate)\n        GateMutexPri_leave(gate, key)",
+            "key = GateMutexPri_enter(gate)\n        DelayUs(9000)\n        GateMutexPri_leave(gate, key)\n"
+            "        Task_sleep(9)",
+            300, 0, {"deadline"},
+        ),
+    ],
+)  # fmt: skip
+def test_a_task_that_waits_for_its_next_order_has_no_job(
+    order: str, give: str, work: int, count: int, rules: set[str]
+) -> None:
+    source = EVENT + ORDERS.format(order=order, give=give, work=work, count=count)
+    assert found(source, 200) & {"deadline"} == rules
+
+
 def test_watching_does_not_change_the_run() -> None:
     """The detectors charge no time: the same specimen ends its jobs in the same cycle."""
     source = two_tasks("n: int16 = 0", "n = n + 1\nDelayUs(700)", "DelayUs(300)")
