@@ -18,12 +18,14 @@ from emulator.c28x.passes import frame
 from emulator.c28x.passes.checks import check
 from emulator.c28x.passes.costs import Costs
 from emulator.c28x.passes.feedback import reversed_errors
+from emulator.c28x.passes.fields import flag_scalars
 from emulator.c28x.passes.flow import Flow
 from emulator.c28x.passes.guards import Guards
 from emulator.c28x.passes.intervals import annotate_bounds
 from emulator.c28x.passes.pulses import pulses
 from emulator.c28x.passes.signs import signed_words
 from emulator.c28x.passes.stamps import Stamps
+from emulator.c28x.passes.sums import sums_of_samples, used_as_numbers
 from emulator.c28x.passes.taken import mark_copy_and_clear
 from emulator.c28x.passes.wind_up import wind_up
 from emulator.c28x.program import Program
@@ -60,6 +62,9 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
     regulators = wind_up(f for module in modules for f in module.functions) if options.watch else {}
     words = signed_words(f for module in modules for f in module.functions)
     words |= reversed_errors(f for module in modules for f in module.functions)
+    every = [f for module in modules for f in module.functions]
+    flags, numbers = flag_scalars(every), used_as_numbers(every)
+    sums = sums_of_samples(every, numbers)
     costs = Costs(float_division(options.float_division))
     owners: set[str] = set()
     functions = []
@@ -75,7 +80,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
             Guards(
                 function, watch=options.watch, ieee=options.ieee, room=options.room, compared=names_compared,
                 limited=names_limited, made_float=floats_made, in_a_range=in_a_range, stamps=suspicions,
-                pulses=cut_pulses, regulators=regulators, words=words,
+                pulses=cut_pulses, regulators=regulators, words=words, flags=flags, numbers=numbers, sums=sums,
             ).run()  # fmt: skip
             costs.leave(function)
             mark_copy_and_clear(function)

@@ -264,6 +264,7 @@ class Linked:
             "_c_oob_deep_load": runtime.oob_deep_load, "_c_oob_deep_store": runtime.oob_deep_store,
             "_c_stale": runtime.stale, "_c_wrapped": runtime.wrapped, "_c_octet": runtime.octet,
             "_c_no_case": runtime.no_case, "_c_narrowed": runtime.narrowed, "_c_quotient": runtime.quotient,
+            "_c_fields": runtime.fields,
             "_c_float_result": runtime.float_result, "_c_float_out": runtime.float_out,
             "_c_quantity": runtime.quantity, "_c_sign_lost": runtime.sign_lost,
             "_c_signed_word": runtime.signed_word, "_c_gone_back": runtime.gone_back,

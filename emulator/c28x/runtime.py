@@ -994,6 +994,21 @@ class Runtime:
         self.hit(site, "narrowed", message, value)
         return kept
 
+    def fields(self, value: int, terms: list[int], number: int) -> int:
+        """An OR of shifted fields, of which two have a bit in common."""
+        site = self.sites[number]
+        ctype = site.ctype
+        assert isinstance(ctype, IntType)
+        mask = (1 << ctype.bits) - 1
+        for lower, upper in site.dimensions:
+            common = terms[lower] & terms[upper] & mask
+            if common:
+                low, high = site.constants[lower][1], site.constants[upper][1]
+                message = f"{low} is {terms[lower] & mask:#x}: its bits {common:#x} are also those of {high}"
+                self.hit(site, "fields-overlap", f"{message}, which is {terms[upper] & mask:#x}", value)
+                break
+        return value
+
     def parsed(self, value: int, number: int) -> int:
         """The result of an `atoi` that is widened: the text may hold a larger number."""
         whole = self.parsed_number

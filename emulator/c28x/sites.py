@@ -55,6 +55,7 @@ class Site:
     text: str = ""
     #: An array element: (length, stride in words) of each subscript; `word` is the word within the innermost element.
     #: A switch: `bound` is the last constant of its enumeration, `word` the first.
+    #: An OR of fields: the pairs of terms that may meet.
     dimensions: tuple[tuple[int, int], ...] = ()
     word: int = 0
     #: An element of a local: the frame of its function, and the word of the frame at which the array begins.
@@ -70,7 +71,8 @@ class Site:
     kind: str = ""
     #: The result is an unsigned difference of two variables.
     difference: bool = False
-    #: A switch: the constants of its enumeration without a case, with their names.
+    #: A switch: the constants of its enumeration without a case, with their names.  An OR of fields: the shift of each
+    #: term, with its text.
     constants: tuple[tuple[int, str], ...] = ()
     #: A read of a value never written: the switches that have no case for the value if it happens.
     caseless: frozenset[Where] = frozenset()

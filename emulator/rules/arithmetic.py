@@ -83,7 +83,8 @@ both sides have 32 bits.
 
 A cast says that the value fits or that only the lower half is wanted, so it is not reported. The exception is a
 product, also one that is divided or shifted down (`(int) ((long) a * b >> 15)`): it is meant to fit, so its loss is
-reported despite the cast.
+reported despite the cast. A capture of an eCAP (32 bits) that goes to a `Uint16` and is divided later is reported too;
+other registers, and differences of captures, may be cut on purpose.
 
 **Fix:** make the object `long`, or limit the value before the assignment.
 """,
@@ -102,7 +103,8 @@ division, a shift to the right or a comparison by order does not. These wraps ar
 
 * a result that is then divided, shifted down or compared by order; a product that is shifted down, unless a large odd
   factor shows that it is a hash;
-* a sum of samples that is divided later (at the addition that wraps);
+* a sum of samples that is divided later (at the addition that wraps); also a global or `static` one that is taken and
+  then begins again at 0, and through copies; not if it is masked or compared for equality, as check sums are;
 * the step of a loop whose test compares the object (a count that goes down by two misses 0);
 * the step of an object that is limited above (below 0 it wraps and becomes the limit);
 * a difference of two 16-bit numbers that goes into a `long`, if one of them has wrapped;
@@ -217,6 +219,25 @@ its highest bit (`(crc >> 1) ^ 0xA001`) says that it holds bits and no number. A
 **Fix:** `Uint16` for words that have no sign, on both sides.
 """,
         "ISO C 6.3.1.3 p3; CC table 6-1",
+    ),
+    _rule(
+        "fields-overlap",
+        Severity.WARNING,
+        "A field of a word has bits in the place of the next field.",
+        """
+A message carries wrong values in two fields at once.
+
+In `torque | percent << 16 | info << 24` a percent of 500 sets bits of `info`, for an OR only adds bits. A negative
+`torque` is worse: it is widened with its sign, so that all bits above it are 1.
+
+The finding is made while the program runs, where a bit of one field meets a bit of another one that a constant shifts
+further to the left. It is not made for two terms of the same object (`x | x << 1`), constants, masks (`x & ~0xF0`),
+registers, and flags (an object that some statement ORs into); nor for a word of two terms of which one is shifted by
+less than four bits.
+
+**Fix:** mask each field to its width, and convert signed numbers to `Uint16` first: `(Uint32)(Uint16)torque`.
+""",
+        "ISO C 6.5.12; 6.3.1.3 p2",
     ),
     _rule(
         "octet",

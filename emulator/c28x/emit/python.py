@@ -26,6 +26,7 @@ from emulator.c28x.emit.lines import Begin, Charge, EmittedLine, Exit, Item, Lin
 from emulator.c28x.emit.names import FunctionNames, escaped, local_name, object_name
 from emulator.c28x.emit.written import FIRST_NUMBER, EmittedFunction
 from emulator.c28x.passes.costs import CALL, TURN, Costs
+from emulator.c28x.passes.fields import or_terms
 from emulator.c28x.passes.guards import (
     cut_to_int,
     mathematical_bounds,
@@ -924,6 +925,8 @@ class PythonWriter:
 
     def binary(self, e: Binary) -> str:
         ctype, op = e.ctype, e.op
+        if e.guard is not None and e.guard.kind == "fields":
+            return self.fields(e, e.guard)
         left, right = self.value(e.left), self.value(e.right)
         if isinstance(ctype, FloatType):
             return self.float_operation(e, left, right)
@@ -938,6 +941,16 @@ class PythonWriter:
         if op in "&|^" or op == ">>":
             return f"({left} {op} {right})"
         return self.fitted(f"({left} {op} {right})", e, e.exact)
+
+    def fields(self, e: Binary, guard: Guard) -> str:
+        """The text of an OR whose fields must not meet."""
+        self.fresh += 1
+        terms = [self.value(term) for term in or_terms(e)]
+        names = [f"_w{self.fresh}_{i}_" for i in range(len(terms))]
+        whole = " | ".join(f"({name} := {text})" for name, text in zip(names, terms, strict=True))
+        tests = " or ".join(f"{names[a]} & {names[b]}" for a, b in guard.site.dimensions)
+        told = f"_c_fields(_t, [{', '.join(names)}], {self.number(guard)})"
+        return f"({told} if (_t := {whole}) and ({tests}) else _t)"
 
     def shift(self, e: Binary, ctype: IntType, left: str, right: str) -> str:
         """The text of a shift whose count may be out of range."""

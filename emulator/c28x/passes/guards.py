@@ -12,6 +12,7 @@ Kinds of guards:
 |---|---|---|
 | `overflow` | signed + - * << and negation | the result fits its type |
 | `wrapped` | unsigned + - * << | the mathematical value is the wrapped one |
+| `fields` | OR of shifted objects (pass `fields`) | no field has bits in the place of another |
 | `divide`, `modulo`, `quotient` | / and % | the divisor is not 0; no needed remainder is lost |
 | `shift` | << and >> | the count is in range |
 | `float` | float operations of a watched image | no NaN or infinity arises; `more` is the check of a division |
@@ -59,6 +60,7 @@ from emulator.c28x.ctypes import (
     PointerType,
     StructType,
 )
+from emulator.c28x.passes.fields import meeting, or_terms, shift_of
 from emulator.c28x.passes.intervals import LONGEST, RING, bounds_of, combine
 from emulator.c28x.passes.signs import SignedWord
 from emulator.c28x.passes.wind_up import RegulatorPart
@@ -127,6 +129,8 @@ SCALES: Final = (10, 100, 1000, 10000)
 _HASH: Final = 4095
 #: CHOICE: a difference of 32 bits without a sign above this one is a small negative one, and no time.
 LAST_TIME: Final = 0xFFFF_FFFF - 4096
+#: The captures of an eCAP.
+CAPTURES: Final = ("CAP1", "CAP2", "CAP3", "CAP4")
 CHARACTERS: Final = (CHAR.name, SCHAR.name, UCHAR.name)
 #: Fields that hold a quantity, a level or a number: nobody intends a value that does not fit.  Fields for a phase (it
 #: is cyclic), an octet (the lower part of a word) or a flag (a truth value) are not among them.
@@ -149,13 +153,15 @@ class Guards:
     of that of its type; `compared`: variables that occur in a comparison or a subscript; `limited`: unsigned variables
     that some function limits; `made_float`: unsigned scalars that some function makes floats of; `in_a_range`: scalars
     that some function compares by order with a constant; `stamps`: the suspicions of pass `stamps`; `pulses`: the
-    result of pass `pulses`; `regulators`, `words`: those of passes `wind_up` and `signs`.
+    result of pass `pulses`; `regulators`, `words`: those of passes `wind_up` and `signs`; `flags`: scalars that hold
+    flags; `numbers`, `sums`: scalars used as numbers, and the assignments that add samples (pass `sums`).
     """
 
     def __init__(
         self, function: Function, *, watch: bool, ieee: bool, room: Mapping[str, int], compared: Set[Variable],
         limited: Set[Variable], made_float: Set[NamedScalar], in_a_range: Set[NamedScalar], stamps: Mapping[int, str],
         pulses: Mapping[int, str], regulators: Mapping[int, RegulatorPart], words: Mapping[int, SignedWord],
+        flags: Set[NamedScalar], numbers: Set[NamedScalar], sums: Set[int],
     ) -> None:  # fmt: skip
         self.function = function
         self.watch = watch
@@ -169,6 +175,12 @@ class Guards:
         self.pulses = pulses
         self.regulators = regulators
         self.words = words
+        self.flags = flags
+        self.numbers = numbers
+        self.sums = sums
+        #: The object that the statement assigns to; the ORs within one that is checked.
+        self.assigned: LValue | None = None
+        self.composed: set[int] = set()
         self.where = function.where
         self.frame = StackFrame(
             function.path,
@@ -187,6 +199,7 @@ class Guards:
         """Decide for the whole function."""
         for s in statements(self.function.body):
             self.where = s.where
+            self.assigned = s.target if isinstance(s, Assign) and isinstance(s.target, LValue) else None
             self.statement(s)
             self.follow_parts(s)
         self.where = self.function.where
@@ -223,12 +236,15 @@ class Guards:
                 if isinstance(target, LValue):
                     if id(s) in self.stepped:
                         self.unwrapped(value, "unsigned-wrap", "is compared by the loop around it")
+                    elif id(s) in self.sums:
+                        self.unwrapped(value, "unsigned-wrap", "is divided or widened further down")
                     else:
                         self.sum_value(target, value)
                     self.leaves_for_all(target.root, value)
                     if not target.indices:
                         self.limited_later(target.root, value)
                         self.float_later(target, value)
+                        self.cut_capture(target, value)
                     self.check_access(target)
                 else:
                     self.value(value)
@@ -331,6 +347,18 @@ class Guards:
         named = named_scalar(target)
         if named in self.made_float and named not in self.in_a_range:
             self.gone_back(value, "becomes a float later")
+
+    def cut_capture(self, target: LValue, value: Expr) -> None:
+        """Check a capture of 32 bits that an object of 16 bits takes without a cast, and that is divided later.
+
+        Other registers are cut on purpose: the lower half of a timer, the difference of two stamps.
+        """
+        match value:
+            case Convert(
+                ctype=IntType(signed=False, bits=16), explicit=False,
+                operand=RegisterLoad(register=RegisterRef(bits=32, field=None) as register) as read,
+            ) if register.register in CAPTURES and value.guard is None and named_scalar(target) in self.numbers:
+                value.guard = Guard("narrowed", self.site(value.ctype, source_text(read), at=value.where))
 
     def gone_back(self, e: Expr, then: str) -> None:
         """Check a difference of 32 bits of which 16 bits without a sign are kept, and become a float.
@@ -548,6 +576,8 @@ class Guards:
             self.float_operation(e)
             return
         assert isinstance(ctype, IntType)
+        if op == "|":
+            self.fields(e)
         if op == "*" and isinstance(e.right, Const) and e.right.value in SCALES:
             quotient = bare(e.left)
             if isinstance(quotient, Binary) and quotient.op == "/" and not isinstance(quotient.right, Const):
@@ -578,6 +608,18 @@ class Guards:
                 self.fits(e, ctype, e.exact, "shift")
         elif op in RING:
             self.fits(e, ctype, e.exact)
+
+    def fields(self, e: Binary) -> None:
+        """Check an OR of shifted fields that may have bits in each other's place."""
+        self.composed |= {id(side) for side in (e.left, e.right) if side.ctype == e.ctype}
+        if id(e) in self.composed:
+            return
+        pairs = meeting(e, self.flags, self.assigned)
+        if pairs:
+            terms = or_terms(e)
+            named = tuple((shift_of(term), source_text(term)) for term in terms)
+            site = self.site(e.ctype, source_text(e), at=e.where, dimensions=tuple(pairs), constants=named)
+            e.guard = Guard("fields", site)
 
     def float_operation(self, e: Binary) -> None:
         self.value(e.left)

@@ -350,4 +350,56 @@ def Use() -> int16:
     return int16(strlen(Motor.name))
 """,
     ),
+    Pair(
+        "unsigned-wrap",
+        "a sum that outlives its function wraps, and a copy of it is divided",
+        (("Sample", (40000,)), ("Sample", (30000,)), ("Begin", ()), ("Octets", (40000,))),
+        """
+Sum: uint16 = 0
+Count: uint16 = 0
+Whole: uint32 = 0
+def Sample(level: uint16) -> uint32:
+    Sum += level  # <-
+    Count += 1
+    if Count >= 4:
+        Whole = Sum
+        Sum = 0
+        Count = 0
+    return Whole / 4
+def Begin() -> uint16:
+    return 0
+def Octets(level: uint16) -> uint16:
+    return level
+""",
+        """
+Sum: uint32 = 0
+Check: uint16 = 0
+Ticks: uint16 = 0
+Phase: uint16 = 0
+Count: uint16 = 0
+Whole: uint32 = 0
+def Sample(level: uint16) -> uint32:
+    Sum += level
+    Check += level
+    Ticks += 40000
+    Count += 1
+    if Count >= 4:
+        Whole = Sum
+        Sum = 0
+        Count = 0
+    return Whole / 4 + Ticks / 1000
+def Tone(step: uint16) -> float32:
+    Phase += step
+    return Phase * 0.0001
+def Begin() -> float32:
+    Phase = 0
+    Tone(40000)
+    return Tone(40000)
+def Octets(level: uint16) -> uint16:
+    Check = 0
+    Ticks = 0
+    Sample(level)
+    return (Check >> 8) + (Check & 0xFF)
+""",
+    ),
 )

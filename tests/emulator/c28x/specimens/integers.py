@@ -703,4 +703,81 @@ def Next() -> int16:
     return bit
 """,
     ),
+    Pair(
+        "fields-overlap",
+        "a count of four digits in a field of eight bits",
+        (("Frame", (3, 300, 1)),),
+        """
+def Frame(mode: uint16, count: uint16, kind: uint16) -> uint32:
+    return uint32(mode) | uint32(count) << 8 | uint32(kind) << 16  # <-
+""",
+        """
+def Frame(mode: uint16, count: uint16, kind: uint16) -> uint32:
+    return uint32(mode) | uint32(count & 0xFF) << 8 | uint32(kind) << 16
+""",
+    ),
+    Pair(
+        "fields-overlap",
+        "a negative number is widened into the field above it",
+        (("Word", (-5, 9)),),
+        """
+def Word(offset: int16, gain: uint16) -> uint32:
+    word: uint32
+    word = uint32(offset) | uint32(gain) << 16  # <-
+    return word
+""",
+        """
+def Word(offset: int16, gain: uint16) -> uint32:
+    word: uint32
+    word = uint32(uint16(offset)) | uint32(gain) << 16
+    return word
+""",
+    ),
+    Pair(
+        "fields-overlap",
+        "a word of octets of which one has more bits",
+        (("Use", (0x1F2, 0x33)),),
+        """
+def Word(low: uint16, high: uint16) -> uint16:
+    return low | high << 8  # <-
+def Use(low: uint16, high: uint16) -> uint16:
+    return Word(low, high)
+""",
+        """
+Flags: uint16 = 0
+Octets: array[uint16, 2]
+def Smear(x: uint16) -> uint16:
+    x |= x << 4
+    x |= x << 8
+    return x
+def Turned(x: uint16) -> uint16:
+    return x << 5 | x >> 11
+def Marked(x: uint16) -> uint16:
+    Flags |= 0x120
+    return Flags | x << 8
+def Spread(x: uint16) -> uint16:
+    x = (x | x << 4) & 0x0F0F
+    x = (x | x << 2) & 0x3333
+    return (x | x << 1) & 0x5555
+def Both(a: uint16, b: uint16) -> uint16:
+    return Spread(a) | Spread(b) << 1
+def Pictures(a: uint16, b: uint16) -> uint16:
+    return a | b << 3
+def Kept(word: uint16, field: uint16) -> uint16:
+    return (word & 0xF0F0) | field << 8
+def Moved(octet: uint16) -> uint16:
+    Octets[0] = 0x1F2
+    Octets[0] |= octet << 8
+    return Octets[0]
+def Use(low: uint16, high: uint16) -> uint16:
+    Smear(low)
+    Turned(low)
+    Marked(high)
+    Both(0xFF, 0xFF)
+    Pictures(low, low)
+    Kept(0xFFFF, 0xF1)
+    Moved(high)
+    return (low & 0xFF) | high << 8
+""",
+    ),
 )
