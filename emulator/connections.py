@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import product
 from typing import Final
 
 from emulator.c28x.link import Linked
@@ -41,7 +42,7 @@ from emulator.chip import (
 )
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ
 from emulator.peripherals.can import REQUEST, WRITE
-from emulator.peripherals.can_objects import DIR, ID, MSGLST, MSGVAL, OBJECTS, RXIE, STANDARD_ID
+from emulator.peripherals.can_objects import DIR, EOB, ID, MSGLST, MSGVAL, OBJECTS, RXIE, STANDARD_ID, UMASK
 from emulator.peripherals.dma import CHANNELS as DMA_CHANNELS
 from emulator.peripherals.epwm_checks import CompareBeyondPeriod
 from emulator.peripherals.epwm_xbar import TRIPS as XBAR_TRIP_OUTPUTS
@@ -145,6 +146,7 @@ class Connections:
         self._loads()
         self._compares()
         self._compares_for_nobody()
+        self._compares_never_set()
         self._half_duties()
         self._outputs()
         self._driven_inputs()
@@ -1132,6 +1134,7 @@ class Connections:
                     self._report(place, "the message object that is set up here is not valid", missing, arbitration)
             self._messages(block, letter, commands)
             self._objects(block, letter, commands)
+            self._masks(block, letter)
             self._own_frames(block, letter)
             self._bit_rate(block, letter)
 
@@ -1201,6 +1204,40 @@ class Connections:
                     place, "not-connected", f"object {number} of {block}: {why}", object=f"{block}.{number}",
                     how="dynamic",
                 )  # fmt: skip
+
+    def _masks(self, block: str, letter: str) -> None:
+        """A message object with a mask that asks for no bit of an identifier of 11 bits: it takes every such frame.
+
+        Either its mask has bits below them, where only identifiers of 29 bits are, or an object behind it, with an
+        identifier of its own, has got nothing.
+        """
+        ram = self._chip.can[letter].ram
+        ours = [(n, ram[n]) for n in range(1, OBJECTS + 1) if ram[n].arbitration & MSGVAL and not ram[n].extended]
+        receiving = [(n, message) for n, message in ours if not message.arbitration & DIR]
+        for number, message in receiving:
+            if not message.control & UMASK or message.mask & STANDARD_ID:
+                continue
+            behind = next((
+                n for n, other in receiving
+                if n > number and not other.taken and other.arbitration & STANDARD_ID
+                and (not other.control & UMASK or other.mask & STANDARD_ID)
+            ), 0)  # fmt: skip
+            if message.mask & ID:
+                why = f"its mask {message.mask & ID:#x} has none of bits 28 to 18, where an identifier of 11 bits is"
+            elif behind and message.taken and message.control & EOB:
+                why = f"its mask is 0, so object {behind} never gets one"
+            else:
+                continue
+            registers = [f"{block}.CAN_IF{n}MSK" for n in (1, 2)]
+            places = [self._source.giving(*_split(register), ID, message.mask) for register in registers]
+            places += [self._source.last(*_split(register)) for register in registers]
+            place = next(filter(None, places), None)
+            if place is not None:
+                self._chip.findings.report_at(
+                    place, "not-connected", f"object {number} of {block} takes every frame of 11 bits: {why}",
+                    object=f"{block}.{number}", how="dynamic",
+                )  # fmt: skip
+            return
 
     def _bit_rate(self, block: str, letter: str) -> None:
         """A controller that shares no bit rate with any node of its bus, and has neither sent nor received a frame."""
@@ -1356,6 +1393,28 @@ class Connections:
                 self._report(
                     self._source.last(name, compare), f"the values of {name}.{compare} change nothing", missing, action
                 )  # fmt: skip
+
+    def _compares_never_set(self) -> None:
+        """Outputs that switch at a compare which no statement writes, where the program writes the other compare."""
+        if any(self._writes(f"EPwm{n}Regs.EPWMXLINK") for n in range(1, EPWM_COUNT + 1)):
+            return  # a value written to one ePWM also goes to another
+        pairs = (("CMPA", "CMPB"), ("CMPB", "CMPA"))
+        for n, (written, compare) in product(range(1, EPWM_COUNT + 1), pairs):
+            name = f"EPwm{n}Regs"
+            register, pointed = f"{name}.{compare}", self._source.pointed
+            if (
+                not (self._writes(f"{name}.{written}") or written in pointed) or compare in pointed
+                or self._writes(register) or self._could(register, bool, compare) or self._value(register, compare)
+                or not self._chip.epwm[n].acts_on_pin or self._no_count(n)
+            ):  # fmt: skip
+                continue
+            for output, way in ((output, way) for output in "AB" for way in "UD"):
+                action, event = f"{name}.AQCTL{output}", f"C{compare[-1]}{way}"
+                kind = self._value(action, event)
+                if kind in AQ_ACTIONS:
+                    missing = MissingLink(f"no statement writes {register}, which stays 0", action, event)
+                    waits = f"output {output} is {AQ_ACTIONS[kind]} at {compare}, while {written} gets the values"
+                    self._report(self._wanting(action, event), waits, missing, f"{action}.{event}")
 
     def _half_duties(self) -> None:
         """Outputs of an up-down counter that change at zero and at a compare on the way up, and not on the way down.

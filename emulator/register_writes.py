@@ -409,6 +409,8 @@ class RegisterWrites:
             case Load(lvalue=LValue(root=Variable() as variable, indices=[], leaf=0, bits=None)) if variable in known:
                 if variable.ctype == e.ctype and not variable.in_memory:
                     return known[variable]
+            case Load(lvalue=LValue(root=Variable(constant=True, initial=list() as initial), bits=None) as lvalue):
+                return self._of_table(lvalue, initial, known, deep)
             case Load(lvalue=LValue(root=Variable(kind="parameter") as variable, indices=[])) if deep:
                 if variable in self._free or variable.in_memory or variable.ctype != e.ctype:
                     return None
@@ -422,6 +424,21 @@ class RegisterWrites:
         if e.bounds is not None and e.bounds[0] == e.bounds[1]:
             return frozenset((e.bounds[0],))
         return None
+
+    def _of_table(self, lvalue: LValue, initial: list[Expr], known: Known, deep: int) -> Values:
+        """The values of a constant table's elements that the known subscripts choose; None: not all are known."""
+        found, first = set[int](), lvalue.leaf
+        for index in lvalue.indices:
+            chosen = self.values(index.expr, known, deep)
+            if chosen is None or len(chosen) != 1:
+                return None
+            first += index.leaves * min(chosen)
+        for value in initial[first : first + 1] if deep and first >= 0 else ():
+            of = self.values(value, deep=deep - 1)
+            if of is None:
+                return None
+            found |= of
+        return frozenset(found) or None
 
     def of(self, block: str, register: str, mask: int) -> list[Write]:
         """The assignments to a register by its name that set some bits of `mask`."""

@@ -215,8 +215,8 @@ connections are checked:
   outputs, and one of them has no pin. Its delays are set, and it is bypassed (`OUT_MODE = 0`). A compare value is above
   the period, so the output never changes there (one above the period means 100 % and is right). A compare register is
   never loaded from its shadow (`LOADAMODE = 3`), or its values change nothing, because its output switches at the other
-  compare, or its actions only set the output or only clear it. A trip that the program forces changes no output
-  (`TZA = 3`).
+  compare, or its actions only set the output or only clear it. An output switches at a compare that no statement
+  writes, and the program writes the other one. A trip that the program forces changes no output (`TZA = 3`).
 * DAC: it gets codes and drives no pin.
 * SCI: characters come, a break on the line has stopped the receiver before, and no statement clears `SWRESET` again.
 * I2C and SCI: the module stays in reset, no interrupt of a direction is enabled, or one needs more characters than the
@@ -226,7 +226,8 @@ connections are checked:
   is never valid, nothing requests its transmission, or in loopback its filter passes none of the controller's own
   frames. An identifier of 11 bits is in the lower bits of `ARB`, which only extended identifiers have. Data are written
   to an object with `Dir = 0`, whose request sends a remote frame. An object receives messages, and the program never
-  reads one.
+  reads one. A mask (`UMask`) has none of bits 28 to 18, so that an object takes every frame of 11 bits: its mask has
+  lower bits only, or an object behind it gets nothing.
 * Pins: the program sets and clears a pin that no statement makes an output. The chip itself drives a pin, and the input
   qualification of the pin needs longer pulses.
 

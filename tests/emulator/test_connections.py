@@ -520,6 +520,44 @@ def test_a_can_controller_that_is_not_set_up_whole(tmp_path: Path, was: str, now
         assert [f.place and "IE0 = 1" in text.splitlines()[f.place.line - 1] for f in found] == [True]
 
 
+#: Object 4 has a mask, and there are objects behind it, one of which has no mask.
+MASKED = """    CanaRegs.CAN_IF2MSK.all = {};
+    CanaRegs.CAN_IF2MCTL.all = 0x1088uL;
+    CanaRegs.CAN_IF2CMD.all = 0x00F00004uL;
+    Wait();
+    CanaRegs.CAN_IF2ARB.all = {};
+    CanaRegs.CAN_IF2MCTL.all = {};
+    CanaRegs.CAN_IF2CMD.all = 0x00F00005uL;
+"""
+OWN = "0x80000000uL | (0x77uL << 18)"
+
+
+@pytest.mark.parametrize(("mask", "behind", "control", "why"), [
+    ("0x1FFC0000uL", OWN, "0x0088uL", ""),
+    ("0x7FFuL", OWN, "0x0088uL", "its mask 0x7ff has none of bits 28 to 18"),
+    ("0x7FFuL", "0", "0x0088uL", "its mask 0x7ff has none of bits 28 to 18"),
+    # One object may take every frame, if the others come first, or take every one too.
+    ("0uL", OWN, "0x0088uL", "its mask is 0, so object 5 never gets one"),
+    ("0uL", "0", "0x0088uL", ""),
+    ("0uL", OWN, "0x1088uL", ""),
+    ("0uL", "0xA0000000uL | (0x77uL << 18)", "0x0088uL", ""),
+    # Without UMask the mask is not used.
+    ("0x7FFuL", OWN, "", ""),
+])  # fmt: skip
+def test_a_message_object_whose_mask_asks_for_nothing(
+    tmp_path: Path, mask: str, behind: str, control: str, why: str
+) -> None:
+    text = MASKED.format(mask, behind, control or "0x0088uL")
+    if not control:
+        text = text.replace("0x1088uL", "0x0088uL")
+    lines = "    CanaRegs.CAN_IF2MCTL.all = 0x0088uL;\n    CanaRegs.CAN_IF2CMD.all = 0x00B00004uL;\n"
+    assert CAN.count(lines) == 1
+    text = CAN.replace(lines, text)
+    findings = [f for f in told(tmp_path, text, seconds=0.01) if "takes every frame" in f.message]
+    assert [why in f.message for f in findings] == [True] * bool(why)
+    assert all(f.place and "IF2MSK" in text.splitlines()[f.place.line - 1] for f in findings)
+
+
 @pytest.mark.parametrize(("control", "told_"), [("0x0088uL", True), ("0x0288uL", False)])
 def test_a_message_object_may_wait_for_a_remote_frame(tmp_path: Path, control: str, told_: bool) -> None:
     text = CAN.replace("0x00870003uL", "0x00830003uL").replace("IF1MCTL.all = 0x0088uL", f"IF1MCTL.all = {control}")
@@ -937,6 +975,72 @@ def test_a_compare_that_only_sets_its_output(tmp_path: Path, action: str, count:
     findings = told(tmp_path, BRIDGES.replace("ACTION", action), "not-connected", seconds=0.002)
     assert [f.object for f in findings] == [f"EPwm{n}Regs.AQCTLA" for n in range(1, count + 1)]
     assert all("only sets output A" in f.message for f in findings)
+
+
+@pytest.mark.parametrize(("cleared", "later", "told_"), [
+    ("AQCTLA.bit.CAD = AQ_CLEAR", "", False),
+    ("AQCTLA.bit.CBD = AQ_CLEAR", "", True),
+    ("AQCTLA.bit.CBD = AQ_CLEAR", "Bridge[i]->CMPB.bit.CMPB = Duty / 2;", False),
+    ("AQCTLA.bit.CBD = AQ_CLEAR", "Bridge[i]->CMPB.all = 0;", False),
+    ("AQCTLA.bit.CBD = AQ_CLEAR", "if (Duty > 9000) EPwm2Regs.CMPB.bit.CMPB = Duty;", True),
+])  # fmt: skip
+def test_a_compare_that_switches_and_that_nobody_sets(tmp_path: Path, cleared: str, later: str, told_: bool) -> None:
+    sets = "Bridge[i]->CMPA.bit.CMPA = Duty;"
+    text = BRIDGES.replace("ACTION", f"Bridge[i]->{cleared};").replace(sets, f"{{ {sets} {later} }}")
+    findings = [f for f in told(tmp_path, text, "not-connected", seconds=0.002) if "CMPB, which stays 0" in f.message]
+    ours = [1, 3] if "EPwm2Regs" in later else [1, 2, 3]
+    assert [f.object for f in findings] == [f"EPwm{n}Regs.AQCTLA.CBD" for n in (ours if told_ else [])]
+    assert all(f.place and "CBD" in text.splitlines()[f.place.line - 1] for f in findings)
+
+
+#: Two outputs by numbers, whose blocks stand in a table.
+NUMBERED = """#include "F28x_Project.h"
+#define HALF 0x6AUL
+static const Uint32 Block[2] = {0x4000UL, 0x4100UL};
+static Uint16 Duty;
+static void Put(Uint32 base, Uint32 offset, Uint16 value) { *(volatile Uint16 *)(base + offset) = value; }
+static void Set(Uint32 base, Uint32 which, Uint16 value)
+{
+    Uint32 at = HALF + which;
+    *(volatile Uint16 *)(base + at + 1UL) = value;
+}
+void main(void)
+{
+    Uint16 i;
+    InitSysCtrl();
+    EALLOW;
+    CpuSysRegs.PCLKCR2.bit.EPWM1 = 1;
+    CpuSysRegs.PCLKCR2.bit.EPWM2 = 1;
+    EDIS;
+    InitEPwm1Gpio();
+    InitEPwm2Gpio();
+    for (i = 0; i < 2; i++) {
+        Uint32 base = Block[i];
+
+        Put(base, 0x63, 2000);
+        Set(base, 0, 100);
+        Put(base, 0x40, ACTIONS);
+        Put(base, 0x00, 0x0002);
+    }
+    EALLOW;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 1;
+    EDIS;
+    for (;;) {
+        DELAY_US(100);
+        Duty = Duty < 1900 ? Duty + 10 : 0;
+        for (i = 0; i < 2; i++)
+            Set(Block[i], WHICH, Duty);
+    }
+}
+"""
+
+
+@pytest.mark.parametrize(("actions", "which", "count"), [("0x0090", 0, 0), ("0x0810", 0, 2), ("0x0810", 2, 0)])
+def test_a_compare_that_nobody_sets_by_a_number(tmp_path: Path, actions: str, which: int, count: int) -> None:
+    text = NUMBERED.replace("ACTIONS", actions).replace("WHICH", str(which))
+    findings = [f for f in told(tmp_path, text, "not-connected", seconds=0.002) if "CMPB, which stays 0" in f.message]
+    assert [f.object for f in findings] == [f"EPwm{n}Regs.AQCTLA.CBD" for n in (1, 2)][:count]
+    assert all(f.place and "ACTIONS" in NUMBERED.splitlines()[f.place.line - 1] for f in findings)
 
 
 #: ePWM2 moves two outputs and is tripped on order; its counter starts SOC0, whose result is watched; eCAP1 measures
