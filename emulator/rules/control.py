@@ -134,7 +134,7 @@ sum (a meter of energy, an odometer, a clock).
     ),
     _rule(
         "feedback-reversed",
-        Severity.WARNING,
+        Severity.NOTE,
         "The error of a regulator seems to have the wrong sign: its output drives the value away.",
         """
 The motor stands, the voltage stays at 0, or the output runs to its limit and stays there.
@@ -148,7 +148,8 @@ speed, a voltage, a current, a force, a pressure or a flow, which an output rais
 not judged, nor one whose error, integral or output is subtracted from something later: that turns the sign back. A
 temperature, a level or a position is not judged, nor a brake, a sink, a panel: there the output may lower the value.
 
-An output that is active low, or a gain that is negative only when the program runs, makes it right: accept it then.
+It is a note, because an output that is active low, or a gain that is negative only when the program runs, makes it
+right.
 
 **Fix:** subtract the measured value from the wanted one.
 """,
