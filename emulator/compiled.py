@@ -38,13 +38,14 @@ class Finder(MetaPathFinder):
     def __init__(self, files: dict[str, str]) -> None:
         self.files = files
         self._libraries = {_library(file): file for file in files.values()}
+        self._made: dict[str, ModuleType] = {}
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
         """A library, or a module that is in one."""
         if fullname in self._libraries:
             return spec_from_file_location(fullname, self._libraries[fullname])
         file = self.files.get(fullname)
-        return None if file is None else ModuleSpec(fullname, _InLibrary(_library(file)), origin=file)
+        return None if file is None else ModuleSpec(fullname, _InLibrary(_library(file), self._made), origin=file)
 
 
 class _InLibrary(Loader):
@@ -53,11 +54,15 @@ class _InLibrary(Loader):
     mypyc writes an extension module for each, which does only this.  The 160 of them would take the C compiler 13 s.
     """
 
-    def __init__(self, library: str) -> None:
+    def __init__(self, library: str, made: dict[str, ModuleType]) -> None:
         self.library = library
+        #: The modules that were made.  They live as long as the process: the library keeps only their addresses.
+        self._made = made
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         """The module, after its own statements have run."""
+        if spec.name in self._made:  # somebody has taken it out of `sys.modules`
+            return self._made[spec.name]
         library = import_module(self.library)
         if hasattr(library, "ensure_deps"):  # it takes something from another library
             prepare = ctypes.PYFUNCTYPE(ctypes.c_int)(self._address(library.ensure_deps, "ensure_deps"))
@@ -65,6 +70,7 @@ class _InLibrary(Loader):
                 raise ImportError(f"{self.library} does not fit the libraries that it needs", name=spec.name)
         name = f"init_{spec.name.replace('.', '___')}"
         made: ModuleType = ctypes.PYFUNCTYPE(ctypes.py_object)(self._address(getattr(library, name), name))()
+        self._made[spec.name] = made
         return made
 
     def exec_module(self, module: ModuleType) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import gc
 import itertools
 import json
 import os
@@ -539,6 +540,20 @@ def test_a_build_has_a_library_for_the_emulator_and_one_a_part_and_modules_know_
     assert clock.__spec__.name == MODULE
     assert Path(clock.__file__).is_relative_to(compiled.STORE)
     assert pickle.loads(pickle.dumps(clock.Clock)) is clock.Clock
+
+
+@pytest.mark.skipif(compiled.MODE != "compiled", reason="needs `hil build` (extra speed)")
+def test_a_module_that_was_forgotten_is_found_again() -> None:
+    """Runs of pytest within a test forget what they have imported, and the library has the module's address."""
+    identity = next(iter(build.parts()))
+    first = compiled.part(identity)
+    assert first is not None
+    before = id(first)
+    del sys.modules[compiled.part_name(identity)], first
+    gc.collect()
+    again = compiled.part(identity)
+    assert (type(again), id(again)) == (ModuleType, before)
+    assert hasattr(again, "ProgramPart")
 
 
 def test_what_every_library_contains_is_compiled_once_and_kept(tmp_path: Path) -> None:
