@@ -37,7 +37,7 @@ class Finder(MetaPathFinder):
 
     def __init__(self, files: dict[str, str]) -> None:
         self.files = files
-        self._libraries = {_library(file): file for file in files.values()}
+        self._libraries = {_library_name(file): file for file in files.values()}
         self._made: dict[str, ModuleType] = {}
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
@@ -45,7 +45,7 @@ class Finder(MetaPathFinder):
         if fullname in self._libraries:
             return spec_from_file_location(fullname, self._libraries[fullname])
         file = self.files.get(fullname)
-        return None if file is None else ModuleSpec(fullname, _InLibrary(_library(file), self._made), origin=file)
+        return None if file is None else ModuleSpec(fullname, _InLibrary(_library_name(file), self._made), origin=file)
 
 
 class _InLibrary(Loader):
@@ -84,7 +84,7 @@ class _InLibrary(Loader):
         return address
 
 
-def _library(file: str) -> str:
+def _library_name(file: str) -> str:
     """The name under which a library is imported."""
     return os.path.basename(file).partition(".")[0]
 

@@ -118,7 +118,7 @@ HOT: Final = (
     "emulator/sysbios/watch/threads.py", "emulator/sysbios/watch/transactions.py",
 )  # fmt: skip
 HOT_LEVEL: Final = "-O2"
-#: The level for parts of firmware that are watched.  It takes the compiler half of the time of `-O1`; their own
+#: The level for parts of firmware that are watched.  It takes the compiler 0.6 of the time of `-O1`; their own
 #: instructions are few beside those of who watches them.
 WATCHED_LEVEL: Final = "-Og"
 

@@ -78,7 +78,7 @@ class Pie:
         self._served = [-1] * VECTORS
         #: For each vector, whether it was ever taken.
         self._has_run = [False] * VECTORS
-        #: (group, number) -> the flag that has kept a event back, the routine that left it, when that ended.
+        #: (group, number) -> the flag that kept an event back, the routine that left it, and its end in cycles.
         self._blocked: dict[tuple[int, int], tuple[str, Place, int]] = {}
         regs.bind("PIECTRL", write=self._write_PIECTRL)
         regs.bind("PIEACK", write=self._write_PIEACK)
