@@ -37,6 +37,9 @@ KEYS: Final = (
     ("k", "step to the next task switch"), ("f", "step to the next frame"), ("g", "step to the next finding"),
     ("[, ]", "go to the finding before, after"), ("1, 2, ...", "panels"),
 )  # fmt: skip
+_IN_ADDRESS: Final = (
+    "const to = new URL(location); to.searchParams.set('{key}', '{title}'); history.replaceState(history.state, '', to)"
+)
 #: Of these, a key that is held steps on and on.
 _REPEATED: Final = "nrkf"
 
@@ -128,7 +131,7 @@ class BoardPage:
                 self._scrub = ScrubBar(engine, self._show_finding)
                 self._always.append(self._scrub.update)
             build = self._panels()
-            self._tabs = Tabs(build, "panels")
+            self._tabs = Tabs(build, "panels", "panel")
             # A second set of panels, where there is room for it: of those that can stand there twice.
             self._second_panels = {
                 title: make for title, make in build.items() if stage is None or title not in stage.tabs
@@ -184,7 +187,7 @@ class BoardPage:
         """Build the second panel once there is room for it: elements out of sight would be updated too."""
         if self._second is None:
             with self._beside:
-                self._second = Tabs(self._second_panels, "more panels", chosen="Findings").classed("second")
+                self._second = Tabs(self._second_panels, "more panels", "beside", chosen="Findings").classed("second")
 
     def update(self) -> None:
         """Update the panel, 20 times a second."""
@@ -197,10 +200,18 @@ class BoardPage:
 
 
 class Tabs:
-    """Panels behind tabs; only the visible one is updated.  `panels` are those that have something to update."""
+    """Panels behind tabs; only the visible one is updated.  `panels` are those that have something to update.
 
-    def __init__(self, build: dict[str, Callable[[], Any]], name: str, *, chosen: str | None = None) -> None:
+    The visible one stands in the page's address under `key`: a page that is loaded again, by its user or because the
+    browser lost the server for a while, has the same panel.
+    """
+
+    def __init__(self, build: dict[str, Callable[[], Any]], name: str, key: str, *, chosen: str | None = None) -> None:
         self.panels: dict[str, Any] = {}
+        request = ui.context.client.request
+        wanted = None if request is None else request.query_params.get(key)
+        if wanted in build:
+            chosen = wanted
         with ui.element("section").classes("panel side").props(f'aria-label="{name}"') as self._box:
             with ui.tabs().props("dense no-caps align=left").classes("w-full") as self._tabs:
                 for title in build:
@@ -216,6 +227,7 @@ class Tabs:
                         panel = make()
                         if panel is not None:
                             self.panels[title] = panel
+        self._tabs.on_value_change(lambda e: ui.run_javascript(_IN_ADDRESS.format(key=key, title=e.value)))
 
     def classed(self, name: str) -> Tabs:
         """With a class of the style sheet."""

@@ -26,7 +26,16 @@ def button(page: Any, text: str) -> Any:
 
 
 def tab(page: Any, name: str) -> None:
-    page.get_by_role("tab", name=name).first.click()
+    """Choose a panel; what is clicked while the browser has lost the server, as on a busy machine, is lost too."""
+    one = page.get_by_role("tab", name=name).first
+
+    def chosen() -> bool:
+        if one.get_attribute("aria-selected") == "true":
+            return True
+        one.click()
+        return False
+
+    sees(page, chosen, f"{name} cannot be chosen")
 
 
 def wait(page: Any, text: str | re.Pattern[str]) -> None:

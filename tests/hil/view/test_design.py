@@ -66,6 +66,17 @@ def test_a_page_is_whole_each_time_it_is_loaded(page: Any) -> None:
         assert page.get_by_role("region", name=region, exact=True).count() == 1
 
 
+def test_a_page_that_is_loaded_again_has_the_same_panels(page: Any) -> None:
+    page.set_viewport_size({"width": 1920, "height": 1080})
+    tab(page, "Registers")
+    page.locator(".second").get_by_role("tab", name="Faults").click()
+    sees(page, lambda: "panel=Registers" in page.url and "beside=Faults" in page.url, "the address has no panels")
+    page.reload()
+    for box, chosen in (("section[aria-label=panels]", "Registers"), (".second", "Faults")):
+        page.locator(box).get_by_role("tab", name=chosen, selected=True).wait_for()
+        page.locator(box).get_by_role("heading", name=chosen, exact=True).wait_for(state="attached")
+
+
 def test_the_light_is_the_systems_until_another_is_chosen(browser: Any, view: View) -> None:
     dark = browser.new_page(color_scheme="dark")
     # Before a script has run, a dark page is dark.
