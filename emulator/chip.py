@@ -229,17 +229,16 @@ class Chip:
             clock, cpu, self._block("WdRegs", WdRegs), self._watchdog_reset, *self._interrupts("WdRegs"),
             enabled_at_reset=False,
         )
-        self._registers_at: dict[int, tuple[Cell, int]] = {}
+        self._registers_at: dict[int, Cell] = {}
         byte_registers: dict[int, Cell] = {}
         for block in self.blocks.values():
             for register in block:
                 if block.byte_peripheral:
-                    # Even and odd addresses of 16 bits are the same ones (SPRU514).
-                    self._registers_at |= {register.address + n: (register, n >> 1) for n in range(4)}
+                    self._registers_at |= dict.fromkeys(range(register.address, register.address + 4), register)
                     byte_registers[register.address] = register
                     continue
                 for half in range(register.bits // 16):
-                    self._registers_at[register.address + half] = (register, half)
+                    self._registers_at[register.address + half] = register
         #: Entries of the vector table by their word address, and the lower words that were written to them.
         self._vectors_at = {cell.address: cell for cell in vectors}
         self._lower_words: dict[int, int] = {}
@@ -463,7 +462,8 @@ class Chip:
 
     def _bus_register(self, address: int) -> tuple[Cell | None, int]:
         """The register at an address where no object lies, and the half of it that the address names."""
-        return self._registers_at.get(address, (None, 0)) if self.memory.find(address) is None else (None, 0)
+        register = self._registers_at.get(address) if self.memory.find(address) is None else None
+        return register, 0 if register is None else register.half_at(address)
 
     def _dma_listens(self, sources: frozenset[int]) -> None:
         """Connect the triggers that the DMA waits for, and disconnect all others."""
@@ -643,30 +643,28 @@ class Chip:
 
     def register_at(self, address: int) -> Cell | None:
         """The register that begins at a word address; None if none does."""
-        cell, _ = self._registers_at.get(address, (None, 0))
+        cell = self._registers_at.get(address)
         return cell if cell is not None and cell.address == address else None
 
     def _read_word(self, addr: int) -> int | None:
-        found = self._registers_at.get(addr)
-        if found is None:
+        register = self._registers_at.get(addr)
+        if register is None:
             vector = self._read_vector(addr)
             if vector is None:
                 self._note_unmodelled(addr)
             return vector
-        register, half = found
-        return register.read() >> 16 * half & 0xFFFF
+        return register.read() >> 16 * register.half_at(addr) & 0xFFFF
 
     def _write_word(self, addr: int, word: int) -> bool:
-        found = self._registers_at.get(addr)
-        if found is None:
+        register = self._registers_at.get(addr)
+        if register is None:
             written = self._write_vector(addr, word)
             if not written:
                 self._note_unmodelled(addr)
             return written
-        register, half = found
         if register.bits == 16:
             register.write(word & 0xFFFF, ALL)
-        elif half:
+        elif register.half_at(addr):
             register.write(register.value & LOW | (word & 0xFFFF) << 16, HIGH)
         else:
             register.write(register.value & HIGH | word & 0xFFFF, LOW)

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 class Owner(Protocol):
     """What a cell needs of the block that it stands in."""
 
+    byte_peripheral: ClassVar[bool]
     name: str
     cpu: Cpu
     clocked: bool
@@ -78,16 +79,18 @@ class Cell:
         #: The objects of which those are methods, if they are.
         self.read_hook: Hook | None = None
         self.write_hook: Hook | None = None
-        self._followers: list[tuple[dict[str, Any], str, str]] = []
-        self._taps: dict[RegisterTap | Seen, bool] = {}
+        #: None, as long as nobody follows.  A chip has 2,500 registers, and a check makes a chip for each circumstance:
+        #: what most of them never need is not made.
+        self._followers: list[tuple[dict[str, Any], str, str]] | None = None
+        self._taps: dict[RegisterTap | Seen, bool] | None = None
         #: Whether the access functions are those of the present state; else the first access chooses them.
         self._chosen = False
         #: Whether `read` only gives `value`.
         self._plain = False
-        self.read: Callable[[], int] = self._read_first
-        self.write: Callable[[int, int], None] = self._write_first
+        self.read: Callable[[], int] = self
+        self.write: Callable[[int, int], None] = self
         #: `modify(keep, bits, lanes)`: the read-modify-write that a compiler makes of a field assignment.
-        self.modify: Callable[[int, int, int], None] = self._modify_first
+        self.modify: Callable[[int, int, int], None] = self
         #: The objects of which `read` and `write` are the methods, while they are.
         self.reads: Hook | None = None
         self.writes: Hook | None = None
@@ -100,6 +103,13 @@ class Cell:
         """The name that C uses, for instance `AdcaRegs.ADCCTL2`."""
         return f"{self.block.name}.{self.name}"
 
+    def half_at(self, address: int) -> int:
+        """The half of it that a word address names: 0 or 1.
+
+        Of a byte peripheral, even and odd addresses of 16 bits are the same ones (SPRU514).
+        """
+        return address - self.address >> (1 if self.block.byte_peripheral else 0)
+
     def bind(self) -> None:
         """Choose the access functions for the present state of hooks, clock gate, protection and taps.
 
@@ -110,20 +120,13 @@ class Cell:
         elif self._chosen:
             self._chosen = self._plain = False
             self.reads = self.writes = None
-            self.read, self.write, self.modify = self._read_first, self._write_first, self._modify_first
+            self.read = self.write = self.modify = self
 
-    def _read_first(self) -> Any:
+    def __call__(self, *words: Any) -> Any:
+        """The first access: `read()`, `write(word, lanes)` or `modify(keep, bits, lanes)`."""
         self._choose()
-        read: Callable[[], Any] = self.read  # a vector holds a function
-        return read()
-
-    def _write_first(self, word: Any, lanes: int = ALL) -> None:
-        self._choose()
-        self.write(word, lanes)
-
-    def _modify_first(self, keep: int, bits: int, lanes: int) -> None:
-        self._choose()
-        self.modify(keep, bits, lanes)
+        access: Callable[..., Any] = (self.read, self.write, self.write, self.modify)[len(words)]
+        return access(*words)
 
     def _choose(self) -> None:
         self._chosen = True
@@ -138,7 +141,7 @@ class Cell:
             lay(self, self._taps)
             self.gate = CLOSED
         self._plain = self.read == self._read_plain
-        for namespace, name, access in self._followers:
+        for namespace, name, access in self._followers or ():
             namespace[name] = getattr(self, access)
 
     def follow(self, access: str, namespace: dict[str, Any], name: str) -> None:
@@ -148,22 +151,26 @@ class Cell:
         the register itself, as long as reading is only looking.  "gate" is `gate`, "cleared" the register that it
         clears, "steady" is `steady`.
         """
+        if self._followers is None:
+            self._followers = []
         self._followers.append((namespace, name, access))
         self._choose()
 
     @property
     def is_read(self) -> bool:
         """Whether a function of a linked program reads it by its name."""
-        return any(access in ("read", "source") for _, _, access in self._followers)
+        return any(access in ("read", "source") for _, _, access in self._followers or ())
 
     def tap(self, seen: RegisterTap | Seen, *, reads: bool = False) -> None:
         """Have `seen` told of each write, with `reads` of each read too, right before it happens: `taps.Seen`."""
+        if self._taps is None:
+            self._taps = {}
         self._taps[seen] = reads
         self.bind()
 
     def untap(self, seen: RegisterTap | Seen) -> None:
         """Tell `seen` nothing more.  Raises KeyError if it was told nothing."""
-        del self._taps[seen]
+        del (self._taps or {})[seen]
         self.bind()
 
     @property
@@ -175,7 +182,7 @@ class Cell:
     @property
     def steady(self) -> bool:
         """Whether one read is as good as many, as long as no event comes: they give the same, and nobody notices them."""
-        watched = any(self._taps.values())
+        watched = self._taps is not None and any(self._taps.values())
         return self.block.clocked and not watched and (self.on_read is None or self.on_read_steady)
 
     @property
