@@ -41,6 +41,24 @@ def set_bits(mask: int) -> Iterator[int]:
         mask ^= lowest
 
 
+class _Pin:
+    """Pin `i` of a port, as its wire's listener."""
+
+    __slots__ = ("_i", "_mask", "_port")
+
+    def __init__(self, port: GpioPort, i: int) -> None:
+        self._port, self._i, self._mask = port, i, 1 << i
+
+    def changed(self, level: int) -> None:
+        self._port.wire_changed(self._i, self._mask, level)
+
+    def computed(self, on: bool) -> None:
+        self._port.wire_computed(self._mask, on)
+
+    def followed(self, on: bool) -> None:
+        self._port.follow(self._i, on)
+
+
 class GpioPort:
     """One port of up to 32 pins; pin 0 of the port is GPIO`first`."""
 
@@ -74,14 +92,15 @@ class GpioPort:
         self._read_at = 0
         self._copied: dict[int, Cause] = {}
         #: A signal for each pin, (level): every change that DAT shows; and the mask of the pins with listeners.
-        self.input_changed: list[Signal[int]] = [Signal(partial(self._follow, i)) for i in range(len(wires))]
+        pins = [_Pin(self, i) for i in range(len(wires))]
+        self.input_changed: list[Signal[int]] = [Signal(pin.followed) for pin in pins]
         self._followed = 0
         #: Pins with a computed level.  It is computed when DAT is read.
         self._computed = 0
         self._next_check: ClockEvent | None = None
-        for i, wire in enumerate(wires):
-            wire.noticed.connect(partial(self._wire_changed, i, 1 << i))
-            wire.computed.connect(partial(self._wire_computed, 1 << i))
+        for pin, wire in zip(pins, wires, strict=True):
+            wire.noticed.connect(pin.changed)
+            wire.computed.connect(pin.computed)
 
         prefix = f"GP{letter}"
         self._ctrl: dict[str, Cell] = {
@@ -288,7 +307,7 @@ class GpioPort:
 
     # --- pins ------------------------------------------------------------------------------------------------------
 
-    def _follow(self, i: int, wanted: bool) -> None:
+    def follow(self, i: int, wanted: bool) -> None:
         """A first listener connects to `input_changed` of a pin (`wanted`), or the last one has gone."""
         if wanted:
             self._wires[i].attend()
@@ -324,17 +343,19 @@ class GpioPort:
                     object=wire.name, value=level,
                 )  # fmt: skip
 
-    def _wire_changed(self, i: int, mask: int, level: int) -> None:
+    def wire_changed(self, i: int, mask: int, level: int) -> None:
+        """The wire of pin `i` has another level."""
         if self._qualifiers and i in self._qualifiers:
             self._qualifiers[i].change(level)
         else:
             self._accept(mask, level)
 
-    def _wire_computed(self, mask: int, computed: bool) -> None:
+    def wire_computed(self, mask: int, computed: bool) -> None:
+        """The level of a pin is a computed one from now on, or no longer."""
         self._computed = self._computed | mask if computed else self._computed & ~mask
 
     def _read_computed(self) -> None:
-        """Read the wires with a computed level; `_wire_changed` gets their changes.
+        """Read the wires with a computed level; `wire_changed` gets their changes.
 
         An event at the next change of one of them lets a poll of DAT go on there.
         """

@@ -13,7 +13,7 @@ Part of `output_xbar.py` and `epwm_xbar.py`.  Sources: TRM X-BAR, mux configurat
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import partial
+from functools import lru_cache, partial
 from typing import Final
 
 from emulator.cpu import Cpu
@@ -27,7 +27,8 @@ _COMPARATORS: Final = 8
 _HALF: Final = 16
 
 
-def choices(trip: str) -> list[tuple[tuple[str, ...], ...]]:
+@lru_cache
+def choices(trip: str) -> tuple[tuple[tuple[str, ...], ...], ...]:
     """The four choices of each mux; a choice is the signals that are ORed.  `trip` is CTRIP or CTRIPOUT."""
     table: list[tuple[tuple[str, ...], ...]] = []
     for k in range(1, _COMPARATORS + 1):
@@ -42,7 +43,7 @@ def choices(trip: str) -> list[tuple[tuple[str, ...], ...]]:
         high, low = (f"SD{1 + k // 4}FLT{1 + k % 4}.COMP{x}" for x in "HL")
         table.append(((high,), (high, low), ("",), ("",)))
         table.append(((low,), ("",), ("",), ("",)))
-    return table
+    return tuple(table)
 
 
 class XbarOutput:
