@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Final
 
-#: How many objects are made before the collector looks at them.  A chip has 80,000, and all of them live as long as it:
+#: How many objects are made before the collector looks at them.  A chip has 16,000, and all of them live as long as it:
 #: at Python's 700 a check of driver files, which makes an image for each circumstance, spends half of its time there.
 OBJECTS_BETWEEN_COLLECTIONS: Final = 100_000
 

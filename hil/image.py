@@ -88,7 +88,9 @@ class Build:
         self.coverage = coverage
         self.board = board
         self.fired = tuple(FaultOutcome(parse(text), (), 0, None) for text in faults)
-        chip = made(board, seed=seed)
+        #: A board that nobody has used yet: the first image's.  A chip takes as long to make as a short run.
+        self._unused: Board | None = made(board, seed=seed)
+        chip = self._unused
         self.program.translate()
         functions = [(f, module.unit(f.name).file) for module in self.modules for f in module.functions]
         whole = any(function.name == "main" and file in self.files for function, file in functions)
@@ -130,6 +132,11 @@ class Build:
         """
         return Image(self, driven, compiled)
 
+    def fresh_board(self) -> Board:
+        """A board as it is at power-up."""
+        board, self._unused = self._unused, None
+        return self.board(seed=self.seed) if board is None else board
+
 
 class Image:
     """One board with the files of a build: call its functions, run its kernel, look at its findings."""
@@ -138,7 +145,7 @@ class Image:
         self, build: Build, driven: Callable[[], bool] | None = None, compiled: Compiled | None = None
     ) -> None:  # fmt: skip
         with uncollected():
-            self.board = board = build.board(seed=build.seed)
+            self.board = board = build.fresh_board()
             runtime = runtime_of(board, fill=build.fill, driven=driven)
             coverage = build.coverage if compiled is None else None
             self.linked = bind(board, compiled or build.compiled, runtime, coverage=coverage)
