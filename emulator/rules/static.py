@@ -300,7 +300,8 @@ finding is made if the source (or a macro) says `N - 1` or `~(N - 1)`. Any other
 A comparison of two floats is false although they should be equal.
 
 Rounding makes the last bits of two computed floats differ, and the divider of this chip rounds differently from that
-of a PC. A comparison with 0 (a guard before a division, a value that is not set yet) is not reported.
+of a PC. A comparison with 0 (a guard before a division, a value that is not set yet) is not reported, nor one of an
+object with itself (`x != x` is true for NaN alone).
 
 **Fix:** compare the distance with a tolerance.
 """,

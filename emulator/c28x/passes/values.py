@@ -315,7 +315,9 @@ class ValueChecks(ConstantChecks):
                         message = f"{text}: an unsigned char is never negative; the constant counts as 65535"
                         self.report_here("sign-compare", message, text)
                 zero = any(isinstance(side, Const) and side.value == 0 for side in (left, right))
-                if op in ("==", "!=") and isinstance(left.ctype, FloatType) and not zero:
+                # `x != x` is the test for NaN.
+                same = isinstance(bare(left), Load) and source_text(left) == source_text(right)
+                if op in ("==", "!=") and isinstance(left.ctype, FloatType) and not zero and not same:
                     text = source_text(e)
                     self.report_here("float-equality", f"{text} compares floats for equality: rounding decides", text)
             case Call(arguments=arguments) | CallPointer(arguments=arguments):

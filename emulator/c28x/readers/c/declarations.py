@@ -244,12 +244,33 @@ class CDeclarationReader:
 
     # Functions
 
-    def declare_function(self, name: str, prototype: Prototype, node: c_ast.Decl) -> Function:
-        """Declare a function: from one of our headers, from this file, or from another file."""
+    def _replaces(self, known: Function, prototype: Prototype, where: Where, *, defines: bool) -> bool:
+        """Whether a program has its own function in place of one that our headers define in C: forget that one.
+
+        The library's functions lie in an archive, of which a linker takes what the program does not have; and not every
+        version of the compiler declares those of C99.
+        """
+        ours = known in self.module.bodies and known.where.file.startswith("<") and not where.file.startswith("<")
+        if not ours or not (defines or not compatible(known.ctype, prototype)):
+            return False
+        self.spare.discard(known)
+        del self.module.bodies[known]
+        self.linkage.static.discard(known.name)
+        return True
+
+    def declare_function(
+        self, name: str, prototype: Prototype, node: c_ast.Decl, *, defines: bool = False
+    ) -> Function:  # fmt: skip
+        """Declare a function: from one of our headers, from this file, or from another file.
+
+        `defines`: its body comes with it.
+        """
         where = node.coord
         known = self.module.symbols.get(name)
         if known is not None and not isinstance(known, Function):
             raise SourceError.at(where, f"{name} is declared again as something else")
+        if known is not None and self._replaces(known, prototype, where, defines=defines):
+            known = None
         if known is not None:
             if not compatible(known.ctype, prototype):
                 shown = f"{signature(name, prototype)} here and as {signature(name, known.ctype)} before"
@@ -299,7 +320,7 @@ class CDeclarationReader:
         listed = zip(prototype.parameters, _list(arguments), strict=False)
         for part, at in ((prototype.result, declaration.type), *listed):
             self.expressions.modelled(FunctionType("", part, ()), at.coord)
-        function = self.declare_function(name, prototype, declaration)
+        function = self.declare_function(name, prototype, declaration, defines=True)
         if function in self.module.bodies:
             raise SourceError.at(where, f"{name} is defined twice")
         function.extern = False

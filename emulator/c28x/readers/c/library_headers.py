@@ -37,6 +37,8 @@ _UNMODELLED: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
     "math.h": (
         "double sinh(double x)", "double cosh(double x)", "double tanh(double x)", "double log10(double x)",
         "double ldexp(double x, int n)", "double frexp(double x, int *n)", "double modf(double x, double *whole)",
+        "double hypot(double x, double y)", "double cbrt(double x)", "double exp2(double x)", "double log2(double x)",
+        "long lrint(double x)", "double rint(double x)", "double copysign(double x, double y)",
     ),
     "stdio.h": (
         "int getchar(void)", "int scanf(const char *form, ...)", "int sscanf(const char *text, const char *form, ...)",
@@ -44,13 +46,17 @@ _UNMODELLED: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
     "stdarg.h": (),
     "stdlib.h": (
         "void exit(int status)", "double strtod(const char *text, char **end)",
+        "long long strtoll(const char *text, char **end, int base)",
+        "unsigned long long strtoull(const char *text, char **end, int base)",
     ),
     "string.h": (
         "void *memchr(const void *block, int character, size_t n)", "char *strerror(int number)",
     ),
 })  # fmt: skip
 #: Function of float -> function of double: they are the same, because `double` is `float` here (COFF).
-OF_FLOAT: Final[Mapping[str, str]] = MappingProxyType({f"{name}f": name for name in FUNCTIONS["math.h"]})
+OF_FLOAT: Final[Mapping[str, str]] = MappingProxyType(
+    {f"{name}f": name for name in (*FUNCTIONS["math.h"], *TEXT["math.h"])}
+)
 #: POSIX constants that many programs expect in math.h; the compiler's math.h has them.
 _MATHEMATICAL: Final = (
     ("PI", math.pi), ("PI_2", math.pi / 2), ("PI_4", math.pi / 4), ("1_PI", 1 / math.pi), ("2_PI", 2 / math.pi),

@@ -43,6 +43,20 @@ static inline unsigned long _number(const char *text, char **end, int base, int 
 """
 
 TEXT: Final = MappingProxyType({
+    "math.h": MappingProxyType({
+        "fmin": "static inline float fmin(float x, float y) { return x < y || !(y == y) ? x : y; }\n",
+        "fmax": "static inline float fmax(float x, float y) { return x > y || !(y == y) ? x : y; }\n",
+        "trunc": "static inline float trunc(float x) { return x < 0 ? ceil(x) : floor(x); }\n",
+        "round": """
+static inline float round(float x)
+{
+    float size = fabs(x), whole = floor(size);
+    if (size - whole >= 0.5) whole += 1;
+    return x < 0 ? -whole : whole;
+}
+""",
+        "lround": "static inline long lround(float x) { return (long)round(x); }\n",
+    }),
     "stdlib.h": MappingProxyType({
         "strtol": _NUMBER + """
 static inline long strtol(const char *text, char **end, int base)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from emulator.c28x.memory import NULL
 from emulator.c28x.readers.c.library_text import TEXT
+from hil.image import Build
 from tests.emulator.c28x.readers.c.workshop import CWorkshop
 
 HEAD = """\
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 static int up(const void *a, const void *b)
@@ -60,6 +64,14 @@ def holds(body: str) -> list[str]:
         # 7.20.5.1: the element that is equal, or null.
         "long v[3] = { -7, 5, 65536L }, k = 5, no = 6; "
         "return bsearch(&k, v, 3, sizeof k, up) == v + 1 && bsearch(&no, v, 3, sizeof k, up) == 0;",
+        # C99 7.12.12: of a number and a NaN, the number.
+        "union { unsigned long word; float f; } u; float n; u.word = 0x7FC00000UL; n = u.f; "
+        "return fminf(2.0f, -3.0f) == -3 && fmaxf(2.0f, -3.0f) == 2 && fmaxf(n, 1.0f) == 1.0f && "
+        "fmax(1.0, n) == 1.0f && fminf(n, 1.0f) == 1.0f && fminf(1.0f, n) == 1.0f && fminf(n, n) != fminf(n, n);",
+        # C99 7.12.9: halves away from zero, also for the float below a half and for whole ones; towards zero.
+        "return roundf(2.5f) == 3.0f && roundf(-2.5f) == -3.0f && roundf(0.49999997f) == 0 && "
+        "round(8388609.0) == 8388609.0f && roundf(-0.4f) == 0;",
+        "return truncf(2.7f) == 2.0f && trunc(-2.7) == -2.0f && lroundf(-70000.5f) == -70001 && lround(0.5) == 1;",
         # 7.21.5
         'return strspn("aab", "a") == 2 && strcspn("xyz,", ",;") == 3 && strcspn("xyz", ",") == 3;',
         'return *strpbrk("abc", "cb") == \'b\' && strpbrk("abc", "x") == 0;',
@@ -77,6 +89,24 @@ def test_a_null_pointer_is_found_where_the_function_is_called() -> None:
     workshop = CWorkshop("#include <stdlib.h>\nlong f(char *t)\n{\n    return strtol(t, 0, 10);\n}\n")
     workshop.call("f", NULL)
     assert {(f.rule, str(f.place)) for f in workshop.findings} == {("null-dereference", "f (drv.c:4:5)")}
+
+
+OWN = """\
+#include <math.h>
+#include <stdlib.h>
+static float fminf(float a, float b) { return a < b ? a + 10.0f : b + 10.0f; }
+int round(float x);
+int round(float x) { return (int)(x + 7.5f); }
+int rand(void) { return 4; }
+int f(void) { return fminf(2.0f, 1.0f) == 11.0f && round(1.0f) == 8 && rand() == 4 && fmaxf(1.0f, 2.0f) == 2.0f; }
+"""
+
+
+@pytest.mark.parametrize("abi", ["coff", "eabi"])
+def test_a_program_may_have_its_own(abi: str, tmp_path: Path) -> None:
+    file = tmp_path / "own.c"
+    file.write_text(OWN, "utf-8")
+    assert Build([str(file)], abi=abi).image().call("own.f", []) == 1
 
 
 def test_every_function_stands_under_its_own_name() -> None:
