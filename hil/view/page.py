@@ -37,11 +37,12 @@ KEYS: Final = (
     ("k", "step to the next task switch"), ("f", "step to the next frame"), ("g", "step to the next finding"),
     ("[, ]", "go to the finding before, after"), ("1, 2, ...", "panels"),
 )  # fmt: skip
+#: Of these, a key that is held steps on and on.
+_REPEATED: Final = "nrkf"
+#: JavaScript that puts the visible panel into the page's address.
 _IN_ADDRESS: Final = (
     "const to = new URL(location); to.searchParams.set('{key}', '{title}'); history.replaceState(history.state, '', to)"
 )
-#: Of these, a key that is held steps on and on.
-_REPEATED: Final = "nrkf"
 
 
 class Page:

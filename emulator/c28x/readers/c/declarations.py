@@ -244,8 +244,8 @@ class CDeclarationReader:
 
     # Functions
 
-    def _replaces(self, known: Function, prototype: Prototype, where: Where, *, defines: bool) -> bool:
-        """Whether a program has its own function in place of one that our headers define in C: forget that one.
+    def _makes_way(self, known: Function, prototype: Prototype, where: Where, *, defines: bool) -> bool:
+        """Forget a function that our headers define in C, if the program has its own of that name.  Returns whether.
 
         The library's functions lie in an archive, of which a linker takes what the program does not have; and not every
         version of the compiler declares those of C99.
@@ -269,7 +269,7 @@ class CDeclarationReader:
         known = self.module.symbols.get(name)
         if known is not None and not isinstance(known, Function):
             raise SourceError.at(where, f"{name} is declared again as something else")
-        if known is not None and self._replaces(known, prototype, where, defines=defines):
+        if known is not None and self._makes_way(known, prototype, where, defines=defines):
             known = None
         if known is not None:
             if not compatible(known.ctype, prototype):

@@ -3,7 +3,7 @@
 If a program uses them, they are read like the user's own functions.  So their arguments are checked, and `qsort` calls
 the comparison function of the user.
 CHOICE: each file has its own copy, so the state of `strtok` and `rand` is per file; their time is that of this text.
-There is no `errno`.  Sources: ISO C 7.20 and 7.21; the example of 7.20.2.2 for `rand`.
+There is no `errno`.  Sources: ISO C99 7.12; ISO C 7.20 and 7.21; the example of 7.20.2.2 for `rand`.
 """
 
 from __future__ import annotations

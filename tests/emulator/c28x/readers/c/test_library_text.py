@@ -1,4 +1,4 @@
-"""The functions of C's library that our headers have as C: what ISO C 7.20 and 7.21 say of them."""
+"""The functions of C's library that our headers have as C: what ISO C 7.12, 7.20 and 7.21 say of them."""
 
 from __future__ import annotations
 
@@ -89,6 +89,15 @@ def test_a_null_pointer_is_found_where_the_function_is_called() -> None:
     workshop = CWorkshop("#include <stdlib.h>\nlong f(char *t)\n{\n    return strtol(t, 0, 10);\n}\n")
     workshop.call("f", NULL)
     assert {(f.rule, str(f.place)) for f in workshop.findings} == {("null-dereference", "f (drv.c:4:5)")}
+
+
+def test_the_test_for_a_nan_is_no_comparison_of_floats(tmp_path: Path) -> None:
+    """Neither the program's own, nor that of our fmin; a comparison of two floats is one."""
+    file = tmp_path / "nan.c"
+    lines = ("#include <math.h>", "int no(float x) { return x != x; }", "float low(float x) { return fminf(x, 1.0f); }")
+    file.write_text("\n".join((*lines, "int same(float x, float y) { return x == y; }", "")), "utf-8")
+    found = [f for f in Build([str(file)]).compiled.findings if f.rule == "float-equality"]
+    assert [f.place.line for f in found if f.place is not None] == [4]
 
 
 OWN = """\
