@@ -30,9 +30,10 @@ PORT: Final = 8080
 GRACE_S: Final = 1
 #: A browser may be disconnected for this time, in seconds, before its page is built again; it may also load this long.
 RECONNECT_S: Final = 20.0
-#: A browser that has vanished is noticed after the sum of both times at most.  Then driving by hand ends.
+#: A browser that has vanished without a word is disconnected after the sum of both times at most.  A busy one shall not
+#: be: it would lose each click until it is connected again.  Driving by hand ends before (`hil.robot.view.tele`).
 PING_S: Final = 2.0
-PONG_S: Final = 3.0
+PONG_S: Final = 20.0
 #: The time between two reads of a serial port.
 TURN_S: Final = 0.05
 

@@ -26,6 +26,9 @@ HELP: Final = (
     "robot drives on. The stick sets both; let go, it stops. Set V, W holds until another order."
 )
 TELE_OFF: Final = "Telemanipulation is off"
+#: The browser's sign of life, once a second: without it, driving by hand ends.
+_HERE: Final = "hil-here"
+_TELL_HERE: Final = f'setInterval(() => emitEvent("{_HERE}"), 1000)'
 
 
 def file_of(frames: list[OdometryFrame]) -> bytes:
@@ -93,6 +96,8 @@ class ConsolePanel:
             'role=log aria-label="serial line" tabindex=0'
         ).mark("log")  # fmt: skip
         self._failure = ui.label().style("color:var(--bad)")
+        ui.on(_HERE, lambda: self.tele.alive(time.monotonic()))
+        ui.run_javascript(_TELL_HERE)
 
     def send(self, data: bytes) -> None:
         """Send bytes to the robot.  A reference that was to follow an earlier order is dropped."""

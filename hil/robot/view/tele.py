@@ -3,7 +3,8 @@
 It works as in the thesis console: `#TELE`, then `#SETRv,w` ten times a second.  With each of them, an arrow key that is
 held changes V by 0.01 m/s or W by 0.03 rad/s, one key at a time.  There are two differences: the end of driving stops
 the robot, and the next drive begins at rest; and a key counts as released if its release was never seen, because
-another window got it.
+another window got it.  And a browser that gives no sign of life for a while, because it or the network is gone, drives
+no more.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from hil.client.orders import order, set_reference
 PERIOD_S: Final = 0.1
 #: Browsers repeat a held key after half a second at the latest.
 FORGET_S: Final = 0.8
+#: The time without a sign of life after which driving ends.  CHOICE: a robot goes 1 m in it.
+GONE_S: Final = 5.0
 #: The speeds with the stick at its edge.  CHOICE: the speed of a mission, and a quarter turn in less than 2 s.
 STICK_V_M_S: Final = 0.2
 STICK_W_RAD_S: Final = 1.0
@@ -35,6 +38,7 @@ class BrowserTele:
         self.w_rad_s = 0.0
         self._key: str | None = None
         self._seen_s = 0.0
+        self._alive_s = 0.0
         self._due_s = 0.0
 
     def begin(self, now_s: float) -> bytes:
@@ -42,6 +46,7 @@ class BrowserTele:
         self.on = True
         self.v_m_s = self.w_rad_s = 0.0
         self._key = None
+        self._alive_s = now_s
         self._due_s = now_s + 0.5
         return order("tele")
 
@@ -68,6 +73,10 @@ class BrowserTele:
         self.v_m_s = round(STICK_V_M_S * max(-1.0, min(1.0, up)), 3)
         self.w_rad_s = round(STICK_W_RAD_S * max(-1.0, min(1.0, -right)), 3) + 0.0  # never -0.0
 
+    def alive(self, now_s: float) -> None:
+        """The browser has given a sign of life."""
+        self._alive_s = now_s
+
     def rest(self) -> None:
         """Set V and W to zero.  Telemanipulation goes on."""
         self.v_m_s = self.w_rad_s = 0.0
@@ -76,6 +85,8 @@ class BrowserTele:
         """The order that is due; b"" if there is none."""
         if not self.on or now_s < self._due_s:
             return b""
+        if now_s - self._alive_s > GONE_S:
+            return self.end()
         self._due_s = now_s + PERIOD_S
         if self._key is not None:
             if now_s - self._seen_s > FORGET_S:

@@ -69,6 +69,16 @@ def centre(page: Any, css: str) -> tuple[float, float]:
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 
+def hold(page: Any, key: str, condition: Callable[[], bool], what: str) -> None:
+    """Hold a key until a page shows something; as in a browser, a held key repeats."""
+
+    def shown() -> bool:
+        page.keyboard.down(key)
+        return condition()
+
+    sees(page, shown, what)
+
+
 def test_mission_and_stop_are_the_biggest_buttons_and_work(page: Any, shot: Shot) -> None:
     sizes = {
         str(each.inner_text()): each.bounding_box() for each in page.get_by_role("button").all() if each.is_visible()
@@ -163,8 +173,7 @@ def test_the_console_sends_orders_and_shows_frames(page: Any, shot: Shot) -> Non
 def test_arrow_keys_and_the_stick_drive(page: Any, shot: Shot) -> None:
     page.keyboard.press("t")
     sees(page, lambda: "->  #SETR0.0,0.0" in log(page), "telemanipulation does not begin")
-    page.keyboard.down("ArrowUp")
-    sees(page, lambda: "->  #SETR0.02,0.0" in log(page), "the arrow does nothing")
+    hold(page, "ArrowUp", lambda: "->  #SETR0.02,0.0" in log(page), "the arrow does nothing")
     page.keyboard.up("ArrowUp")
     x, y = centre(page, ".nicegui-joystick .front, .nicegui-joystick")
     page.mouse.move(x, y)

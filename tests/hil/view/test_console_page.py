@@ -17,6 +17,7 @@ import pytest
 
 from hil.client.decode import OdometryFrame
 from tests.hil.view.conftest import needs_view
+from tests.hil.view.test_browser import hold
 from tests.hil.waiting import TIMEOUT_S, eventually
 
 Shot = Callable[[Any, str], None]
@@ -139,8 +140,7 @@ def test_a_page_that_is_closed_while_driving_stops_the_robot(
     page.get_by_text("<-  #ODO").first.wait_for(timeout=60_000)
     page.keyboard.press("t")
     page.get_by_text("->  #SETR0.0,").first.wait_for()
-    page.keyboard.down("ArrowUp")
-    page.get_by_text("->  #SETR0.01,").first.wait_for()
+    hold(page, "ArrowUp", lambda: page.get_by_text("->  #SETR0.01,").count() > 0, "the arrow does nothing")
     page.close()
     hears(robot, b"#SETR0.0,0.0\r")
     assert robot.heard.startswith(b"#TELE\r")

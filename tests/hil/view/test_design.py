@@ -14,7 +14,7 @@ from typing import Any, Final
 import pytest
 
 from tests.hil.view.conftest import Shot, View, sees
-from tests.hil.view.test_browser import button, centre, contrast, log, status, tab, wait
+from tests.hil.view.test_browser import button, centre, contrast, hold, log, status, tab, wait
 
 PANELS: Final = ("Console", "Time", "Findings", "Registers", "Scope", "Faults", "Board")
 SIZES: Final = ((1440, 900), (1024, 768), (390, 844), (844, 390), (1920, 1080))
@@ -164,20 +164,20 @@ def test_on_a_phone_a_thumb_drives_and_stop_is_in_reach(phone: Any, shot: Shot) 
     sees(phone, lambda: "robot: STOP" in status(phone), "no stop")
 
 
-def test_a_page_that_is_closed_while_driving_stops_the_robot(page: Any, browser: Any, view: View) -> None:
+@pytest.mark.parametrize("how", ["is closed", "gives no sign of life"])
+def test_a_page_that_leaves_while_driving_stops_the_robot(page: Any, browser: Any, view: View, how: str) -> None:
     other = browser.new_page()
     other.goto(view.address)
     other.locator(".chip").wait_for()
     other.keyboard.press("t")
     sees(page, lambda: "#SETR0.0,0.0" in log(page), "telemanipulation does not begin")
-
-    def drives() -> bool:
-        other.keyboard.down("ArrowUp")  # as a key that is held repeats
-        return re.search(r"#SETR0\.0[1-9]", log(page)) is not None
-
-    sees(page, drives, "it does not drive")
-    other.close()
+    hold(other, "ArrowUp", lambda: re.search(r"#SETR0\.0[1-9]", log(page)) is not None, "it does not drive")
+    if how == "is closed":
+        other.close()
+    else:  # it stays connected
+        other.evaluate("for (let n = setInterval(() => 0, 1e9); n > 0; n--) clearInterval(n)")
     sees(page, lambda: log(page).rstrip().split("#SETR")[-1].startswith("0.0,0.0"), "it drives on without a driver")
+    other.close()
     button(page, "STOP").click()
 
 

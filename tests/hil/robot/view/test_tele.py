@@ -79,3 +79,17 @@ def test_leaving_stands_still_and_the_next_drive_begins_at_rest() -> None:
 
 def test_other_keys_are_not_taken() -> None:
     assert not driven().key("m", True, 10.5)
+
+
+def test_a_browser_without_a_sign_of_life_drives_no_more() -> None:
+    tele = driven()
+    tele.stick(0.0, 0.5)
+    assert tele.tick(10.5) == b"#SETR0.1,0.0\r"
+    tele.alive(14.0)
+    assert tele.tick(19.0) == b"#SETR0.1,0.0\r"
+    assert tele.tick(19.1) == b"#SETR0.0,0.0\r"
+    assert not tele.on
+    # The next drive is another one.
+    tele.begin(40.0)
+    assert tele.tick(40.5) == b"#SETR0.0,0.0\r"
+    assert tele.on
