@@ -158,10 +158,14 @@ One half of something is there, and the other half has been forgotten or removed
   beside data that come again and again, tested elsewhere, and never taken back: when the sender falls silent, the last
   data hold for ever. Not reported if the age of the data is known by anything else: a stamp, a count, what is set back.
 * A `static` integer is counted and set back, and nothing reads it: the test of it is missing.
+* A `static` integer is counted up when something happens now and then (`if (late) fails++`), is held against a limit,
+  and nothing begins it again: once it has passed the limit, however far apart the events were, the test never changes.
+  Not meant: a delay after the start, which counts always, up to its own limit, or in a state that is entered once; an
+  index, a clock, a number that is handed on.
 * A value of an enumeration has a case, or is asked for, and no statement gives it to its object: the way into this
   state is missing.
 
-The check needs the source of a whole program. Not reported: a number of events, which is only counted; objects that are
+The check needs the source of a whole program. Not reported: a number of events without a limit; objects that are
 not `static`, which a debugger or another program may set or watch; objects whose address is taken; names of switches
 for tests (`debug`, `enable`).
 

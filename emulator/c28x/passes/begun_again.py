@@ -233,7 +233,7 @@ class _Program:
             return
         again = {f for f in self.functions for x in statements(f.body) if assigned(x) is index and _begins(x)}
         for mark in marks:
-            if mark is None or _is_latched(mark):
+            if mark is None or is_latched(mark):
                 continue
             for function in self.functions:
                 if function not in again:
@@ -343,7 +343,7 @@ def _refuses(s: If, mark: Variable) -> bool:
     return False
 
 
-def _is_latched(v: Variable) -> bool:
+def is_latched(v: Variable) -> bool:
     """Whether the name of a flag, or the comment in its line, says that it is meant to stay."""
     where = v.declaration.where
     try:

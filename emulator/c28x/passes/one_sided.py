@@ -4,10 +4,11 @@ The check needs a whole program (one with a `main`), because it must see all sta
 
 * A `static` integer that begins with 0 is tested or computed with, and no statement writes it.
 * A `static` integer is counted and set back, and nothing but its own count reads it.
+* A `static` integer is counted up on some condition, held against a limit, and nothing begins it again.
 * A state has a case, or is asked for, and no statement gives it to its object.
 
-A number of events is only counted, and never set back; a debugger may set an object that is not `static`: both are not
-meant.  Nor are switches for tests, by their names.
+A number of events is only counted, and nothing asks for a limit; a debugger may set an object that is not `static`:
+both are not meant.  Nor are switches for tests, by their names.
 """
 
 from __future__ import annotations
@@ -17,19 +18,24 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, Final
 
-from emulator.c28x.passes.begun_again import is_number, step_of
+from emulator.c28x.passes.begun_again import is_latched, is_number, step_of
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.state_values import StateValues, constant_of, named, start_of
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     Assign,
+    Binary,
+    Call,
     Compare,
     Conditional,
+    Const,
     Evaluate,
     Expr,
     Function,
     If,
+    Index,
     Load,
+    Logic,
     LValue,
     Stmt,
     Switch,
@@ -40,6 +46,7 @@ from emulator.c28x.tree_queries import (
     addressed,
     assigned,
     bare,
+    blocks,
     own_nodes,
     parts,
     roots,
@@ -81,6 +88,8 @@ def check_one_sided(modules: Iterable[Module], reports: dict[Module, StaticRepor
                     _never_written(variable, module.functions, report)
                 elif _begins_again(writes.get(variable, []), variable):
                     _never_read(variable, functions, report)
+                elif variable in writes and all(_goes_up(s, variable) for s in writes[variable]):
+                    _only_up(variable, functions, values, owners)
             if variable in writes and variable.constants and variable in asked:
                 _never_entered(variable, asked[variable], values, owners)
 
@@ -153,6 +162,90 @@ def _never_read(variable: Variable, functions: list[Function], report: StaticRep
         name = variable.declaration
         message = f"{name.name} is counted and set back, and nothing reads it: the test of it may be missing"
         report.report(first[0], first[1].where, "one-sided", message, object=name.path, declaration=name)
+
+
+def _goes_up(s: Stmt, variable: Variable) -> bool:
+    """Whether a statement adds something to an object, and nothing else."""
+    if (by := step_of(s, variable)) is not None:
+        return by > 0
+    value = bare(s.value) if isinstance(s, Assign) else None
+    if not isinstance(value, Binary) or value.op != "+":
+        return False
+    return any(named(side) is variable for side in (value.left, value.right))
+
+
+def _only_up(
+    variable: Variable, functions: list[Function], values: StateValues, reports: dict[Function, StaticReport]
+) -> None:
+    """Report the limit of a count of what happens now and then, if nothing begins the count again.
+
+    Silent about a delay after the start, which counts always, up to its own limit, or in a state that is never entered
+    again; about an index, a clock, and a count that is handed on.
+    """
+    now_and_then = False
+    limit: tuple[Function, Stmt, Compare] | None = None
+    for function in functions:
+        for s, tests in _with_tests(function.body, []):
+            if assigned(s) is variable:
+                again = all(_holds_again(test, values) for test in tests)
+                now_and_then |= again and any(not _mentions(test, variable) for test in tests)
+            for p in own_nodes(s):
+                match p:
+                    case Index(expr=inner) | Call(arguments=inner) if _used(inner, variable):
+                        return
+                    case Binary(op="-") if _mentions(p, variable):
+                        return
+                    case Compare(left=left, right=right):
+                        for side, other in ((left, right), (right, left)):
+                            if (constant_of(other) or 0) > 1 and _mentions(side, variable) and limit is None:
+                                limit = function, s, p
+    if now_and_then and limit is not None and not is_latched(variable):
+        function, s, compare = limit
+        name = variable.declaration
+        message = (
+            f"{name.name} only goes up: once it has passed the limit, {source_text(compare)} never changes again, "
+            "whatever comes between"
+        )
+        reports[function].report(function, s.where, "one-sided", message, object=name.path, declaration=name)
+
+
+def _used(e: Any, variable: Variable) -> bool:
+    """Whether an object itself is used, and not only a comparison of it."""
+    if isinstance(e, list):
+        return any(_used(each, variable) for each in e)
+    compared = {id(q) for p in parts(e) if isinstance(p, Compare) for q in parts(p)}
+    return any(
+        getattr(p.root, "declaration", None) == variable.declaration  # or its old value, of `x++`
+        for p in parts(e) if isinstance(p, LValue) and id(p) not in compared
+    )  # fmt: skip
+
+
+def _with_tests(body: list[Stmt], tests: list[Expr]) -> Iterator[tuple[Stmt, list[Expr]]]:
+    """Every statement, with the conditions around it."""
+    for s in body:
+        yield s, tests
+        if isinstance(s, Switch):
+            ctype = s.subject.ctype
+            for labels, body in s.cases:
+                one_of: list[Expr] = [Compare(ctype, "==", s.subject, Const(ctype, each)) for each in labels or ()]
+                yield from _with_tests(body, [*tests, Logic(ctype, "or", one_of)])
+            continue
+        around = [*tests, s.test] if isinstance(s, If | While) and not isinstance(s.test, Const) else tests
+        for block in blocks(s):
+            yield from _with_tests(block, around)
+
+
+def _holds_again(test: Expr, values: StateValues) -> bool:
+    """Whether a test may be true again: no statement may give the state back that an object had at the start."""
+    if isinstance(test, Logic) and test.operands:
+        some = any if test.op == "or" else all
+        return some(_holds_again(each, values) for each in test.operands)
+    if isinstance(test, Compare) and test.op == "==":
+        for side, other in ((test.left, test.right), (test.right, test.left)):
+            if (state := named(side)) is not None and (label := constant_of(other)) is not None:
+                given = values.of(state)
+                return not given or label in given  # what no statement gives at all, something else may
+    return True
 
 
 #: Where a value of an object has a case, or is asked for.

@@ -182,6 +182,60 @@ def test_a_count_that_is_read_or_only_shown_is_silent(tmp_path: Path, count: str
     assert told(tmp_path, count=count) == []
 
 
+UP = """typedef unsigned int Uint16;
+typedef enum {{ CALIBRATE, RUN }} MODE;
+static volatile MODE mode = CALIBRATE;
+static Uint16 bad = 0;
+Uint16 Raw = 0, Out = 0, Sum = 0, Log[9];
+static void Send(Uint16 a) {{ Out = a; }}
+static void Step(void)
+{{
+    {count}
+    {back}
+    {test}
+}}
+int main(void)
+{{
+    for (;;) {{ Step(); }}
+}}
+"""
+NOW_AND_THEN = "if (Raw > 9) bad++;"
+
+
+def up(folder: Path, *, count: str = NOW_AND_THEN, back: str = "", test: str = "if (bad >= 4) Out = 1;") -> list[str]:
+    """The objects of which a program is told that they only go up."""
+    file = folder / "a.c"
+    file.write_text(UP.format(count=count, back=back, test=test), encoding="utf-8")
+    found = Build([str(file)]).compiled.findings
+    return [f.object.rpartition(".")[2] for f in found if f.rule == "one-sided" and "goes up" in f.message]
+
+
+@pytest.mark.parametrize("given", [
+    {},
+    {"count": "if (Raw > 9) { if (bad < 4) bad++; }", "test": "Send(bad >= 4);"},
+    {"count": "if (Raw > 9) bad += Raw;", "test": "Out = bad + Raw >= 400;"},
+    {"count": "switch (mode) { case RUN: bad++; break; default: break; }", "back": "if (Raw == 5) mode = RUN;"},
+    {"count": "if (Raw == 3) Sum |= 1u << bad++;"},
+])  # fmt: skip
+def test_a_count_with_a_limit_that_nothing_begins_again_is_told(tmp_path: Path, given: dict[str, str]) -> None:
+    assert up(tmp_path, **given) == ["bad"]
+
+
+@pytest.mark.parametrize("given", [
+    {"back": "if (Raw == 0) bad = 0;"}, {"back": "if (Raw == 0 && bad > 0) bad--;"},
+    # A delay after the start: always, up to its own limit, in a state that nothing enters again.
+    {"count": "bad++;"}, {"count": "if (bad < 4) bad++;"},
+    {"count": "if (mode == CALIBRATE) { Sum += Raw; bad++; }", "test": "if (bad >= 4) mode = RUN;"},
+    {"count": "switch (mode) { case CALIBRATE: bad++; break; default: break; }", "test": "if (bad >= 4) mode = RUN;"},
+    # An index, a clock, a number that goes out.
+    {"count": "if (Raw > 9) Log[bad++] = Raw;"}, {"test": "if (Raw - bad >= 4) Out = 1;"}, {"back": "Send(bad);"},
+    # No limit.
+    {"test": "if (bad) Out = 1;"}, {"test": "if (bad != Out) Out = 1;"},
+])  # fmt: skip
+def test_a_count_that_is_begun_again_or_counts_once_is_silent(tmp_path: Path, given: dict[str, str]) -> None:
+    assert up(tmp_path, **given) == []
+
+
 def test_a_state_that_nothing_enters_is_told(tmp_path: Path) -> None:
     wet = "if (Raw < 5) Enter(WET); else if (Raw > 90) Enter(DRY);"
     assert told(tmp_path, wet=wet) == ["Valve = 2;"]
