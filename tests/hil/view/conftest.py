@@ -73,7 +73,13 @@ def page(browser: Any, view: View) -> Iterator[Any]:
     page.set_default_timeout(30_000)
     troubles: list[str] = []
     page.on("pageerror", lambda error: troubles.append(f"page error: {error}"))
-    page.on("console", lambda message: troubles.append(message.text) if message.type == "error" else None)
+    # Pages that were left within the last 20 s count: one too many waits (503), and asks again by itself.
+    page.on(
+        "console",
+        lambda message: (
+            troubles.append(message.text) if message.type == "error" and "status of 503" not in message.text else None
+        ),
+    )
     page.on(
         "request",
         lambda request: (
