@@ -160,8 +160,8 @@ One half of something is there, and the other half has been forgotten or removed
 * A `static` integer is counted and set back, and nothing reads it: the test of it is missing.
 * A `static` integer is counted up when something happens now and then (`if (late) fails++`), is held against a limit,
   and nothing begins it again: once it has passed the limit, however far apart the events were, the test never changes.
-  Not meant: a delay after the start, which counts always, up to its own limit, or in a state that is entered once; an
-  index, a clock, a number that is handed on.
+  Not meant: a delay after the start, which counts always, each time another count is full, up to its own limit, or in
+  a state that is entered once; an index, a clock, a number that is handed on.
 * A value of an enumeration has a case, or is asked for, and no statement gives it to its object: the way into this
   state is missing.
 

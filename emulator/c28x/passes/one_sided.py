@@ -75,6 +75,7 @@ def check_one_sided(modules: Iterable[Module], reports: dict[Module, StaticRepor
         for s in statements(function.body):
             if (variable := assigned(s)) is not None:
                 writes.setdefault(variable, []).append(s)
+    counts = {v for v, assigns in writes.items() if any(step_of(s, v) for s in assigns)}
     values = StateValues(functions)
     owners = {function: report for module, report in reports.items() for function in module.functions}
     asked = _asked(functions)
@@ -89,7 +90,7 @@ def check_one_sided(modules: Iterable[Module], reports: dict[Module, StaticRepor
                 elif _begins_again(writes.get(variable, []), variable):
                     _never_read(variable, functions, report)
                 elif variable in writes and all(_goes_up(s, variable) for s in writes[variable]):
-                    _only_up(variable, functions, values, owners)
+                    _only_up(variable, counts, functions, values, owners)
             if variable in writes and variable.constants and variable in asked:
                 _never_entered(variable, asked[variable], values, owners)
 
@@ -175,12 +176,13 @@ def _goes_up(s: Stmt, variable: Variable) -> bool:
 
 
 def _only_up(
-    variable: Variable, functions: list[Function], values: StateValues, reports: dict[Function, StaticReport]
-) -> None:
+    variable: Variable, counts: set[Variable], functions: list[Function], values: StateValues,
+    reports: dict[Function, StaticReport],
+) -> None:  # fmt: skip
     """Report the limit of a count of what happens now and then, if nothing begins the count again.
 
-    Silent about a delay after the start, which counts always, up to its own limit, or in a state that is never entered
-    again; about an index, a clock, and a count that is handed on.
+    Silent about a delay after the start, which counts always, each time another count is full, up to its own limit, or
+    in a state that is never entered again; about an index, a clock, and a count that is handed on.
     """
     now_and_then = False
     limit: tuple[Function, Stmt, Compare] | None = None
@@ -188,7 +190,7 @@ def _only_up(
         for s, tests in _with_tests(function.body, []):
             if assigned(s) is variable:
                 again = all(_holds_again(test, values) for test in tests)
-                now_and_then |= again and any(not _mentions(test, variable) for test in tests)
+                now_and_then |= again and not all(_mentions(test, variable) or _of(test, counts) for test in tests)
             for p in own_nodes(s):
                 match p:
                     case Index(expr=inner) | Call(arguments=inner) if _used(inner, variable):
@@ -220,15 +222,22 @@ def _used(e: Any, variable: Variable) -> bool:
     )  # fmt: skip
 
 
+def _of(test: Expr, counts: set[Variable]) -> bool:
+    """Whether a test is one of counts alone: true each so many times."""
+    every = parts(test)
+    roots_of = {p.root for p in every if isinstance(p, LValue)}
+    return bool(roots_of) and roots_of <= counts and not any(isinstance(p, Call) for p in every)
+
+
 def _with_tests(body: list[Stmt], tests: list[Expr]) -> Iterator[tuple[Stmt, list[Expr]]]:
     """Every statement, with the conditions around it."""
     for s in body:
         yield s, tests
         if isinstance(s, Switch):
             ctype = s.subject.ctype
-            for labels, body in s.cases:
+            for labels, case in s.cases:
                 one_of: list[Expr] = [Compare(ctype, "==", s.subject, Const(ctype, each)) for each in labels or ()]
-                yield from _with_tests(body, [*tests, Logic(ctype, "or", one_of)])
+                yield from _with_tests(case, [*tests, Logic(ctype, "or", one_of)])
             continue
         around = [*tests, s.test] if isinstance(s, If | While) and not isinstance(s.test, Const) else tests
         for block in blocks(s):

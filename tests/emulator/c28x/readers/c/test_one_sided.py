@@ -224,7 +224,7 @@ def test_a_count_with_a_limit_that_nothing_begins_again_is_told(tmp_path: Path, 
 @pytest.mark.parametrize("given", [
     {"back": "if (Raw == 0) bad = 0;"}, {"back": "if (Raw == 0 && bad > 0) bad--;"},
     # A delay after the start: always, up to its own limit, in a state that nothing enters again.
-    {"count": "bad++;"}, {"count": "if (bad < 4) bad++;"},
+    {"count": "bad++;"}, {"count": "if (bad < 4) bad++;"}, {"count": "if (++Sum >= 10) { Sum = 0; bad++; }"},
     {"count": "if (mode == CALIBRATE) { Sum += Raw; bad++; }", "test": "if (bad >= 4) mode = RUN;"},
     {"count": "switch (mode) { case CALIBRATE: bad++; break; default: break; }", "test": "if (bad >= 4) mode = RUN;"},
     # An index, a clock, a number that goes out.
