@@ -189,8 +189,8 @@ def _only_up(
     for function in functions:
         for s, tests in _with_tests(function.body, []):
             if assigned(s) is variable:
-                again = all(_holds_again(test, values) for test in tests)
-                now_and_then |= again and not all(_mentions(test, variable) or _of(test, counts) for test in tests)
+                regular = all(_mentions(test, variable) or _of_counts(test, counts) for test in tests)
+                now_and_then |= not regular and all(_holds_again(test, values) for test in tests)
             for p in own_nodes(s):
                 match p:
                     case Index(expr=inner) | Call(arguments=inner) if _used(inner, variable):
@@ -222,11 +222,11 @@ def _used(e: Any, variable: Variable) -> bool:
     )  # fmt: skip
 
 
-def _of(test: Expr, counts: set[Variable]) -> bool:
-    """Whether a test is one of counts alone: true each so many times."""
+def _of_counts(test: Expr, counts: set[Variable]) -> bool:
+    """Whether a test asks for counts alone, as of a clock that is divided."""
     every = parts(test)
-    roots_of = {p.root for p in every if isinstance(p, LValue)}
-    return bool(roots_of) and roots_of <= counts and not any(isinstance(p, Call) for p in every)
+    asked = {p.root for p in every if isinstance(p, LValue)}
+    return bool(asked) and asked <= counts and not any(isinstance(p, Call) for p in every)
 
 
 def _with_tests(body: list[Stmt], tests: list[Expr]) -> Iterator[tuple[Stmt, list[Expr]]]:
@@ -245,7 +245,7 @@ def _with_tests(body: list[Stmt], tests: list[Expr]) -> Iterator[tuple[Stmt, lis
 
 
 def _holds_again(test: Expr, values: StateValues) -> bool:
-    """Whether a test may be true again: no statement may give the state back that an object had at the start."""
+    """Whether a test may be true again.  One for the state at the start is not, if no statement gives that again."""
     if isinstance(test, Logic) and test.operands:
         some = any if test.op == "or" else all
         return some(_holds_again(each, values) for each in test.operands)

@@ -1,10 +1,9 @@
 """Driving by hand: arrow keys and the stick change V and W, and orders follow.
 
 It works as in the thesis console: `#TELE`, then `#SETRv,w` ten times a second.  With each of them, an arrow key that is
-held changes V by 0.01 m/s or W by 0.03 rad/s, one key at a time.  There are two differences: the end of driving stops
-the robot, and the next drive begins at rest; and a key counts as released if its release was never seen, because
-another window got it.  And a browser that gives no sign of life for a while, because it or the network is gone, drives
-no more.
+held changes V by 0.01 m/s or W by 0.03 rad/s, one key at a time.  There are three differences: the end of driving stops
+the robot, and the next drive begins at rest; a key counts as released if its release was never seen, because another
+window got it; and driving ends if the browser gives no sign of life for a while, because it or the network is gone.
 """
 
 from __future__ import annotations

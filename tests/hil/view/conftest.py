@@ -73,13 +73,14 @@ def page(browser: Any, view: View) -> Iterator[Any]:
     page.set_default_timeout(30_000)
     troubles: list[str] = []
     page.on("pageerror", lambda error: troubles.append(f"page error: {error}"))
-    # Pages that were left within the last 20 s count: one too many waits (503), and asks again by itself.
-    page.on(
-        "console",
-        lambda message: (
-            troubles.append(message.text) if message.type == "error" and "status of 503" not in message.text else None
-        ),
-    )
+
+    def said(message: Any) -> None:
+        # Pages that were left within the last 20 s count: a page too many is itself a 503, waits, and asks again.
+        waits = "status of 503" in message.text and message.location["url"].partition("?")[0] == view.address
+        if message.type == "error" and not waits:
+            troubles.append(message.text)
+
+    page.on("console", said)
     page.on(
         "request",
         lambda request: (
