@@ -4,11 +4,15 @@
 - `main` reads an object in a loop that reads it again if a routine has been there: a counter of its versions is not
   the same before and after.
 - A routine uses one part of an array (a double buffer), and `main` another one, until the routine turns to it.
+- A routine reads one element of an array in each run, round and round (the digits of a display).  All elements are
+  never read in one run, so a mask would not keep them together.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 from typing import Any, Final, NamedTuple, TypeAlias
 
 from emulator.c28x.symbols import Module
@@ -425,6 +429,31 @@ def _selected(body: list[Stmt]) -> Iterator[tuple[str, str]]:
             if len(asked) == 1:
                 for path in (written_objects(statement.then) ^ written_objects(statement.otherwise)) - asked:
                     yield path, min(asked)
+
+
+def shown_in_turn(modules: Iterable[Module]) -> dict[str, set[str]]:
+    """Arrays of which a routine shows one element after the other for ever: path -> the names of such routines.
+
+    Each run reads one element, whatever the state, and the routine alone moves the subscript.  A routine that sends a
+    buffer is not meant: it comes to an end, or somebody else sets its subscript.
+    """
+    own = {function.path: function for module in modules for function in module.functions}
+    found: dict[str, set[str]] = {}
+    for routine, reached in interrupt_routines(own):
+        nodes = list(chain.from_iterable(within(function.body) for function in reached))
+        used = Counter(path for node in nodes if (path := object_path(node)) is not None)
+        always = (node for s in routine.body if not blocks(s) for node in own_nodes(s))
+        for node in always:
+            match node:
+                case Load(lvalue=LValue(indices=[Index(expr=subscript)]) as element) if element.ctype.leaves == 1:
+                    array, moved = object_path(element), bare(subscript)
+                    index = object_path(moved.lvalue) if isinstance(moved, Load) else None
+                    if array is None or index is None or used[array] != 1:
+                        continue
+                    others = [function for function in own.values() if function not in reached]
+                    if not any(index == object_path(n) for f in others for n in within(f.body)):
+                        found.setdefault(array, set()).add(routine.name)
+    return found
 
 
 def ring_indices(modules: Iterable[Module]) -> dict[Word, bool]:

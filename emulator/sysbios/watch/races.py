@@ -15,7 +15,7 @@ comparison of times or a peripheral's own interrupt enable gives.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from typing import Final
 
 from emulator.c28x.ctypes import ArrayType, CType, FloatType, StructType
@@ -31,6 +31,7 @@ from emulator.sysbios.watch.kept_off import (
     alternating,
     rereading_lines,
     ring_indices,
+    shown_in_turn,
 )
 from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.pairs import (
@@ -101,6 +102,11 @@ def _stride(ctype: CType) -> int:
     return element.words if element is not None and element.leaves > 1 else 0
 
 
+def _names_one(threads: Iterable[Thread], routines: Collection[str]) -> bool:
+    """Whether one of two threads is one of these routines."""
+    return any(isinstance(thread.what, Routine) and thread.what.name in routines for thread in threads)
+
+
 def _has_array(ctype: CType) -> bool:
     return isinstance(ctype, StructType) and any(isinstance(member.ctype, ArrayType) for member in ctype.members)
 
@@ -120,6 +126,8 @@ class Races:
         self._handed: dict[str, set[HandOver]] = {}
         #: Double buffers, from the source: path -> the paths of what selects the part that a routine uses.
         self._alternating: dict[str, set[str]] = {}
+        #: Arrays of which a routine shows one element after the other, from the source: path -> such routines.
+        self._in_turn: dict[str, set[str]] = {}
         #: Early hand-over -> the words that `main` still uses while the routine may use them too.
         self._late: dict[HandOver, set[tuple[Object, int]]] = {}
         #: What keeps `main` and a routine apart without a mask: see kept_off.py.
@@ -190,6 +198,8 @@ class Races:
             conflicts += tuple(other for other in unfinished if other not in by_time)
         if conflicts and shared.object.declaration.path in self._alternating:
             conflicts = tuple(other for other in conflicts if not self._turned_since(shared, thread, other))
+        if conflicts and (routines := self._in_turn.get(shared.object.declaration.path)):
+            conflicts = tuple(other for other in conflicts if not _names_one((thread, other.thread), routines))
         if conflicts or by_time:
             access = LatestAccess(thread, write, protection, thread.clock, statement, self._clock.now)
             for other in conflicts:
@@ -332,6 +342,7 @@ class Races:
                 self._pairs, self._continued = pairs(self._modules), continued(self._modules)
                 self._turned, self._handed = turned_by_both(self._modules), handed_over(self._modules)
                 self._alternating = alternating(self._modules)
+                self._in_turn = shown_in_turn(self._modules)
                 self._conditions, self._rereading = UseConditions(self._modules), rereading_lines(self._modules)
             shared.pairs = self._pairs.get(obj.declaration.path)
         if not obj.declaration.function:

@@ -92,6 +92,11 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
         # An array of data hands nothing over.
         ("Uint16 i; for (i = 0; i < 8; i++) Words[i] = Count;", "Uint16 i; for (i = 0; i < 8; i++) Sum += Words[i];",
          [("race", "Words")]),
+        # Shown in turn, but two in one run; or main sets which one comes next, so that it knows what is complete.
+        ("static Uint16 digit; digit = (digit + 1) & 3; Sum = Words[digit] + Words[digit + 4];",
+         "Uint16 i; for (i = 0; i < 8; i++) Words[i] = i;", [("race", "Words")]),
+        ("Sum = Words[Head]; Head = (Head + 1) & 7;",
+         "Uint16 i; for (i = 0; i < 8; i++) Words[i] = i; if (Sum == 3) Head = 0;", [("race", "Words")]),
         # What the routine goes on with is set anew, one object after the other.
         ("if (Ready) { Sum += Words[Head]; Head++; if (Head == 8) { Head = 0; Ready = 0; } }", "Head = 0; Ready = 1;",
          [("race", "Head")]),
@@ -220,6 +225,11 @@ def test_what_an_interrupt_can_come_into_is_told(
          "Uint16 i; if (Ready) { Ready = 0; for (i = 0; i < 4; i++) Sum += Half ? Bytes[i] : Words[i]; }"),
         ("Sum += Halves[Half][Head]; if (++Head == 4) { Head = 0; Half ^= 1; Ready = 1; }",
          "Uint16 i; if (Ready) { Ready = 0; for (i = 0; i < 4; i++) Halves[Half ^ 1][i] = i; }"),
+        # A display: one digit in each interrupt, for ever.
+        ("static Uint16 digit; digit = (digit + 1) & 3; Sum = Words[digit];",
+         "Uint16 i; for (i = 0; i < 4; i++) Words[i] = i + Sum;"),
+        ("static Uint16 digit; Sum = Words[digit]; if (++digit == 4) digit = 0;",
+         "Uint16 i; for (i = 0; i < 4; i++) Words[i] = i + Sum;"),
         # A buffer that a flag hands over and back.
         (
             "if (Ready) { Uint16 i; for (i = 0; i < 8; i++) Sum += Words[i]; Ready = 0; }",
