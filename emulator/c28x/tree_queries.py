@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import fields
+from itertools import chain
 from typing import Any, Final, get_args, get_type_hints
 
 from emulator.c28x import tree
@@ -259,12 +260,15 @@ def calls(e: Any) -> bool:
     return any(isinstance(part, Call | CallPointer) for part in parts(e))
 
 
-def statements(body: Iterable[Stmt]) -> Iterator[Stmt]:
-    """Every statement, including those of inner blocks."""
+def statements(body: Iterable[Stmt]) -> list[Stmt]:
+    """Every statement, each before those of its inner blocks."""
+    found: list[Stmt] = []
     for s in body:
-        yield s
-        for inner in blocks(s):
-            yield from statements(inner)
+        found.append(s)
+        if type(s) in _WITH_BLOCKS:
+            for inner in blocks(s):
+                found += statements(inner)
+    return found
 
 
 def blocks(s: Stmt) -> list[list[Stmt]]:
@@ -279,6 +283,10 @@ def blocks(s: Stmt) -> list[list[Stmt]]:
         case Switch(cases=cases):
             return [inner for _, inner in cases]
     return []
+
+
+#: The kinds of statements for which `blocks` lists any: most statements have none, and every pass asks.
+_WITH_BLOCKS: Final = (If, While, For, Switch)
 
 
 def different(values: Iterable[Any]) -> list[Any]:
@@ -336,8 +344,7 @@ def addressed(nodes: Iterable[Any]) -> set[Variable]:
 
 def within(body: Iterable[Stmt]) -> Iterator[Any]:
     """Every expression and lvalue of statements."""
-    for s in statements(body):
-        yield from own_nodes(s)
+    return chain.from_iterable(map(own_nodes, statements(body)))
 
 
 def variables(nodes: Iterable[Any]) -> set[Variable]:

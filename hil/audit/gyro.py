@@ -13,7 +13,7 @@ from emulator.signals import SpiSlave
 from hil.audit import main_robot_guards, properties
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
 from hil.audit.properties import Z
-from hil.audit.rig import Fixes, Rig, robot
+from hil.audit.rig import Fixes, Rig, robot, static_findings
 from hil.audit.task_rig import TaskRig
 from hil.golden.scripted_gyro import OUT_TEMP, ScriptedGyro
 from hil.robot.board import GYRO_CS_GPIO
@@ -66,7 +66,7 @@ class DisturbedSpiSlave:
 
 def global_names(fixes: Fixes) -> Evidence:
     """Look for the names in the typed tree of the image."""
-    return reported(_rig(fixes).findings, "hidden-name", function="readReg")
+    return reported(static_findings(fixes), "hidden-name", function="readReg")
 
 
 def fifo_bypassed(fixes: Fixes) -> Evidence:
@@ -138,7 +138,7 @@ def offset_wraps(fixes: Fixes) -> Evidence:
 
 def temperature_unused(fixes: Fixes) -> Evidence:
     """Look for calls in the call graph of the image."""
-    return reported(Rig(fixes).findings, "never-called", object="getTemp")
+    return reported(static_findings(fixes), "never-called", object="getTemp")
 
 
 def temperature_sign(fixes: Fixes) -> Evidence:

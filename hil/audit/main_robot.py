@@ -9,7 +9,7 @@ from typing import Any, Final
 from emulator.clock import SYSCLK_HZ
 from hil.audit import main_robot_guards, main_robot_navigation
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
-from hil.audit.rig import Fixes, Rig, robot
+from hil.audit.rig import Fixes, robot, static_findings
 from hil.audit.task_rig import TaskRig
 
 PRESSED, FREE = 0, 1
@@ -124,12 +124,12 @@ def calib_resumed(fixes: Fixes) -> Evidence:
 def unused_objects(fixes: Fixes) -> Evidence:
     """Look for objects at file scope that no statement uses."""
     names = {f"main_robot.{name}" for name in ("d", "Iwl", "Iwr", "Wl_ref_pi", "Wr_ref_pi")}
-    return reported([f for f in Rig(fixes).findings if f.object in names], "unused-object")
+    return reported([f for f in static_findings(fixes) if f.object in names], "unused-object")
 
 
 def titaref_unread(fixes: Fixes) -> Evidence:
     """Look for `titaref` in Position, where another name hides the object that TaskNAVIGATION sets."""
-    return reported(Rig(fixes).findings, "hidden-name", function="Position", object="titaref")
+    return reported(static_findings(fixes), "hidden-name", function="Position", object="titaref")
 
 
 def _navigate(fixes: Fixes, turns: int, status: str, bumper: int = FREE, **objects: Any) -> tuple[TaskRig, list[float]]:

@@ -8,7 +8,7 @@ from math import degrees, dist, nan, radians
 from typing import Final
 
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
-from hil.audit.rig import Fixes, Rig, robot
+from hil.audit.rig import Fixes, Rig, robot, static_findings
 from hil.audit.task_rig import TaskRig
 from hil.bench import Bench
 from hil.world.robot_params import Pose
@@ -124,7 +124,7 @@ def blind_spot(fixes: Fixes) -> Evidence:
 
 def ciego_unused(fixes: Fixes) -> Evidence:
     """Look for calls of the function that section 3.2.2 credits with few collisions."""
-    return reported(Rig(fixes).findings, "never-called", function="P_ciego")
+    return reported(static_findings(fixes), "never-called", function="P_ciego")
 
 
 def bump_repeats(fixes: Fixes) -> Evidence:
@@ -171,13 +171,13 @@ def pi_period(fixes: Fixes) -> Evidence:
 def hidden_names(fixes: Fixes) -> Evidence:
     """List parameters and locals with names of objects at file scope, without titaref (MAIN-titaref-unread)."""
     names = {"PI.kp", "PI.ki", "Comp.dF_ant", "velocity.Wpi", "Position.Wpos"}
-    findings = [f for f in Rig(fixes).findings if f.object.removeprefix("main_robot.") in names]
+    findings = [f for f in static_findings(fixes) if f.object.removeprefix("main_robot.") in names]
     return reported(findings, "hidden-name")
 
 
 def comp_undefined(fixes: Fixes) -> Evidence:
     """Show that the change of the distance is used whether it was computed or not."""
-    return reported(Rig(fixes).findings, "maybe-uninitialised", function="Comp", object="X")
+    return reported(static_findings(fixes), "maybe-uninitialised", function="Comp", object="X")
 
 
 def _comp(fixes: Fixes, before_cm: float, now: int) -> float:
@@ -208,12 +208,12 @@ def comp_span(fixes: Fixes) -> Evidence:
 def speed_control_unused(fixes: Fixes) -> Evidence:
     """Look for calls in the call graph of the image."""
     names = ("main_robot.Lineal_velocity", "main_robot.velocity")
-    return reported([f for f in Rig(fixes).findings if f.object in names], "never-called")
+    return reported([f for f in static_findings(fixes) if f.object in names], "never-called")
 
 
 def lineal_range(fixes: Fixes) -> Evidence:
     """Look for the test of the range in which the front sonar measures speed well: its result is constant."""
-    return reported(Rig(fixes).findings, "constant-condition", function="Lineal_velocity", object="25 < df")
+    return reported(static_findings(fixes), "constant-condition", function="Lineal_velocity", object="25 < df")
 
 
 def _lineal(fixes: Fixes, wz: float) -> Rig:
@@ -240,7 +240,7 @@ def lineal_straightens(fixes: Fixes) -> Evidence:
 
 def velocity_reference(fixes: Fixes) -> Evidence:
     """Look for uses of the rate that velocity is called with."""
-    return reported(Rig(fixes).findings, "unused-parameter", function="velocity", object="Wref")
+    return reported(static_findings(fixes), "unused-parameter", function="velocity", object="Wref")
 
 
 def position_count(fixes: Fixes) -> Evidence:
@@ -269,7 +269,7 @@ def _ciego(fixes: Fixes, t: int) -> Rig:
 
 def ciego_forgets(fixes: Fixes) -> Evidence:
     """Look for the value that P_ciego should keep for its next call: the store is lost."""
-    return reported(Rig(fixes).findings, "dead-store", function="P_ciego", object="d_ant")
+    return reported(static_findings(fixes), "dead-store", function="P_ciego", object="d_ant")
 
 
 def ciego_overflow(fixes: Fixes) -> Evidence:
@@ -284,7 +284,7 @@ def ciego_zero(fixes: Fixes) -> Evidence:
 
 def ciego_limits(fixes: Fixes) -> Evidence:
     """Look for uses of the limits of the distances that count."""
-    return reported(Rig(fixes).findings, "unused-parameter", function="P_ciego", object="dm")
+    return reported(static_findings(fixes), "unused-parameter", function="P_ciego", object="dm")
 
 
 def init_offset(fixes: Fixes) -> Evidence:

@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping
 from typing import Final
 
 from hil.audit.evidence import Evidence, measured, reported
-from hil.audit.rig import Fixes, Rig, robot
+from hil.audit.rig import Fixes, Rig, robot, static_findings
 
 
 def unused_object(fixes: Fixes) -> Evidence:
     """Look for the object in the typed tree of the image."""
-    return reported(Rig(fixes).findings, "unused-object", object="ROBOT_Odometry")
+    return reported(static_findings(fixes), "unused-object", object="ROBOT_Odometry")
 
 
 def distances_apart(fixes: Fixes) -> Evidence:

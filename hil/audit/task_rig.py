@@ -16,7 +16,7 @@ class _TurnsDoneError(Exception):
 class TaskRig(Rig):
     """A rig on which tasks run.  Gates are always free, a pend is one turn, calls that start peripherals are left out.
 
-    `each_turn()` is called before each turn.  There are no static checks.
+    `each_turn()` is called before each turn.
     """
 
     def __init__(
@@ -32,7 +32,7 @@ class TaskRig(Rig):
         idle = dict.fromkeys(
             ("GateMutexPri_enter", "GateMutexPri_leave", "Clock_start", "Log_write1", "Send_ODO_Trayect"), nothing
         )
-        super().__init__(fixes, externs=idle | {"Semaphore_pend": self._pend} | externs, static=False)
+        super().__init__(fixes, externs=idle | {"Semaphore_pend": self._pend} | externs)
 
     def _pend(self, _semaphore: Any, _timeout: int) -> int:
         if self._left == 0:

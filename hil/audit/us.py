@@ -8,7 +8,7 @@ from typing import Final
 
 from hil.audit import properties
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
-from hil.audit.rig import Fixes, Rig
+from hil.audit.rig import Fixes, Rig, static_findings
 
 #: A rig with us.c and the modules that it needs.  It is built faster than the whole robot's program.
 _rig: Final = partial(Rig, modules=("firmware_model.us",))
@@ -140,7 +140,7 @@ def window_far_only(fixes: Fixes) -> Evidence:
 
 def median_unused(fixes: Fixes) -> Evidence:
     """Look for calls in the call graph of the image."""
-    return reported(Rig(fixes).findings, "never-called", object="median")
+    return reported(static_findings(fixes), "never-called", object="median")
 
 
 def _median(fixes: Fixes, values: list[float]) -> Rig:
@@ -174,7 +174,7 @@ def median_even(fixes: Fixes) -> Evidence:
 
 def average_unused(fixes: Fixes) -> Evidence:
     """Look for calls in the call graph of the image."""
-    return reported(Rig(fixes).findings, "never-called", object="average")
+    return reported(static_findings(fixes), "never-called", object="average")
 
 
 def average_accumulator(fixes: Fixes) -> Evidence:

@@ -15,6 +15,7 @@ from __future__ import annotations
 import keyword
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 from emulator.c28x.tree import Function, RegisterRef, Variable
@@ -39,6 +40,7 @@ def object_name(variable: Variable) -> str:
     return text.replace("$", "·24·") if "$" in text else text
 
 
+@lru_cache(maxsize=1024)
 def of_file(module: str) -> str:
     """The name of a module.  It comes from a file name: a character that no Python name can have becomes its code."""
     return "".join(c if c.isascii() and (c.isalnum() or c == "_") else f"·{ord(c):x}·" for c in module)

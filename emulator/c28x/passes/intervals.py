@@ -26,7 +26,7 @@ from emulator.c28x.tree import (
     Stmt,
     Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import assigned_variables, blocks, observable, parts, roots, variables
+from emulator.c28x.tree_queries import assigned_variables, blocks, observable, own_nodes, parts, variables
 
 Ranges = Mapping[Variable, Interval]
 
@@ -40,8 +40,7 @@ def annotate_bounds(body: list[Stmt], ranges: Ranges | None = None) -> None:
     """Store the bounds of all expressions of `body` on them; `ranges`: known bounds of counting locals."""
     known = ranges or {}
     for s in body:
-        for root in roots(s):
-            _bound(root, known)
+        _bound(own_nodes(s), known)
         if isinstance(s, For):
             _count(s, known)
         else:
@@ -55,9 +54,9 @@ def bounds_of(e: Expr) -> Interval:
     return e.bounds
 
 
-def _bound(root: Any, ranges: Ranges) -> None:
-    """Store the bounds of an expression and of its parts, operands first."""
-    for e in reversed(parts(root)):
+def _bound(nodes: list[Any], ranges: Ranges) -> None:
+    """Store the bounds of expressions; each is before its operands."""
+    for e in reversed(nodes):
         if isinstance(e, Expr) and isinstance(e.ctype, IntType):
             if isinstance(e, Binary):
                 e.exact = combine(e.op, bounds_of(e.left), bounds_of(e.right))
@@ -81,7 +80,7 @@ def _count(s: For, ranges: Ranges) -> None:
     variable = Convert(common, Load(root.ctype, s.variable, where=s.where), where=s.where)
     stop = Convert(common, s.stop, where=s.stop.where)
     s.test = Compare(INT, "<" if s.step > 0 else ">", variable, stop, where=s.where)
-    _bound(s.test, ranges)
+    _bound(parts(s.test), ranges)
     annotate_bounds(s.body, ranges)
 
 

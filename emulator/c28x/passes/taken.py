@@ -53,9 +53,11 @@ def _mark(body: list[Stmt], tested: frozenset[Variable]) -> None:
         if cleared is not None:
             read.discard(cleared)
     for s in body:
+        if not (inner_blocks := blocks(s)):
+            continue
         test = s.test if isinstance(s, If | While) else s.subject if isinstance(s, Switch) else None
         inner = tested | {p.root for p in parts(test) if isinstance(p, LValue) and isinstance(p.root, Variable)}
-        for block in blocks(s):
+        for block in inner_blocks:
             _mark(block, inner)
 
 
