@@ -134,6 +134,7 @@ class Connections:
         self._cpu_timers()
         self._trips()
         self._trip_actions()
+        self._trips_at_once()
         self._forced_trips()
         self._dead_bands()
         self._post_processing()
@@ -1020,6 +1021,19 @@ class Connections:
                         f"{select} trips output {x}, and no statement sets {name}.TZCTL.TZ{x}: 0 is high impedance",
                         object=f"{name}.TZCTL.TZ{x}", how="dynamic",
                     )  # fmt: skip
+
+    def _trips_at_once(self) -> None:
+        """Trips that came when TZSEL chose an input that was still low, and that nothing ends."""
+        for n in range(1, EPWM_COUNT + 1):
+            name = f"EPwm{n}Regs"
+            outputs = [x for x in "AB" if self._writes(f"{name}.AQCTL{x}")]
+            if not outputs or self._writes_again(f"{name}.TZCLR", bool, "OST"):
+                continue
+            for k in self._chip.epwm[n].tripped_for_ever():
+                register, field = f"{name}.TZSEL", f"OSHT{k}"
+                why = f"TZ{k} was low when {register} chose it: choose its pin before, or clear TZFLG.OST then"
+                message = f"{name} is tripped from its set-up on, and no statement ends that"
+                self._report(self._wanting(register, field), message, MissingLink(why, register, field), register)
 
     def _dead_bands(self) -> None:
         """Delays of a dead band that is bypassed."""

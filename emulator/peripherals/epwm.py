@@ -193,6 +193,10 @@ class EPwm:
         """TZn (1 to 6) has this level from now on; 0 trips."""
         self._trip_zone.input(n, level)
 
+    def tripped_for_ever(self) -> list[int]:
+        """The inputs, TZ1 to TZ6, that tripped the module when it chose them, and that have gone since."""
+        return self._trip_zone.tripped_for_ever()
+
     def tripin(self, n: int, level: int) -> None:
         """TRIPINn (1 to 12, 14, 15) of the digital compare has this level from now on."""
         self._digital_compare.input(n, level)

@@ -76,6 +76,7 @@ class TripZone:
         "_regs",
         "_select",
         "_stale",
+        "at_once",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, regs: EPwmRegs, changed: Callable[[], None], interrupt: Callable[[], None],
@@ -96,6 +97,8 @@ class TripZone:
         self._events = 0
         #: How often the flag of the same one-shot trip has given an interrupt again.
         self._again = 0
+        #: Inputs that were low when TZSEL chose them for a one-shot trip, until TZCLR.OST ends that trip (bits).
+        self.at_once = 0
         #: The points of the counter at which a cycle-by-cycle trip ends.
         self._points = LOAD_POINTS[0]
         self._event: ClockEvent | None = None
@@ -110,7 +113,7 @@ class TripZone:
         """Reset the state: nothing is tripped, and no input is needed.  The module resets the registers."""
         self._clock.cancel(self._event)
         self._event = None
-        self._cycle = self._events = self._again = 0
+        self._cycle = self._events = self._again = self.at_once = 0
         self._points = LOAD_POINTS[0]
         self._choose()
 
@@ -124,6 +127,10 @@ class TripZone:
         elif self._low & bit:
             self._low &= ~bit
             self.reschedule()
+
+    def tripped_for_ever(self) -> list[int]:
+        """TZ1 to TZ6 that were low when TZSEL chose them, and are high now: their trip has stayed (TZFLG.OST)."""
+        return [n for n in range(1, 7) if self.at_once & ~self._low & 1 << n - 1]
 
     def events(self, standing: int) -> list[int]:
         """Set the events of the digital compare that are active from now on (bits).  Returns those that begin."""
@@ -213,10 +220,13 @@ class TripZone:
                 self._listen(n, bool(wanted >> n - 1 & 1))
 
     def _write_TZSEL(self, word: int, lanes: int) -> None:
+        tripped = self._flags.value & _OST
         self._select.store(word)
         self._choose()
         self.reschedule()
         self._trip()
+        if not tripped:
+            self.at_once = self._once() & _INPUTS
 
     def _write_TZCTL(self, word: int, lanes: int) -> None:
         self._control.store(word)
@@ -244,7 +254,7 @@ class TripZone:
         tripped = self._flags.value & TZFLG.OST.mask
         self._flags.value &= ~(word & (TZFLG.INT.mask | _SOURCES))
         if word & TZCLR.OST.mask:
-            self._again = 0
+            self._again = self.at_once = 0
         if tripped and word & TZCLR.OST.mask and not self._once():
             self._changed()
         self._trip()

@@ -216,7 +216,9 @@ connections are checked:
   the period, so the output never changes there (one above the period means 100 % and is right). A compare register is
   never loaded from its shadow (`LOADAMODE = 3`), or its values change nothing, because its output switches at the other
   compare, or its actions only set the output or only clear it. An output switches at a compare that no statement
-  writes, and the program writes the other one. A trip that the program forces changes no output (`TZA = 3`).
+  writes, and the program writes the other one. A trip that the program forces changes no output (`TZA = 3`). A one-shot
+  trip came in the moment when `TZSEL` chose its input, because this was still low (out of reset it is GPIO0), and no
+  statement after the start-up clears `OST`.
 * DAC: it gets codes and drives no pin.
 * SCI: characters come, a break on the line has stopped the receiver before, and no statement clears `SWRESET` again.
 * I2C and SCI: the module stays in reset, no interrupt of a direction is enabled, or one needs more characters than the

@@ -427,6 +427,32 @@ def test_a_trip_that_is_right_is_told_nothing(tmp_path: Path, was: str, now: str
         assert not told(tmp_path, text, rule, seconds=0.06)
 
 
+#: The input of a one-shot trip: chosen before its pin is, which is GPIO0 out of reset, and low.
+AT_ONCE = TRIPPED.replace("TZSEL.bit.CBC1", "TZSEL.bit.OSHT1").replace("    EPwm4Regs.TZEINT.bit.OST = 1;\n", "")
+AT_ONCE = AT_ONCE.replace("    EPwm4Regs.TZCLR.bit.OST = 1;\n", "").replace("EPwm4Regs.TZFRC.bit.OST = 1;", "")
+PIN = "    InputXbarRegs.INPUT1SELECT = 40;\n    GpioCtrlRegs.GPBPUD.bit.GPIO40 = 0;\n"
+
+
+@pytest.mark.parametrize(("was", "now", "found"), [
+    ("", "", 1),
+    # The pin is chosen before; its pull-up comes too late; the flag is cleared, at the end of the set-up or later.
+    ("    EPwm4Regs.TZSEL", f"{PIN}    DELAY_US(5);\n    EPwm4Regs.TZSEL", 0),
+    ("    EPwm4Regs.TZSEL", "    InputXbarRegs.INPUT1SELECT = 40;\n    EPwm4Regs.TZSEL", 1),
+    ("    EINT;", "    EALLOW; EPwm4Regs.TZCLR.bit.OST = 1; EDIS;\n    EINT;", 0),
+    ("    for (;;) {", "    for (;;) {\n        if (Order) { EALLOW; EPwm4Regs.TZCLR.bit.OST = 1; EDIS; }", 0),
+    ("    EPwm4Regs.TZSEL.bit.OSHT1 = 1;", "", 0),
+])  # fmt: skip
+def test_a_trip_that_comes_with_its_set_up_and_stays(tmp_path: Path, was: str, now: str, found: int) -> None:
+    text = AT_ONCE.replace(was, now, 1) if was else AT_ONCE
+    assert was in AT_ONCE
+    findings = [f for f in told(tmp_path, text, seconds=0.06) if f.object == "EPwm4Regs.TZSEL"]
+    assert len(findings) == found
+    for finding in findings:
+        assert finding.place is not None
+        assert "TZSEL.bit.OSHT1" in text.splitlines()[finding.place.line - 1]
+        assert "is tripped from its set-up on" in finding.message
+
+
 #: CAN-A sends to itself, and takes what comes.
 CAN = """#include "F28x_Project.h"
 volatile Uint16 Seen;
