@@ -305,7 +305,8 @@ A source is silent after ten of its longest recent intervals, which are at least
 that drives the output, or the call that chooses its value, if the output keeps a value other than 0 that comes from
 that source. A pause that nobody asked for must come after a time at least as long in which the source was regular, and
 the value must be ten times older than it ever was when it was used. It may last to the end only if a fault was
-declared (`--fault`). For a sensor, a text that is still made of its last value counts as an output.
+declared (`--fault`). For a sensor, a text that is still made of its last value counts as an output; so does a message
+on a CAN that still says what a sensor, or another message, said last.
 
 Without `--silence`, a program that has noticed the silence is told nothing, whatever it does then: during the silence
 a statement has run, or a test has decided otherwise, that did not while the source was alive, and a state or an output

@@ -81,6 +81,11 @@ The first time all is well. The second time, the count goes on where it was, or 
   appended to it.
 * A flag says that a buffer was too small, and all that a test of it else leads to is refused. The index of the buffer
   begins again, the flag is never taken back: one long message, and no other is heard.
+* A state ends by a count or a stamp. At least two other entrances begin it, and all of this state; one entrance does
+  not, and nothing else does: the state is over too early by the time of the state before.
+* A difference over some time (`if (ms >= 100) { speed = now - last; last = now; }`) is taken in each pass once the
+  count has passed its limit: it is then that of one pass. Here the count may also be a local that its loop only counts
+  up.
 
 The check needs the source of a whole program. It knows counts that every statement only counts up, and flags that every
 statement sets to the same value. Not reported: a count that anything but such tests reads, as a clock is; a limit that

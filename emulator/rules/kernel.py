@@ -53,6 +53,24 @@ Host tools see nothing: the host has none of these threads and locks.
 """, "BIOS, Task and Swi scheduling; TFG 3.1.5",
     ),
     _rule(
+        "one-for-many",
+        Severity.WARNING,
+        "One element of a ring is taken for each flag, and a flag does not count.",
+        """
+A character comes out when the next one comes in. The answer is late by one message, and from then on always.
+
+An interrupt routine puts an element into a ring and sets a flag. `main` finds the flag set, clears it, and takes one
+element. If the routine has run twice before, the second element stays in the ring. When the next one comes, the older
+one is taken.
+
+The check reads the source of a whole program without a kernel. Nothing is reported if the program compares the two
+indices of the ring anywhere outside of the routine, or takes the elements in a loop.
+
+**Fix:** clear the flag, then take elements until both indices are equal; or do without the flag.
+""",
+        how="static",
+    ),
+    _rule(
         "published-early", Severity.WARNING,
         "The index of a ring is written before the element that it guards.", """
 Rarely, an old character is sent in place of a new one.

@@ -172,4 +172,78 @@ for tests (`debug`, `enable`).
 **Fix:** write the other half, or remove this one.
 """,
     ),
+    _rule(
+        "result-dropped",
+        Severity.NOTE,
+        "One call drops the result that all other calls look at.",
+        """
+The function failed, and the program goes on as if all were well: it uses what was not read, or drives what was not set.
+
+The function is one of the program's own. Each `return` gives a constant, not always the same one: so its result only
+says how it went. At least two other calls of it look at the result, and no other one drops it.
+
+It is a note, because at this place it may be right to go on. Nothing is reported if the call is cast to `void`, in a
+branch that gives up anyway (`Wait(); return 0;`), nor about functions whose address is taken.
+
+**Fix:** look at the result, or write `(void) function(...)`.
+""",
+        "CERT EXP12-C",
+    ),
+    _rule(
+        "entrance-differs",
+        Severity.NOTE,
+        "One entrance of a state leaves out what the other entrances do.",
+        """
+After one of several faults the motor runs on, or a lamp stays dark: most ways into a state are right, and one is not.
+
+A state is entered where a constant is given to an object that a `switch` or a test asks for. This one has at least
+three entrances. All others call the same function with the same constants, or give the same constant to the same object or
+register (`Motor_Off(); state = FAULT;`); this one does not.
+
+What the function does around the entrance, what it calls there, what its callers do around the call, and what the state
+itself does counts as done. The entrances before the loop of `main` are not looked at. It is a note, because what is
+left out may have been done long before. (The time in a state is `not-begun-again`.)
+
+**Fix:** enter the state by one function that does all that belongs to it.
+""",
+        "CERT MSC07-C",
+    ),
+    _rule(
+        "not-undone",
+        Severity.WARNING,
+        "An early return leaves on what the function switches off at its end.",
+        """
+After the first error the chip select stays low, the motor runs on, or a device is busy for ever.
+
+A block sets a pin and clears it later, or calls `Motor_On` and later `Motor_Off` (start and stop, select and deselect,
+lock and unlock, enable and disable, begin and end, open and close). A `return` in between leaves it as it is. The same
+is reported of an object that gets one constant and later another (`busy = 1; ... busy = 0;`), if another `return` in
+between undoes it: `valid = 0; ... valid = 1;` is a usual way to say that all went well.
+
+What the branch undoes before it returns, itself or in a function that it calls, is not reported, nor what the callers
+of the function undo. If it is meant to stay on, a lamp for example, write `hil: allow not-undone, ...` at the `return`.
+
+**Fix:** undo it on every way out, or go to one end of the function.
+""",
+        "CERT MEM31-C, MSC07-C",
+    ),
+    _rule(
+        "like-but-one",
+        Severity.NOTE,
+        "Of several like things, one does not get what the others get.",
+        """
+Two channels work, and the third keeps an old value, or an output of it never moves.
+
+A function sets up, or sets back, at least three like things: register blocks of one kind (`EPwm1Regs`, `EPwm2Regs`,
+`EPwm3Regs`), structures of one type, or what a library calls by a number (`EPWM_setX(EPWM1_BASE, ...)`). All but one
+get the same registers, members or calls, at least three. The odd one lacks one or two of them, has none of its own, and
+no other function gives them to it.
+
+It is a note, because the odd one may differ by design. Phases, synchronisation, triggers and pins often do, and are not
+looked at.
+
+**Fix:** do the same for all of them, best in one function that gets the thing as a parameter.
+""",
+        "CERT MSC04-C",
+    ),
 )

@@ -479,6 +479,30 @@ class ValueFollower:
             depth, at = depth + 1, caller
         return depth, values, at
 
+    def filled(self, used: tuple[Expr, ...], call: FollowedCall) -> int:
+        """How many calls up the object belongs that an expression reaches by a pointer which functions only pass on."""
+        at = call
+        loads = [p for e in used for p in parts(e) if isinstance(p, Load)]
+        reached = [bare(p.lvalue.root) for p in loads if isinstance(p.lvalue.root, Expr)]
+        depth = 0
+        while reached:
+            pointer = reached[0]
+            while isinstance(pointer, PointerAdd):
+                pointer = bare(pointer.pointer)
+            match pointer:
+                case Load(lvalue=LValue(root=Variable() as root, indices=[])) if root in at.function.parameters:
+                    pass
+                case _:
+                    break
+            caller = at.caller
+            if caller is None or caller.statement is None:
+                break
+            number = at.function.parameters.index(root)
+            made = self._made(caller.statement, at.function)
+            depth, at = depth + 1, caller
+            reached = [bare(each.arguments[number]) for each in made if number < len(each.arguments)]
+        return depth
+
     def carriers(self, used: Iterable[Expr], call: FollowedCall) -> tuple[str, ...]:
         """The objects at file scope from which expressions take values with an age, in their function."""
         found: set[str] = set()
@@ -726,4 +750,3 @@ def _read_objects(functions: Iterable[Function]) -> set[str]:
             if isinstance(s, CopyStruct) and isinstance(s.source.root, Variable):
                 found.add(s.source.root.declaration.path)
     return found
-

@@ -23,6 +23,8 @@ INPUT: Final = re.compile(
 )
 #: Those of them, and the interrupts, that belong to a sensor and not to a partner who may have nothing to say.
 SENSOR: Final = re.compile(r"I2c|Spi|Adc|ECap|EQep|XINT")
+#: Those of a bus on which others send what they measure.
+BUS: Final = re.compile(r"message object|Can")
 #: Interrupts of pins: number of the vector -> name.
 PIN_INTERRUPTS: Final = {
     vector.id: f"XINT{n}" for n in range(1, 6) if (vector := getattr(PieVectTable, f"XINT{n}_INT"))

@@ -16,7 +16,8 @@ Two silences count:
     for at least as long, and the value of the output ten times older than it ever was when it was used.
 Modelled
     Values through objects, pointers, parameters, results, copies and texts; registers by name and by number; a pin that
-    is set or cleared under a test of them.  A level that an output keeps although nobody writes it any more.
+    is set or cleared under a test of them.  A level that an output keeps although nobody writes it any more.  What a
+    message on a CAN says of a sensor, or of what another message has said.
 Not modelled
     The DMA.  A part on an SPI that answers with the same word for ever.  An output that is 0 moves nothing.
 """
@@ -47,10 +48,21 @@ from emulator.clock import CYCLES_PER_MS
 from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.registers.cell import Cell
 from hil.drivers.followed import NO_AGES, TEXTS, TIME, Ages, FollowedCall, FollowedStatement, ValueFollower, newest
-from hil.drivers.outputs import LEVEL, PIN
+from hil.drivers.outputs import LEVEL, MESSAGE, PIN
 from hil.drivers.receivers import CutMessage, Receivers
 from hil.drivers.roles import Roles
-from hil.drivers.sources import LOST, NEW, PACES, PIN_INTERRUPTS, SENSOR, TOGETHER, InputSource, of_mailbox, source_of
+from hil.drivers.sources import (
+    BUS,
+    LOST,
+    NEW,
+    PACES,
+    PIN_INTERRUPTS,
+    SENSOR,
+    TOGETHER,
+    InputSource,
+    of_mailbox,
+    source_of,
+)
 from hil.drivers.used_sources import cut_off
 from hil.image import Build, Image
 
@@ -74,6 +86,8 @@ class DrivenOutput:
     #: It is a text for a reader; it is a pin.
     tells: bool = False
     by_pin: bool = False
+    #: It is a word of a message on a bus.
+    sent: bool = False
     #: Source -> how old its data was at most when it was used before the source gave something new.
     usual: dict[str, int] = field(default_factory=dict)
     #: Its ePWM has had pulses at a pin.
@@ -127,7 +141,7 @@ class AgeWatch:
         self._findings.found.connect(self._found)
         for block in board.blocks.values():
             for cell in block:
-                if LEVEL.match(cell.path) or PIN.match(cell.path):
+                if LEVEL.match(cell.path) or PIN.match(cell.path) or MESSAGE.match(cell.path):
                     cell.tap(self._written)
 
     # What comes in --------------------------------------------------------------------------------------------------
@@ -254,6 +268,11 @@ class AgeWatch:
             key = (pin[1], level or mask)
             if pin[2] == "CLEAR":
                 level = 0
+        if MESSAGE.match(cell.path):  # the same register takes the words of all messages
+            position = self._findings.position
+            key = (cell.path, mask, self._findings.path(position.at, position.calls))
+            self._output(key, text, values, level, call, tells=True, register=cell.path)
+            return
         self._output(key, text, values, level, call, by_pin=pin is not None, register=cell.path)
 
     def _output(
@@ -274,11 +293,12 @@ class AgeWatch:
             for source, birth in ages.items()
         }
         output.text, output.value, output.ages, output.written, output.tells = text, level, ages, now, tells
-        output.by_pin, output.register = by_pin, register
+        output.by_pin, output.register, output.sent = by_pin, register, tells and bool(register)
         output.pulsed = output.pulsed or self._pulses(output)
         position = self._findings.position
         path = self._findings.path(position.at, position.calls)
-        depth, used, call = follower.chosen(used, call)
+        filled = follower.filled(values, call) if output.sent else 0
+        depth, used, call = (filled, values, call) if filled else follower.chosen(used, call)
         output.path, output.task = path[depth:] or path, self._findings.context()
         output.within = f" in {path[0]}" if depth else ""
         output.objects = follower.carriers(used, call)
@@ -329,7 +349,8 @@ class AgeWatch:
         if not output.value or output.ages.get(TIME, 0) > late or (output.pulsed and not self._pulses(output)):
             return False  # it is off: by a trip zone, a forced level, another function of the pin
         if output.tells:
-            return SENSOR.match(arrivals.name) is not None and output.written > late
+            told = SENSOR.match(arrivals.name) or (output.sent and BUS.match(arrivals.name))
+            return told is not None and output.written > late
         return output.written > late or not output.by_pin
 
     def _pulses(self, output: DrivenOutput) -> bool:
@@ -356,7 +377,7 @@ class AgeWatch:
             quiet = arrivals.silent_for(now) or now - self._cut < PACES * arrivals.pace
             if quiet and any(
                 output.value and arrivals.name in output.ages and (output.path[0], arrivals.name) not in self._told
-                for output in self._outputs.values() if output.path
+                for output in self._outputs.values() if output.path and not output.sent
             ):
                 return latest
         return now

@@ -13,7 +13,11 @@ from emulator.c28x.passes.anew import check_begun_anew
 from emulator.c28x.passes.begun_again import check_begun_again
 from emulator.c28x.passes.copies import check_copies
 from emulator.c28x.passes.decided import check_decided
+from emulator.c28x.passes.drained import check_drained
+from emulator.c28x.passes.dropped import check_dropped
+from emulator.c28x.passes.entrances import check_entrances
 from emulator.c28x.passes.flow import FlowReport
+from emulator.c28x.passes.likes import check_likes
 from emulator.c28x.passes.masked import check_masked
 from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
 from emulator.c28x.passes.never_back import check_never_back
@@ -21,11 +25,13 @@ from emulator.c28x.passes.null_tests import NullTests
 from emulator.c28x.passes.one_sided import check_one_sided
 from emulator.c28x.passes.published import check_published
 from emulator.c28x.passes.report import StaticFinding, StaticReport
+from emulator.c28x.passes.spans import check_spans
 from emulator.c28x.passes.stamps import Stamps
 from emulator.c28x.passes.states import States
 from emulator.c28x.passes.stores import check_stores
 from emulator.c28x.passes.tables import check_tables
 from emulator.c28x.passes.timer_clock import check_timer_clocks
+from emulator.c28x.passes.undone import check_undone
 from emulator.c28x.passes.values import ValueChecks, file_scope, flag_words
 from emulator.c28x.passes.waiting import WriterAnalysis, check_waiting
 from emulator.c28x.sites import Place
@@ -79,6 +85,12 @@ def check(
     check_never_back(modules, reports)
     check_tables(modules, reports)
     check_published(modules, reports)
+    check_dropped(modules, reports)
+    check_likes(modules, reports)
+    check_spans(modules, reports)
+    check_drained(modules, reports)
+    check_undone(modules, reports)
+    check_entrances(modules, reports)
     owners = {function: report for module, report in reports.items() for function in module.functions}
     for function, s, stamp, against in stamps.cuts():
         name = source_text(stamp)

@@ -225,8 +225,10 @@ def _used(e: Any, variable: Variable) -> bool:
 def _of_counts(test: Expr, counts: set[Variable]) -> bool:
     """Whether a test asks for counts alone, as of a clock that is divided."""
     every = parts(test)
-    asked = {p.root for p in every if isinstance(p, LValue)}
-    return bool(asked) and asked <= counts and not any(isinstance(p, Call) for p in every)
+    asked = [p.root for p in every if isinstance(p, LValue)]
+    if any(isinstance(root, Expr) or root not in counts for root in asked):
+        return False
+    return bool(asked) and not any(isinstance(p, Call) for p in every)
 
 
 def _with_tests(body: list[Stmt], tests: list[Expr]) -> Iterator[tuple[Stmt, list[Expr]]]:

@@ -328,3 +328,34 @@ def test_a_wait_for_the_next_order_is_no_wait_for_an_acknowledge(tmp_path: Path)
         silence=True,
     )  # fmt: skip
     assert {f.how for f in check_files(wanted).findings if f.rule == "endless-poll"} <= {"generated"}
+
+
+#: The master is away for 60 ms, and comes back.
+PAUSES = MASTER.replace("range(1, 60)", "(*range(1, 120), *range(180, 215))")
+#: What it says goes out in a message of the program's own, which a helper sends.
+GATEWAY = (
+    SENDER.replace("void main(void)\n{\n", """static void Send(const Uint16 *words)
+{
+    CanaRegs.CAN_IF1DATA.bit.Data_0 = words[0];
+    CanaRegs.CAN_IF1CMD.all = 0x00870003uL;
+}
+void main(void)
+{
+    Uint16 words[2];
+""", 1)
+    .replace("        CanaRegs.CAN_IF1DATA.all = Order;\n        CanaRegs.CAN_IF1CMD.all = 0x00870003uL;\n", "")
+    .replace("        EPwm1Regs.CMPA.bit.CMPA = Order * 100;", "        words[0] = Order;\n        Send(words);")
+    .replace("SENT", LIMITED)
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("aged", [AGED, ""])
+def test_a_message_that_repeats_what_a_silent_node_said(tmp_path: Path, aged: str) -> None:
+    (tmp_path / "master.py").write_text(PAUSES, encoding="utf-8")
+    text = GATEWAY.replace("AGED", aged)
+    (tmp_path / "drv.c").write_text(text, encoding="utf-8")
+    board = load(str(tmp_path / "master.py"))
+    wanted = DriverFiles([tmp_path / "drv.c"], calls=1, board=board, board_named=True, seconds=0.21)
+    findings = [f for f in check_files(wanted).findings if f.rule == "stale-value"]
+    lines = [text.splitlines()[f.place.line - 1].strip() for f in findings if f.place is not None]
+    assert lines == ["Send(words);"] * (not aged)
