@@ -197,8 +197,8 @@ branch that gives up anyway (`Wait(); return 0;`), nor about functions whose add
 After one of several faults the motor runs on, or a lamp stays dark: most ways into a state are right, and one is not.
 
 A state is entered where a constant is given to an object that a `switch` or a test asks for. This one has at least
-three entrances. All others call the same function with the same constants, or give the same constant to the same object or
-register (`Motor_Off(); state = FAULT;`); this one does not.
+three entrances. All others call the same function with the same constants, or give the same constant to the same object
+or register (`Motor_Off(); state = FAULT;`); this one does not.
 
 What the function does around the entrance, what it calls there, what its callers do around the call, and what the state
 itself does counts as done. The entrances before the loop of `main` are not looked at. It is a note, because what is
@@ -245,5 +245,24 @@ looked at.
 **Fix:** do the same for all of them, best in one function that gets the thing as a parameter.
 """,
         "CERT MSC04-C",
+    ),
+    _rule(
+        "input-unused",
+        Severity.NOTE,
+        "An input is set up, and nothing looks at it.",
+        """
+The door switch, the stop button or the voltage has no effect: the test of it is missing.
+
+A pin is made an input (`GPIO_SetupPinOptions(12, GPIO_INPUT, ...)`, `GPIO_setDirectionMode`, `GPADIR`), or a conversion
+of the ADC is set up (`ADCSOC2CTL`, `ADC_setupSOC`). No statement of the program reads the pin or its port, routes it to
+the input X-BAR or a peripheral, or passes its number to any other function; nothing reads the result, or points to the
+results.
+
+The check needs the source of a whole program. It is a note, because a part on the board may need the input, or a
+conversion may only give the time.
+
+**Fix:** look at the input, or do not set it up.
+""",
+        "CERT MSC07-C",
     ),
 )

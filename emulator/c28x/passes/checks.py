@@ -32,6 +32,7 @@ from emulator.c28x.passes.stores import check_stores
 from emulator.c28x.passes.tables import check_tables
 from emulator.c28x.passes.timer_clock import check_timer_clocks
 from emulator.c28x.passes.undone import check_undone
+from emulator.c28x.passes.unread_inputs import check_unread_inputs
 from emulator.c28x.passes.values import ValueChecks, file_scope, flag_words
 from emulator.c28x.passes.waiting import WriterAnalysis, check_waiting
 from emulator.c28x.sites import Place
@@ -90,6 +91,7 @@ def check(
     check_spans(modules, reports)
     check_drained(modules, reports)
     check_undone(modules, reports)
+    check_unread_inputs(modules, reports)
     check_entrances(modules, reports)
     owners = {function: report for module, report in reports.items() for function in module.functions}
     for function, s, stamp, against in stamps.cuts():

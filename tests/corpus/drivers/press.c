@@ -5,6 +5,7 @@
 #define RING            16u
 #define SELECT_PIN      12u
 #define LAMP_PIN        31u
+#define DOOR_PIN        14u     /* high: shut */
 #define KG_MAX          90u
 #define DOWN_MAX_MS     60u
 #define HOLD_MS         25u
@@ -104,7 +105,7 @@ static void Lead(void)
     stateMs++;
     switch (press) {
     case REST:
-        if (stateMs > REST_MS && Weigh(&kg) && kg < KG_MAX) {
+        if (stateMs > REST_MS && GPIO_ReadPin(DOOR_PIN) && Weigh(&kg) && kg < KG_MAX) {
             Coils_On(kg);
             direction = 3;
             press = DOWN;
@@ -172,6 +173,8 @@ void main(void)
     InitSysCtrl();
     GPIO_SetupPinMux(SELECT_PIN, GPIO_MUX_CPU1, 0);
     GPIO_SetupPinOptions(SELECT_PIN, GPIO_OUTPUT, GPIO_PUSHPULL);
+    GPIO_SetupPinMux(DOOR_PIN, GPIO_MUX_CPU1, 0);
+    GPIO_SetupPinOptions(DOOR_PIN, GPIO_INPUT, GPIO_PULLUP);
     GPIO_SetupPinMux(LAMP_PIN, GPIO_MUX_CPU1, 0);
     GPIO_SetupPinOptions(LAMP_PIN, GPIO_OUTPUT, GPIO_PUSHPULL);
     DINT;

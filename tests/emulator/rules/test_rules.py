@@ -48,7 +48,7 @@ STATIC = (
         for name in (
             "anew", "begun_again", "blocks", "checks", "copies", "decided", "drained", "dropped", "entrances", "flow",
             "formats", "likes", "names", "never_back", "null_tests", "one_sided", "published", "spans", "states",
-            "stores", "tables", "undone", "values", "waiting",
+            "stores", "tables", "undone", "unread_inputs", "values", "waiting",
         )
     ),
     "emulator/c28x/build/", "emulator/c28x/readers/",
