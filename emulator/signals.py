@@ -63,13 +63,16 @@ class Wire:
     """
 
     __slots__ = (
-        "_attention", "_drivers", "_level", "_sources", "changed", "computed", "contention", "name", "noticed", "pull",
+        "_attention", "_drivers", "_level", "_sources", "changed", "computed", "contention", "held", "name", "noticed",
+        "pull",
     )  # fmt: skip
 
     def __init__(self, name: str, pull: int = 0) -> None:
         self.name = name
         self.pull = pull
         self.contention = False
+        #: It keeps its level, whoever drives it: what turns or triggers it has stopped.
+        self.held = False
         self._level = pull
         self._drivers: dict[str, int] = {}
         #: Drivers with a computed level, each with the function that stops listening to its edges, if they are wanted.
@@ -184,7 +187,7 @@ class Wire:
             levels = set(drivers.values())
             self.contention = len(levels) > 1
             level = min(levels) if levels else self.pull
-        if level != self._level:
+        if level != self._level and not self.held:
             self._level = level
             for listener in self.noticed.listeners:
                 listener(level)

@@ -299,7 +299,8 @@ knows registers by their names and those that a library reaches by numbers.
 
 It always looks at a source that pauses in the run and comes back: a master, a tachometer, an unplugged sensor, an ADC
 that nothing triggers. With `--silence` it also cuts off serial lines, I2C parts and the other nodes of a CAN when the
-usual time is over; that run is three times as long. A check without `--silence` names what could fall silent.
+usual time is over, and parts make no edges at pins any more: a tachometer stands, an echo does not come. That run is
+three times as long. A check without `--silence` names the lines and buses that could fall silent.
 
 A source is silent after ten of its longest recent intervals, which are at least 4 ms. The finding is at the statement
 that drives the output, or the call that chooses its value, if the output keeps a value other than 0 that comes from

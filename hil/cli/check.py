@@ -97,8 +97,8 @@ def check(
     feed: Feed = None,
     silence: Annotated[
         bool | None,
-        typer.Option("--silence", help="Run driver files again, longer, with silent serial lines, I2C parts and CAN "
-                     "nodes, and a message that is cut off: find outputs that follow old values, waits that hang, "
+        typer.Option("--silence", help="Run driver files again, longer, with silent serial lines, I2C parts, CAN nodes "
+                     "and pins, and a message that is cut off: find outputs that follow old values, waits that hang, "
                      "receivers that lose the next message."),
     ] = None,
     fail_on: Annotated[

@@ -2,8 +2,9 @@
 
 The program runs once more while its values are followed (`followed.py`).  So at each output it is known when its data
 came in, and from where.  A source falls silent by itself, or is cut off when the usual time of the run is over: the
-serial lines, the parts on the I2C and the nodes of a CAN.  If an output is then still driven with the old value, and
-nothing in the program has noticed the silence, the program does not check the age, or the check has no effect.
+serial lines, the parts on the I2C, the nodes of a CAN, and what makes edges at pins.  If an output is then still driven
+with the old value, and nothing in the program has noticed the silence, the program does not check the age, or the check
+has no effect.
 
 A program notices a silence if, during it, a statement runs or a test gives what did not run or come out while the
 source was alive, and if that changes an object, a register or an output.  What only other data decides is no notice.
@@ -63,7 +64,7 @@ from hil.drivers.sources import (
     of_mailbox,
     source_of,
 )
-from hil.drivers.used_sources import cut_off
+from hil.drivers.used_sources import cut_off, hold_pins
 from hil.image import Build, Image
 
 
@@ -370,6 +371,7 @@ class AgeWatch:
         if not self._cut:
             self._cut = now
             cut_off(self._board)
+            hold_pins(self._board)
             for line in self._board.serial_pins.values():
                 line.disturb(lambda frame: ())
         for source in self._known:

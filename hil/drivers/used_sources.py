@@ -28,6 +28,8 @@ from emulator.c28x.tree import (
 )
 from emulator.c28x.tree_queries import blocks, parts, roots, variables
 from emulator.can_bus import CanPart
+from emulator.peripherals.gpio import DRIVER
+from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.register_writes import RegisterWrites
 from hil.board import Board
 from hil.drivers.outputs import LEVEL, PIN
@@ -68,6 +70,13 @@ def cut_off(board: Board) -> None:
         for node in can.nodes:
             if isinstance(node, CanPart):
                 can.detach(node)
+
+
+def hold_pins(board: Board) -> None:
+    """From now on no part makes an edge at a pin: shafts stand, echoes and signals that data is ready do not come."""
+    for wire in board.pins:
+        if wire.drivers() and not any(driver == DRIVER or driver in PIN_FUNCTIONS for driver in wire.drivers()):
+            wire.held = True
 
 
 class _InputsOfOutputs:

@@ -328,6 +328,23 @@ def test_a_watchdog_that_waits_for_orders_notices_it(tmp_path: Path) -> None:
 TOO_FAST = "static void Drive(void)\n{\n    if (Period != 0)\n        EPwm1Regs.CMPA.bit.CMPA = Period >> 8;\n}\n"
 
 
+class Turns(Away):
+    """They never pause."""
+
+    pause = (1200, 1200)
+    ends = 1200
+
+
+@pytest.mark.parametrize(("drive", "silence", "found"), [
+    (TOO_FAST, True, ["XINT1"]), (TOO_FAST, False, []),
+    (TOO_FAST.replace("    if (P", "    if ((Uint16)(Ticks - Came) > 30)\n        Period = 0;\n    if (P"), True, []),
+])  # fmt: skip
+def test_a_tachometer_that_is_stopped_when_silence_is_asked_for(
+    tmp_path: Path, drive: str, silence: bool, found: list[str]
+) -> None:  # fmt: skip
+    assert [f.object for f in stale(tmp_path, on_a_pin(drive), Turns, silence=silence, seconds=0.3)] == found
+
+
 def test_a_tachometer_without_edges_is_told(tmp_path: Path) -> None:
     text = on_a_pin(TOO_FAST)
     (finding,) = stale(tmp_path, text)
