@@ -81,6 +81,8 @@ The first time all is well. The second time, the count goes on where it was, or 
   appended to it.
 * A flag says that a buffer was too small, and all that a test of it else leads to is refused. The index of the buffer
   begins again, the flag is never taken back: one long message, and no other is heard.
+* Another count is set back after some time without a sign of life (`if (quiet < LIMIT) quiet++; else length = 0;`).
+  Nothing sets `quiet` to 0: from then on the other count is set back in each pass.
 * A state ends by a count or a stamp. At least two other entrances begin it, and all of this state; one entrance does
   not, and nothing else does: the state is over too early by the time of the state before.
 * A difference over some time (`if (ms >= 100) { speed = now - last; last = now; }`) is taken in each pass once the

@@ -1,12 +1,13 @@
 """Static check of counts and flags that are never begun again: `not-begun-again`.
 
 The check needs a whole program (one with a `main`), because it must see all statements.  It knows the integers at file
-scope (and `static` ones) that every statement only counts up, or only sets to one value.  Three uses of them are wrong
+scope (and `static` ones) that every statement only counts up, or only sets to one value.  Four uses of them are wrong
 from the second time on:
 
 * the time in a state, which the program can enter again (`if (stateMs > LIMIT) state = FAULT`);
 * the place where a text ends, in a function that ends one text after the other (`line[length] = 0`);
-* the mark that a buffer was too small, while the buffer's index begins again (`if (tooLong || ...) bad++; else ...`).
+* the mark that a buffer was too small, while the buffer's index begins again (`if (tooLong || ...) bad++; else ...`);
+* the time without a sign of life after which another count is set back (`if (quiet < LIMIT) quiet++; else length = 0;`).
 
 Clocks (read by any other statement), numbers of events, delays after the start, and faults that are latched are not
 meant: the conditions stand at each use.
@@ -29,6 +30,7 @@ from emulator.c28x.tree import (
     Call,
     Compare,
     Declare,
+    Evaluate,
     Expr,
     FallThrough,
     Function,
@@ -38,6 +40,7 @@ from emulator.c28x.tree import (
     Logic,
     LValue,
     Not,
+    Return,
     Stmt,
     Switch,
     Variable,
@@ -74,6 +77,7 @@ class _Program:
 
     def __init__(self, functions: list[Function], reports: dict[Function, StaticReport]) -> None:
         self.functions = functions
+        self.own = {function.path: function for function in functions}
         self.reports = reports
         #: The assignments to each object.
         self.writes: dict[Variable, list[Stmt]] = {}
@@ -126,6 +130,8 @@ class _Program:
                     self._text_end(function, block)
                 if isinstance(s, If) and self.flags:
                     self._too_small(s)
+                if isinstance(s, If) and self.counts:
+                    self._set_back(function, s)
 
     # The time in a state
 
@@ -215,6 +221,42 @@ class _Program:
                 self.reports[function].report(
                     function, s.where, "not-begun-again", message, object=name.path, declaration=name,
                 )  # fmt: skip
+
+    # What is set back after some time
+
+    def _set_back(self, function: Function, s: If) -> None:
+        """Report tests of a count behind which another count is set back, and nothing else: then in each pass."""
+        for count, branch in _passed(s):
+            back = self._only_sets_back(branch, frozenset({function.path})) if count in self.counts else None
+            if back:
+                name = count.declaration
+                message = (
+                    f"nothing begins {name.name} again: once it has passed this limit, "
+                    f"{back[0].declaration.name} is set back in each pass"
+                )
+                self.reports[function].report(
+                    function, s.where, "not-begun-again", message, object=name.path, declaration=name,
+                )  # fmt: skip
+
+    def _only_sets_back(self, body: list[Stmt], above: frozenset[str]) -> list[Variable] | None:
+        """The counts that statements set to a constant, if they only give constants; None: they do anything else."""
+        found: list[Variable] = []
+        for s in body:
+            match s:
+                case Assign(target=LValue(), value=value) if constant_of(value) is not None:
+                    v = assigned(s)
+                    if v is not None and any((step_of(x, v) or 0) > 0 for x in self.writes[v]):
+                        found.append(v)
+                case Evaluate(value=Call(function=Function(path=path))) if path in self.own and path not in above:
+                    inner = self._only_sets_back(self.own[path].body, above | {path})
+                    if inner is None:
+                        return None
+                    found += inner
+                case Return(value=None):
+                    pass
+                case _:
+                    return None
+        return found
 
     # The mark that a buffer was too small
 

@@ -157,3 +157,45 @@ def test_a_comment_says_that_a_mark_is_meant_to_stay(tmp_path: Path) -> None:
         file.write_text(text(LENGTH).replace("tooLong = 0;", f"tooLong = 0;{comment}", 1), encoding="utf-8")
         found.append([f.rule for f in Build([str(file)]).compiled.findings if f.rule == "not-begun-again"])
     assert found == [["not-begun-again"], []]
+
+
+CODE = """typedef unsigned int Uint16;
+static Uint16 quiet = 0;
+static Uint16 length = 0;
+static char code[9];
+Uint16 Key = 0, Shown = 0;
+static void Forget(void) {{ length = 0; code[0] = '\\0'; }}
+static void Take(void)
+{{
+    {taken}
+    if (length < 8) code[length++] = (char) Key;
+}}
+int main(void)
+{{
+    for (;;)
+    {{
+        if (Key) Take();
+        {old}
+    }}
+}}
+"""
+
+
+@pytest.mark.parametrize("old", [
+    "if (quiet < 100) quiet++; else Forget();", "quiet++; if (quiet > 100) length = 0;",
+    "quiet++; if (quiet > 100) { length = 0; Key = 0; }",
+])  # fmt: skip
+def test_a_count_that_is_set_back_in_each_pass_is_told(old: str) -> None:
+    (line,) = told(CODE.format(taken="", old=old))
+    assert line == old
+
+
+@pytest.mark.parametrize(("old", "taken"), [
+    ("if (quiet < 100) quiet++; else Forget();", "quiet = 0;"),
+    ("quiet++; if (quiet > 100) { length = 0; quiet = 0; }", ""),
+    # It does something, or sets back what nothing counts: a delay after the start.
+    ("if (quiet < 100) quiet++; else Shown = length;", ""), ("if (quiet < 100) quiet++; else Shown = 0;", ""),
+    ("if (quiet < 100) { quiet++; length = 0; }", ""),
+])  # fmt: skip
+def test_a_count_that_is_set_back_now_and_then_is_silent(old: str, taken: str) -> None:
+    assert told(CODE.format(taken=taken, old=old)) == []
