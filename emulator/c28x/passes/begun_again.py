@@ -6,8 +6,8 @@ from the second time on:
 
 * the time in a state, which the program can enter again (`if (stateMs > LIMIT) state = FAULT`);
 * the place where a text ends, in a function that ends one text after the other (`line[length] = 0`);
-* the mark that a buffer was too small, while the buffer's index begins again (`if (tooLong || ...) bad++; else ...`);
-* the time without a sign of life after which another count is set back (`if (quiet < LIMIT) quiet++; else length = 0;`).
+* the mark that a buffer was too small, while its index begins again (`if (tooLong || ...) bad++; else ...`);
+* the time without a sign of life after which another count is set back (`if (quiet > LIMIT) length = 0;`).
 
 Clocks (read by any other statement), numbers of events, delays after the start, and faults that are latched are not
 meant: the conditions stand at each use.
