@@ -256,7 +256,7 @@ The door switch, the stop button or the voltage has no effect: the test of it is
 A pin is made an input (`GPIO_SetupPinOptions(12, GPIO_INPUT, ...)`, `GPIO_setDirectionMode`, `GPADIR`), or a conversion
 of the ADC is set up (`ADCSOC2CTL`, `ADC_setupSOC`). No statement of the program reads the pin or its port, routes it to
 the input X-BAR or a peripheral, or passes its number to any other function; nothing reads the result, or points to the
-results.
+results. A pin that is an output at times may be released only, and is not reported.
 
 The check needs the source of a whole program. It is a note, because a part on the board may need the input, or a
 conversion may only give the time.

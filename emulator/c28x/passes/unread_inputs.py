@@ -4,7 +4,7 @@ A pin is made an input, or a conversion of the ADC is set up, and no statement r
 button or the voltage that it is for has no effect.
 
 Pins: a read of the pin or of its whole port, an input of the X-BAR, a function of a peripheral, and any call that gets
-the number of the pin is a use.  Conversions: a read of the result, a post-processing block, any pointer to the results.
+the number of the pin is a use.  A pin that is an output at times may be released only.  Conversions: a read of the result, a post-processing block, any pointer to the results.
 The check needs a whole program (one with a `main`).
 """
 
@@ -40,6 +40,7 @@ _SETS_UP: Final = re.compile(r"GPIO_(SetupPinOptions|set(DirectionMode|PadConfig
 _DIRECTION: Final = re.compile(r"GPIO_(SetupPinOptions|setDirectionMode)$")
 _READS: Final = re.compile(r"GPIO_[rR]eadPin$")
 _PORTS: Final = re.compile(r"GPIO_[rR]eadPort\w*$")
+_DRIVES: Final = re.compile(r"GP[A-F](DIR|DAT|SET|CLEAR|TOGGLE)$")
 _PIN_FIELD: Final = re.compile(r"GPIO(\d+)$")
 _SOC: Final = re.compile(r"Adc([a-d])Regs\.ADCSOC(\d+)CTL$")
 _RESULT: Final = re.compile(r"Adc([a-d])ResultRegs\.ADCRESULT(\d+)$")
@@ -82,8 +83,8 @@ def _pins(function: Function, s: Stmt, pins: _Inputs) -> None:
         pin = _pin(target)
         if pin is not None and number == 0 and target.register.endswith("DIR"):
             pins.set_up.setdefault(pin, (function, s))
-        elif pin is not None and "MUX" in target.register and number != 0:
-            pins.used.add(pin)
+        elif pin is not None and (number != 0 if "MUX" in target.register else _DRIVES.match(target.register)):
+            pins.used.add(pin)  # another function, or an output that is released
         elif re.fullmatch(r"INPUT\d+SELECT", target.register):
             pins.used |= {number} if number is not None else set()
             pins.all_used |= number is None
@@ -101,6 +102,8 @@ def _pins(function: Function, s: Stmt, pins: _Inputs) -> None:
                 given = [constant_of(each) for each in arguments]
                 if _DIRECTION.match(name) and len(given) > 1 and given[0] is not None and given[1] == 0:
                     pins.set_up.setdefault(given[0], (function, s))
+                elif _DIRECTION.match(name) and given[0] is not None:
+                    pins.used.add(given[0])
                 elif name == "GPIO_setPinConfig" and given[0] is not None:
                     pins.used |= {_configured(given[0])} if given[0] & 0xF else set()
                 elif name == "GPIO_SetupPinMux" and len(given) > 2 and given[2] == 0:
