@@ -5,7 +5,8 @@ button or the voltage that it is for has no effect.
 
 Pins: a read of the pin or of its whole port, an input of the X-BAR, a function of a peripheral, and any call that gets
 the number of the pin is a use.  A pin that is an output at times may be released only.  Conversions: a read of the
-result, a post-processing block, any pointer to the results. The check needs a whole program (one with a `main`). """
+result, a post-processing block, any pointer to the results.  The check needs a whole program (one with a `main`).
+"""
 
 from __future__ import annotations
 
