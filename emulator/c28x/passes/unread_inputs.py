@@ -40,6 +40,8 @@ _SETS_UP: Final = re.compile(r"GPIO_(SetupPinOptions|set(DirectionMode|PadConfig
 _DIRECTION: Final = re.compile(r"GPIO_(SetupPinOptions|setDirectionMode)$")
 _READS: Final = re.compile(r"GPIO_[rR]eadPin$")
 _PORTS: Final = re.compile(r"GPIO_[rR]eadPort\w*$")
+#: Registers that give a pin to a peripheral, or to the wake-up.
+_LENDS: Final = re.compile(r"MUX|LPMSEL")
 _DRIVES: Final = re.compile(r"GP[A-F](DIR|DAT|SET|CLEAR|TOGGLE)$")
 _PIN_FIELD: Final = re.compile(r"GPIO(\d+)$")
 _SOC: Final = re.compile(r"Adc([a-d])Regs\.ADCSOC(\d+)CTL$")
@@ -83,7 +85,7 @@ def _pins(function: Function, s: Stmt, pins: _Inputs) -> None:
         pin = _pin(target)
         if pin is not None and number == 0 and target.register.endswith("DIR"):
             pins.set_up.setdefault(pin, (function, s))
-        elif pin is not None and (number != 0 if "MUX" in target.register else _DRIVES.match(target.register)):
+        elif pin is not None and (number != 0 if _LENDS.search(target.register) else _DRIVES.match(target.register)):
             pins.used.add(pin)  # another function, or an output that is released
         elif re.fullmatch(r"INPUT\d+SELECT", target.register):
             pins.used |= {number} if number is not None else set()

@@ -62,6 +62,7 @@ def test_an_input_that_nothing_looks_at_is_told(tmp_path: Path, set_up: str, use
     (PIN + " GPIO_SetupPinMux(12, GPIO_MUX_CPU1, 6);", ""), (PIN + " GpioCtrlRegs.GPAMUX1.bit.GPIO12 = 1;", ""),
     ("GPIO_setDirectionMode(28, 0); GPIO_setPinConfig(0x00081801ul);", ""),  # GPIO_28_SCIRXDA
     ("GPIO_setDirectionMode(43, 0); GPIO_setPinConfig(0x0046160Ful);", ""),  # GPIO_43_SCIRXDA
+    (PIN + " CpuSysRegs.GPIOLPMSEL0.bit.GPIO12 = 1;", ""),
     # An output that is released.
     (PIN.replace("INPUT", "OUTPUT") + PIN, ""), ("GPIO_setDirectionMode(12, 0);", "GPIO_setDirectionMode(12, 1);"),
     ("GpioCtrlRegs.GPADIR.bit.GPIO12 = 1; GpioCtrlRegs.GPADIR.bit.GPIO12 = 0;", ""),
