@@ -240,19 +240,19 @@ class _EntranceCheck:
         """The statements that run with one in some blocks: those of the innermost, and what always runs around it."""
         yield from self._with_called(statements(around[-1]), frozenset())
         for block in around[:-1]:
-            yield from self._with_called(iter(block), frozenset())
+            yield from self._with_called(block, frozenset())
         if function.path not in above:
             for caller, outer in self._callers.get(function.path, ()):
                 yield from self._on_the_way(caller, outer, above | {function.path})
 
-    def _with_called(self, body: Iterator[Stmt], above: frozenset[str]) -> Iterator[Stmt]:
+    def _with_called(self, body: Iterable[Stmt], above: frozenset[str]) -> Iterator[Stmt]:
         """Statements, and those that always run in the functions which they call."""
         for s in body:
             yield s
             for p in own_nodes(s):
                 if isinstance(p, Call) and p.function.path in self._own and p.function.path not in above:
                     inner = self._own[p.function.path]
-                    yield from self._with_called(iter(inner.body), above | {inner.path})
+                    yield from self._with_called(inner.body, above | {inner.path})
 
 
 def _with_blocks(
