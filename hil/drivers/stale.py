@@ -351,7 +351,7 @@ class AgeWatch:
             return False  # it is off: by a trip zone, a forced level, another function of the pin
         if output.tells:
             told = SENSOR.match(arrivals.name) or (output.sent and BUS.match(arrivals.name))
-            return told is not None and output.written > late
+            return bool(told) and output.written > late
         return output.written > late or not output.by_pin
 
     def _pulses(self, output: DrivenOutput) -> bool:
