@@ -258,6 +258,7 @@ def bind(
         program, runtime, registers=system.register, externs=implemented, replaced=externs or {}, coverage=coverage,
         built=built,
     )  # fmt: skip
+    system.kernel.core.double = runtime.double
     if program.options.watch:
         system.watch(linked)
     return linked

@@ -1,7 +1,8 @@
 """Arithmetic of the C28x that Python does not do by itself: float32, truncating division, conversions, dividers.
 
-Values are plain Python ints (always within the range of their type) and floats (always exactly a float32, with
-denormals flushed).  Sources: CPU and the FPU supplement as gathered under SOURCES; ISO C 6.5.
+Values are plain Python ints (always within the range of their type) and floats: those of 32 bits are always exactly a
+float32, with denormals flushed; those of 64 bits are Python's own.  Sources: CPU and the FPU supplement as gathered
+under SOURCES; ISO C 6.5.
 """
 
 from __future__ import annotations
@@ -48,6 +49,16 @@ def bits_float(bits: int) -> float:
     return float(struct.unpack("<f", bits.to_bytes(4, "little"))[0])
 
 
+def double_bits(value: float) -> int:
+    """The 64-bit pattern of an IEEE double."""
+    return int.from_bytes(struct.pack("<d", value), "little") if value == value else 0x7FF8000000000000
+
+
+def bits_double(bits: int) -> float:
+    """The IEEE double of a 64-bit pattern."""
+    return float(struct.unpack("<d", bits.to_bytes(8, "little"))[0])
+
+
 def divide_int(a: int, b: int) -> int:
     """C division: truncates toward zero.  `b` must not be 0."""
     quotient = abs(a) // abs(b)
@@ -61,11 +72,16 @@ def modulo_int(a: int, b: int) -> int:
 
 def divide_ieee(a: float, b: float) -> float:
     """Correctly rounded float32 quotient; x/0 is infinite, 0/0 NaN."""
+    return f32(divide_double(a, b))
+
+
+def divide_double(a: float, b: float) -> float:
+    """Correctly rounded quotient of two doubles; x/0 is infinite, 0/0 NaN."""
     if b == 0.0:
         if a == 0.0 or a != a:
             return math.nan
         return math.copysign(math.inf, a) * math.copysign(1.0, b)
-    return f32(a / b)
+    return a / b
 
 
 def reciprocal_seed(b: float) -> float:

@@ -25,7 +25,7 @@ class CType:
 
     @cached_property
     def align(self) -> int:
-        """The alignment in 16-bit words: 32-bit objects have even addresses."""
+        """The alignment in 16-bit words: objects of 32 and 64 bits have even addresses."""
         return 2 if self.words > 1 else 1
 
     @cached_property
@@ -92,10 +92,15 @@ class FloatType(CType):
 
 @dataclass(frozen=True)
 class Double64(FloatType):
-    """IEEE double precision, for constants only: `long double`, and `double` under the EABI.
+    """IEEE double precision: `long double`, and `double` under the EABI.
 
-    No object has this type, and the running firmware computes nothing in it.
+    The FPU of this chip computes in single precision only: functions of the run-time library compute in this type.
     """
+
+    @cached_property
+    def words(self) -> int:
+        """Four words."""
+        return 4
 
 
 @dataclass(frozen=True)
@@ -289,11 +294,15 @@ ULLONG: Final = IntType("unsigned long long", 64, False, 4)
 #: `_Bool`: 0 or 1 in a word.
 BOOL: Final = IntType("_Bool", 16, False, 0)
 FLOAT: Final = FloatType("float")
+LONG_DOUBLE: Final = Double64("long double")
+#: `double` under the EABI.  (Under the COFF ABI it is `FLOAT`.)
+DOUBLE: Final = Double64("double")
 
 #: Names of the firmware language.
 BASIC: Final[dict[str, CType]] = {
     "void": VOID, "char": CHAR, "schar": SCHAR, "uchar": UCHAR, "int16": INT, "uint16": UINT,
     "int32": LONG, "uint32": ULONG, "int64": LLONG, "uint64": ULLONG, "float32": FLOAT,
+    "float64": LONG_DOUBLE,
 }  # fmt: skip
 
 #: Specifiers of a declaration in alphabetical order -> the type.  `int` beside another word is redundant.
@@ -303,7 +312,7 @@ _SPECIFIED: Final[dict[tuple[str, ...], CType]] = {
     ("int",): INT, ("signed",): INT, ("unsigned",): UINT,
     ("long",): LONG, ("long", "signed"): LONG, ("long", "unsigned"): ULONG,
     ("long", "long"): LLONG, ("long", "long", "signed"): LLONG, ("long", "long", "unsigned"): ULLONG,
-    ("float",): FLOAT,
+    ("float",): FLOAT, ("double", "long"): LONG_DOUBLE,
 }  # fmt: skip
 
 
@@ -343,8 +352,9 @@ def promote(ctype: IntType) -> IntType:
 
 def usual(a: CType, b: CType) -> CType:
     """The usual arithmetic conversions: the type in which `a op b` is computed."""
-    if isinstance(a, Double64) or isinstance(b, Double64):
-        return a if isinstance(a, Double64) else b
+    for widest in (LONG_DOUBLE, DOUBLE):
+        if widest in (a, b):
+            return widest
     if isinstance(a, FloatType) or isinstance(b, FloatType):
         return FLOAT
     assert isinstance(a, IntType)

@@ -4,8 +4,9 @@ A firmware module imports these names for editors and type checkers.  A linked i
 because the translator (`program.py`) reads the source of the firmware module.  At run time the names exist only so that
 a firmware module can be imported like any other.
 
-Widths are those of the C28x under the COFF ABI (CC table 6-1): `char` has 16 bits, `double` is `float32`.  A table in
-hil/docs/language.md (`hil docs language`) shows each construct of C and its form here.
+Widths are those of the C28x under the COFF ABI (CC table 6-1): `char` has 16 bits, `double` is `float32`, and
+`float64` is `long double`.  A table in hil/docs/language.md (`hil docs language`) shows each construct of C and its
+form here.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     int64 = int
     uint64 = int
     float32 = float
+    float64 = float
     void: TypeAlias = None
     ptr = Any
     array = Any
@@ -90,6 +92,8 @@ else:
     class uint64(_Word): ...
 
     class float32(_Word): ...
+
+    class float64(_Word): ...
 
     class void(_Word): ...
 
@@ -165,6 +169,6 @@ else:
 
 __all__ = [
     "FIXED", "NULL", "Annotated", "addressof", "array", "bits", "cast", "char", "const", "cregister", "do", "enum",
-    "extern", "fallthrough", "float32", "funcptr", "handle", "int16", "int32", "int64", "interrupt", "ptr", "schar",
-    "sizeof", "static", "struct", "uchar", "uint16", "uint32", "uint64", "union", "void", "volatile",
+    "extern", "fallthrough", "float32", "float64", "funcptr", "handle", "int16", "int32", "int64", "interrupt", "ptr",
+    "schar", "sizeof", "static", "struct", "uchar", "uint16", "uint32", "uint64", "union", "void", "volatile",
 ]  # fmt: skip

@@ -25,6 +25,7 @@ from emulator.c28x.ctypes import (
     ArrayType,
     BlockType,
     CType,
+    Double64,
     FloatType,
     FunctionType,
     HandleType,
@@ -84,6 +85,7 @@ class Linked:
         self.program = compiled.program
         self.options = compiled.options
         self.runtime = runtime
+        runtime.double = compiled.program.double
         self.registers = registers
         self.externs = intrinsics(cast(InterruptMask, runtime.cpu)) | dict(externs)
         self._iqmath = IQmath(runtime)
@@ -275,7 +277,8 @@ class Linked:
             "_c_float_argument": runtime.float_argument, "_c_stamps": runtime.stamps, "_c_past": runtime.past,
             "_c_turn": runtime.turn, "_c_extended": runtime.extended, "_c_parsed": runtime.parsed,
             "_c_pulse": runtime.pulse, "_c_regulated": runtime.regulated, "_c_regulated_float": runtime.regulated_float,
-            "_c_divide_floats": runtime.divide_floats, "_c_divide_ints": runtime.divide_ints,
+            "_c_divide_floats": runtime.divide_floats, "_c_divide_doubles": runtime.divide_doubles,
+            "_c_divide_ints": runtime.divide_ints,
             "_c_modulo_ints": runtime.modulo_ints, "_c_shift": runtime.shift,
             "_c_endless": runtime.endless, "_c_loop_limit": runtime.loop_limit,
             "_c_poll": runtime.poll, "_c_idle": runtime.idle, "_c_NEVER": NEVER, "_c_poll_limit": runtime.poll_limit,
@@ -421,7 +424,8 @@ def to_c(value: Any, ctype: CType) -> Any:
     if isinstance(ctype, FloatType):
         if not isinstance(value, Real):
             raise ValueError(f"{value!r} is no {ctype}")
-        rounded = f32(float(value))
+        wide = isinstance(ctype, Double64)
+        rounded = float(value) if wide else f32(float(value))
         if isinf(rounded) and not isinf(value):
             raise ValueError(f"{value!r} is no {ctype} (up to 3.4e38)")
         return rounded

@@ -11,13 +11,14 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Final, Protocol
 
-from emulator.c28x.arithmetic import bits_float, float_bits
+from emulator.c28x.arithmetic import bits_double, bits_float, double_bits, float_bits
 from emulator.c28x.ctypes import (
     BASIC,
     UINT,
     VOID,
     ArrayType,
     CType,
+    Double64,
     FloatType,
     FunctionType,
     HandleType,
@@ -177,7 +178,7 @@ class Object:
 def to_words(value: Any, ctype: CType) -> tuple[int, ...]:
     """The words of a scalar, low word first (CPU: little-endian within 32 bits, and so are 64 bits)."""
     if isinstance(ctype, FloatType):
-        bits = float_bits(value)
+        bits = double_bits(value) if isinstance(ctype, Double64) else float_bits(value)
     else:
         bits = value.addr & 0xFFFFFFFF if isinstance(value, Pointer) else int(value)
     return tuple(bits >> 16 * i & 0xFFFF for i in range(ctype.words))
@@ -187,7 +188,7 @@ def from_words(words: Iterable[int], ctype: CType, memory: Memory) -> Any:
     """The scalar that words represent."""
     bits = sum(word << 16 * i for i, word in enumerate(words))
     if isinstance(ctype, FloatType):
-        return bits_float(bits)
+        return bits_double(bits) if isinstance(ctype, Double64) else bits_float(bits)
     if isinstance(ctype, IntType):
         return ctype.wrap(bits)
     target = ctype.target if isinstance(ctype, PointerType) else VOID
@@ -207,6 +208,8 @@ def zero_of(ctype: CType) -> Any:
 def compatible(a: CType, b: CType) -> bool:
     """Whether a value stored as type `a` can be read as type `b` without a conversion through its words."""
     if isinstance(a, IntType) and isinstance(b, IntType):
+        return a.words == b.words
+    if isinstance(a, FloatType) and isinstance(b, FloatType):
         return a.words == b.words
     if isinstance(a, PointerType | HandleType | FunctionType | VoidType):
         return isinstance(b, PointerType | HandleType | FunctionType)

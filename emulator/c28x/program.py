@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from emulator.c28x.ctypes import INT, CType
+from emulator.c28x.ctypes import DOUBLE, FLOAT, INT, CType, FloatType
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import EnumType, Module, NoModule, SourceError
 from emulator.c28x.tree import Where
@@ -143,6 +143,11 @@ class Program:
         if self._c is not None:
             names |= self._c.searched_paths()
         return {name: digest(name) for name in sorted(names) if not name.startswith("<")}
+
+    @property
+    def double(self) -> FloatType:
+        """What its C files call `double`, which depends on the ABI."""
+        return DOUBLE if any(module.double == DOUBLE for module in self.modules.values()) else FLOAT
 
     def __getstate__(self) -> dict[str, Any]:
         """The state of a translated program: only its modules."""

@@ -38,6 +38,18 @@ class Rts(Printing):
         self._charge(60 + 40 * min(len(characters), 16))
         return self._number(characters)
 
+    def strtold(self, text: Pointer | None, end: Pointer | None) -> float:
+        """Convert a decimal number to a `long double`.  Where it ends goes to `end`, unless that is NULL.
+
+        CHOICE: a number without an end in sight (a NaN, an infinity) is not read.
+        """
+        characters = self._text(text, "strtold")
+        self._charge(60 + 80 * min(len(characters), 24))
+        found = _NUMBER.match(characters)
+        if end is not None and text is not None:
+            end.write(text.at(0 if found is None else found.end()))
+        return 0.0 if found is None else float(found.group(1))
+
     def atoi(self, text: Pointer | None) -> int:
         """Convert a decimal number to an int.  It wraps at 16 bits.  A check of a wider use gets the whole number."""
         whole = self._runtime.parsed_number = self.atol(text)

@@ -1,4 +1,4 @@
-"""`math.h` of the run-time support library, in float32.
+"""`math.h` of the run-time support library: functions of `float`, and (with an `l`) of `long double`.
 
 Results are correctly rounded (CHOICE: the library's own last bit is not published).  Cycles are CHOICE, in the order of
 magnitude of the FPU library.  A NaN or an infinity that a function returns for finite arguments is reported.
@@ -8,9 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Final
 
 from emulator.c28x.arithmetic import f32
 from emulator.c28x.runtime import Runtime
+
+#: How many times as long a function takes in 64 bits.
+_SOFTWARE: Final = 10
 
 
 class Mathematics:
@@ -22,18 +26,22 @@ class Mathematics:
     def _charge(self, cycles: int) -> None:
         self._runtime.clock.charge(cycles)
 
-    def _value(self, cycles: int, function: Callable[..., float], *arguments: float) -> float:
-        """The value of `function`, rounded.  It is NaN where the function is undefined, and infinity on overflow and at
-        poles."""
+    def _value(self, cycles: int, function: Callable[..., float], *arguments: float, wide: bool = False) -> float:
+        """The value of `function`, rounded to 32 bits unless it is `wide`.
+
+        It is NaN where the function is undefined, and infinity on overflow and at poles.
+        """
         self._charge(cycles)
         try:
-            result = f32(function(*arguments))
+            result = function(*arguments)
         except ValueError:
             result = -math.inf if function is math.log and arguments[0] == 0.0 else math.nan
         except OverflowError:
             result = math.inf
         except ZeroDivisionError:
             result = math.inf
+        if not wide:
+            result = f32(result)
         if not math.isfinite(result) and all(math.isfinite(a) for a in arguments):
             name = function.__name__
             given = ", ".join(repr(a) for a in arguments)
@@ -90,8 +98,7 @@ class Mathematics:
 
     def ceil(self, x: float) -> float:
         """The smallest whole number not below x."""
-        self._charge(20)
-        return -_whole_below(-x)
+        return self._value(20, _whole_above, x)
 
     def fmod(self, x: float, y: float) -> float:
         """The remainder of x / y, with the sign of x."""
@@ -101,6 +108,76 @@ class Mathematics:
         """The absolute value."""
         self._charge(4)
         return abs(x)
+
+    # In 64 bits
+
+    def _wide(self, cycles: int, function: Callable[..., float], *arguments: float) -> float:
+        return self._value(_SOFTWARE * cycles, function, *arguments, wide=True)
+
+    def sinl(self, x: float) -> float:
+        """`sin` of a `long double`."""
+        return self._wide(80, math.sin, x)
+
+    def cosl(self, x: float) -> float:
+        """`cos` of a `long double`."""
+        return self._wide(80, math.cos, x)
+
+    def tanl(self, x: float) -> float:
+        """`tan` of a `long double`."""
+        return self._wide(120, math.tan, x)
+
+    def asinl(self, x: float) -> float:
+        """`asin` of a `long double`."""
+        return self._wide(140, math.asin, x)
+
+    def acosl(self, x: float) -> float:
+        """`acos` of a `long double`."""
+        return self._wide(140, math.acos, x)
+
+    def atanl(self, x: float) -> float:
+        """`atan` of a `long double`."""
+        return self._wide(100, math.atan, x)
+
+    def atan2l(self, y: float, x: float) -> float:
+        """`atan2` of `long double`s."""
+        return self._wide(120, math.atan2, y, x)
+
+    def expl(self, x: float) -> float:
+        """`exp` of a `long double`."""
+        return self._wide(120, math.exp, x)
+
+    def logl(self, x: float) -> float:
+        """`log` of a `long double`."""
+        return self._wide(120, math.log, x)
+
+    def powl(self, x: float, y: float) -> float:
+        """`pow` of `long double`s."""
+        return self._wide(250, math.pow, x, y)
+
+    def sqrtl(self, x: float) -> float:
+        """`sqrt` of a `long double`."""
+        return self._wide(40, math.sqrt, x)
+
+    def floorl(self, x: float) -> float:
+        """`floor` of a `long double`."""
+        return self._wide(20, _whole_below, x)
+
+    def ceill(self, x: float) -> float:
+        """`ceil` of a `long double`."""
+        return self._wide(20, _whole_above, x)
+
+    def fmodl(self, x: float, y: float) -> float:
+        """`fmod` of `long double`s."""
+        return self._wide(150, math.fmod, x, y)
+
+    def fabsl(self, x: float) -> float:
+        """`fabs` of a `long double`."""
+        self._charge(4)
+        return abs(x)
+
+
+def _whole_above(x: float) -> float:
+    return -_whole_below(-x)
 
 
 def _whole_below(x: float) -> float:

@@ -134,7 +134,7 @@ class Printing(Strings):
             sign, text = self._integer(kind, flags, precision, va, long=found["length"] in ("l", "L"))
             zeros = precision is None
         elif kind in "fFeEgG":
-            value = va.float32()
+            value = va.long_double() if found["length"] == "L" else va.double()
             text = f"%{'#' if '#' in flags else ''}.{6 if precision is None else precision}{kind}" % abs(value)
             sign, zeros = _sign(math.copysign(1.0, value) < 0.0, flags), math.isfinite(value)
         elif kind == "c":

@@ -15,16 +15,18 @@ from typing import Any, Final, Protocol
 
 from mypy_extensions import mypyc_attr
 
-from emulator.c28x.arithmetic import COMPARE, DIVIDERS, FLOAT_TO_INT, divide_int, modulo_int
+from emulator.c28x.arithmetic import COMPARE, DIVIDERS, FLOAT_TO_INT, divide_double, divide_int, modulo_int
 from emulator.c28x.called_as import fitted, misfit
 from emulator.c28x.ctypes import (
     CHAR,
+    FLOAT,
     NOBODY,
     UINT,
     ULONG,
     VOID,
     ArrayType,
     CType,
+    Double64,
     FloatType,
     FunctionType,
     IntType,
@@ -235,6 +237,8 @@ class Runtime:
         self.fill_of: dict[str, tuple[str, int]] = {}
         self.divide = DIVIDERS[divide]
         self.to_int = FLOAT_TO_INT[float_to_int]
+        #: What the program calls `double`; the linker sets it.
+        self.double: FloatType = FLOAT
         #: How long a loop may compute without a call, in cycles.
         self.loop_limit = int(LOOP_LIMIT_S * 1_000_000 * CYCLES_PER_US)
         self.poll_limit = int(poll_limit_s * 1_000_000 * CYCLES_PER_US)
@@ -325,6 +329,10 @@ class Runtime:
             return zero_of(ctype)
         if fill == "stack" and addr is not None:
             return from_words([self.memory.words.get(addr + i, 0) for i in range(ctype.words)], ctype, self.memory)
+        if isinstance(ctype, Double64):
+            chosen = {"ones": (1 << 64) - 1, "nan": 0x7FF8 << 48}.get(fill, 0)
+            bits = random.Random(f"{seed}:{key}").getrandbits(64) if fill == "random" else chosen
+            return from_words([bits >> 16 * i & 0xFFFF for i in range(4)], ctype, self.memory)
         if fill == "random":
             bits = random.Random(f"{seed}:{key}").getrandbits(32)
         else:
@@ -1229,7 +1237,7 @@ class Runtime:
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         low, high = ctype.low, ctype.high
-        if low - 1.0 < value < high + 1.0:
+        if low - 1.0 < value < high + 1.0 or value == low:  # `low - 1.0` is `low` for 64 bits
             return int(value)
         result = self.to_int(value, low, high)
         message = f"{site.name} is {value!r}, outside the range of a {ctype}: it becomes {result}"
@@ -1260,6 +1268,13 @@ class Runtime:
         if b == 0.0:
             self.hit(site, "division-by-zero", f"{site.name}: {a!r} is divided by zero", a)
         return self.divide(a, b)
+
+    def divide_doubles(self, a: float, b: float, number: int) -> float:
+        """Division of floats of 64 bits: always that of the run-time library, which is IEEE's."""
+        site = self.sites[number]
+        if b == 0.0:
+            self.hit(site, "division-by-zero", f"{site.name}: {a!r} is divided by zero", a)
+        return divide_double(a, b)
 
     def divide_ints(self, a: int, b: int, number: int) -> int:
         """Integer division.  By zero it does not trap (CHOICE: all ones, the result of the SUBCU loop)."""

@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from functools import cached_property
 from typing import Any, Final
 
-from emulator.c28x.ctypes import CType
+from emulator.c28x.ctypes import FLOAT, CType, FloatType
 from emulator.c28x.tree import Expr, Function, Variable, Where
 
 #: From this similarity on, a name counts as mistyped (0 to 1, `difflib`); how many known names are compared (the last).
@@ -155,6 +155,8 @@ class Module:
     added: set[str] = field(default_factory=set)
     #: It was read only because it defines something that C files declare; the rest of it may be unused.
     brought: bool = False
+    #: What it calls `double`.
+    double: FloatType = FLOAT
 
     def __getstate__(self) -> dict[str, Any]:
         """The state of a translated module: objects, functions and types, without what only the reader needs."""

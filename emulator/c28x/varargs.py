@@ -1,24 +1,26 @@
 """The extra arguments of a variadic C function, as words on the stack.
 
-Arguments are on the stack in 16-bit words, low word first; 32-bit arguments begin on even words.  If a format reads
-another width than was passed, all later arguments are shifted, as on the chip.  CHOICE: the first argument is on an
-even word; words after the last argument read 0.
+Arguments are on the stack in 16-bit words, low word first; those of 32 and 64 bits begin on even words.  If a format
+reads another width than was passed, all later arguments are shifted, as on the chip.  CHOICE: the first argument is on
+an even word; words after the last argument read 0; a `long double` lies there itself, not by its address.
 """
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Sequence
 from typing import Any, Protocol
 
-from emulator.c28x.ctypes import CType
+from emulator.c28x.arithmetic import bits_double, bits_float
+from emulator.c28x.ctypes import CType, FloatType
 from emulator.c28x.findings import Findings
 from emulator.c28x.heap_block import HeapBlock
-from emulator.c28x.memory import Memory
+from emulator.c28x.memory import Memory, to_words
 
 
 class Reporter(Protocol):
     """An owner of findings: the kernel's core, or a runtime."""
+
+    double: FloatType
 
     @property
     def findings(self) -> Findings:
@@ -37,21 +39,16 @@ class Varargs:
         #: Word offset -> pointer that starts there, so that `%s` gets the object and not only its address.
         self._objects: dict[int, Any] = {}
         for ctype, value in arguments:
-            self._push(ctype.words, value)
+            self._push(ctype, value)
 
-    def _push(self, words: int, value: Any) -> None:
-        if words == 2 and len(self._words) & 1:
+    def _push(self, ctype: CType, value: Any) -> None:
+        if ctype.words > 1 and len(self._words) & 1:
             self._words.append(0)
-        if isinstance(value, float):
-            bits = int.from_bytes(struct.pack("<f", value), "little")
-        elif isinstance(value, int):
-            bits = value
-        else:
-            self._objects[len(self._words)] = value
-            bits = getattr(value, "addr", 0) if value else 0
-        self._words.append(bits & 0xFFFF)
-        if words == 2:
-            self._words.append(bits >> 16 & 0xFFFF)
+        if isinstance(value, int | float):
+            self._words += to_words(value, ctype)
+            return
+        self._objects[len(self._words)] = value
+        self._words += to_words(getattr(value, "addr", 0) if value else 0, ctype)
 
     def _word(self) -> int:
         if self._at >= len(self._words):
@@ -75,10 +72,14 @@ class Varargs:
         low = self._word()
         return low | self._word() << 16
 
-    def float32(self) -> float:
-        """`va_arg(va, double)`: two words, the double of the COFF ABI."""
-        value: float = struct.unpack("<f", self.long().to_bytes(4, "little"))[0]
-        return value
+    def double(self) -> float:
+        """`va_arg(va, double)`: two words under the COFF ABI, four under the EABI."""
+        return self.long_double() if self._reporter.double.words > 2 else bits_float(self.long())
+
+    def long_double(self) -> float:
+        """`va_arg(va, long double)`: four words."""
+        low = self.long()
+        return bits_double(low | self.long() << 32)
 
     def pointer(self) -> tuple[Any, int]:
         """`va_arg(va, void *)`: the pointer passed there (None for NULL, or if it was no pointer), and its address."""

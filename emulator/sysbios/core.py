@@ -9,6 +9,7 @@ import inspect
 from collections.abc import Callable
 from typing import Any, Final, NoReturn
 
+from emulator.c28x.ctypes import FLOAT, FloatType
 from emulator.c28x.findings import Findings
 from emulator.clock import Clock
 from emulator.cpu import Cpu
@@ -54,7 +55,7 @@ class KernelObject:
 class KernelCore:
     """State that the kernel's modules share."""
 
-    __slots__ = ("asserts", "clock", "costs", "cpu", "findings", "thread_type", "trace")
+    __slots__ = ("asserts", "clock", "costs", "cpu", "double", "findings", "thread_type", "trace")
 
     def __init__(
         self, clock: Clock, cpu: Cpu, findings: Findings, trace: Trace, *, cost_scale: float, asserts: bool
@@ -66,6 +67,8 @@ class KernelCore:
         self.costs = scaled(cost_scale)
         self.asserts = asserts
         self.thread_type = MAIN
+        #: What the program calls `double`; whoever links it sets this.
+        self.double: FloatType = FLOAT
 
     def check(self, condition: bool, identifier: str, message: str) -> None:
         """`Assert_isTrue`: raise KernelError unless `condition` holds.  Does nothing while asserts are disabled."""

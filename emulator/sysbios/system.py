@@ -162,10 +162,10 @@ class _Printer:
         elif character == "$":
             return self._extended(form, at, precision, left, width)
         elif character == "f" and self._float:
-            text = self._fixed(va.float32(), padding)
+            text = self._fixed(va.double(), padding)
         else:
             if character == "f":
-                va.float32()
+                va.double()
             if character not in ("%", "\0"):
                 taken = "takes the double" if character == "f" else "takes no argument"
                 unknown = f"%{'l' if long else ''}{character}"

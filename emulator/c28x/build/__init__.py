@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from emulator.c28x.build.calls import call, call_value, sizeof
 from emulator.c28x.build.constants import character, constant_value, floating, fold, integer, string, why_no_constant
-from emulator.c28x.build.conversions import condition, convert, promoted, same_type
+from emulator.c28x.build.conversions import condition, convert, promoted, same_type, unnamed
 from emulator.c28x.build.depth import shallow, shallow_place
 from emulator.c28x.build.effects import arguments, evaluated_once, operands, unsequenced, writes_itself
 from emulator.c28x.build.initialisers import Braces, Item, array_of, is_constant, length_given, values
@@ -130,6 +130,7 @@ __all__ = [
     "switch",
     "unary",
     "unmodelled_block",
+    "unnamed",
     "unsequenced",
     "value_of",
     "values",

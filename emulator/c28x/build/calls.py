@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from emulator.c28x.build.conversions import convert, promoted, single
+from emulator.c28x.build.conversions import convert, unnamed
 from emulator.c28x.build.scope import Builder
 from emulator.c28x.ctypes import ULONG, BlockType, CType, FunctionType, PointerType, StructType
 from emulator.c28x.symbols import SourceError
@@ -17,7 +17,7 @@ def call(b: Builder, function: Function, arguments: Sequence[Expr], where: Where
     if len(arguments) < len(wanted) or (len(arguments) > len(wanted) and not function.ctype.variadic):
         raise SourceError.at(where, f"{function.name} takes {len(wanted)} arguments, {len(arguments)} given")
     converted = [convert(b, a, t) for a, t in zip(arguments, wanted, strict=False)]
-    extra = [promoted(b, single(a)) for a in arguments[len(wanted) :]]
+    extra = [unnamed(b, a) for a in arguments[len(wanted) :]]
     for argument in extra:
         if isinstance(argument.ctype, StructType):
             message = f"a {argument.ctype} behind the parameters of {function.name}: pass its address"
@@ -34,7 +34,7 @@ def call_value(b: Builder, target: Expr, arguments: Sequence[Expr], where: Where
         raise SourceError.at(where, f"'{text}' is a {target.ctype}, not a function")
     wanted = target.ctype.parameters
     if target.ctype.variadic and not wanted:  # `int (*f)()`: C does not say which parameters
-        return CallPointer(target.ctype.result, target, [promoted(b, single(a)) for a in arguments], where=where)
+        return CallPointer(target.ctype.result, target, [unnamed(b, a) for a in arguments], where=where)
     if len(arguments) != len(wanted):
         raise SourceError.at(where, f"this function takes {len(wanted)} arguments, {len(arguments)} given")
     converted = [convert(b, a, t) for a, t in zip(arguments, wanted, strict=True)]

@@ -59,14 +59,13 @@ def character(value: int, where: Where) -> Const:
     return Const(INT, INT.wrap(value), where=where)
 
 
-def floating(value: float, where: Where, *, wide: bool = False) -> Const:
-    """A floating constant: single precision, unless it is `wide` (a `long double`)."""
-    if wide and math.isfinite(value):
-        return Const(Double64("long double"), value, where=where)
-    single = f32(value)
-    if math.isinf(single):
-        raise SourceError.at(where, "the constant does not fit into a float: at most 3.4028235e38")
-    return Const(FLOAT, single, where=where)
+def floating(value: float, where: Where, ctype: FloatType = FLOAT) -> Const:
+    """A floating constant of type `ctype`.  Raises SourceError for one that is too large."""
+    rounded = value if isinstance(ctype, Double64) else f32(value)
+    if math.isinf(rounded):
+        most = "1.7976931348623157e308" if isinstance(ctype, Double64) else "3.4028235e38"
+        raise SourceError.at(where, f"the constant does not fit into a {ctype}: at most {most}")
+    return Const(ctype, rounded, where=where)
 
 
 def string(text: str, where: Where) -> String:
@@ -158,9 +157,6 @@ _COMPARISONS: Final[dict[str, Callable[[float, float], bool]]] = {
 def fold(expr: Expr) -> Expr:
     """Fold conversions and arithmetic of constants that have a defined result; return anything else unchanged."""
     folded = _fold(expr)
-    if isinstance(folded.ctype, Double64) and not isinstance(folded, Const):
-        name = folded.ctype.name
-        raise SourceError.at(expr.where, f"a {name} of 64 bits is computed from constants only: write float")
     if isinstance(folded, Const) and folded is not expr:
         folded.source = expr
         folded.where = expr.where

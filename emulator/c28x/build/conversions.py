@@ -13,7 +13,6 @@ from emulator.c28x.ctypes import (
     VOID,
     BlockType,
     CType,
-    Double64,
     FunctionType,
     HandleType,
     IntType,
@@ -105,18 +104,9 @@ def _without_tag(name: str) -> str:
     return name.replace("struct ", "").replace("union ", "")
 
 
-def computed_together(left: Expr, right: Expr) -> tuple[Expr, Expr]:
-    """Two operands.  CHOICE: a 64-bit constant becomes a `float` if the other operand is not a constant."""
-    if isinstance(left.ctype, Double64) and not isinstance(right, Const):
-        left = single(left)
-    if isinstance(right.ctype, Double64) and not isinstance(left, Const):
-        right = single(right)
-    return left, right
-
-
-def single(value: Expr) -> Expr:
-    """A constant of 64 bits as a float; anything else stays."""
-    return fold(Convert(FLOAT, value, where=value.where)) if isinstance(value.ctype, Double64) else value
+def unnamed(b: Builder, argument: Expr) -> Expr:
+    """An argument that no parameter receives, after the default argument promotions: a float becomes a double."""
+    return convert(b, argument, b.double) if argument.ctype == FLOAT else promoted(b, argument)
 
 
 def promoted(b: Builder, value: Expr) -> Expr:

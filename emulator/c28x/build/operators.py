@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Final
 
 from emulator.c28x.build.constants import fold
-from emulator.c28x.build.conversions import ADDRESSES, computed_together, condition, convert, promoted, single
+from emulator.c28x.build.conversions import ADDRESSES, condition, convert, promoted
 from emulator.c28x.build.depth import shallow
 from emulator.c28x.build.effects import arguments, evaluated_once
 from emulator.c28x.build.places import Place, complete, value_of
@@ -87,7 +87,6 @@ def binary(b: Builder, op: str, left: Expr, right: Expr, where: Where) -> Expr:
         if not isinstance(left.ctype, IntType) or not isinstance(right.ctype, IntType):
             raise SourceError.at(where, f"{op} is for integers")
         return fold(Binary(promote(left.ctype), op, promoted(b, left), promoted(b, right), where=where))
-    left, right = computed_together(left, right)
     ctype = usual(left.ctype, right.ctype)
     if op in ("%", "&", "|", "^") and isinstance(ctype, FloatType):
         raise SourceError.at(where, f"{op} is for integers")
@@ -120,7 +119,6 @@ def _sized(pointer: Expr, where: Where) -> Expr:
 def compare(b: Builder, op: str, left: Expr, right: Expr, where: Where) -> Expr:
     """A comparison with C's conversions."""
     if is_arithmetic(left.ctype) and is_arithmetic(right.ctype):
-        left, right = computed_together(left, right)
         ctype = usual(left.ctype, right.ctype)
         return Compare(INT, op, convert(b, left, ctype), convert(b, right, ctype), where=where)
     left, right = _null(b, left, right), _null(b, right, left)
@@ -178,7 +176,6 @@ def conditional(
     condition(test)
     first, a = b.collect_effects(then)
     second, c = b.collect_effects(otherwise)
-    a, c = single(a), single(c)
     ctype = _common(b, a, c, where)
     a, c = convert(b, a, ctype), convert(b, c, ctype)
     if ctype == VOID:

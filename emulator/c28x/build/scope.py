@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import Final, TypeVar
 
-from emulator.c28x.ctypes import VOID, ArrayType, CType, FunctionType, StructType
+from emulator.c28x.ctypes import FLOAT, VOID, ArrayType, CType, FloatType, FunctionType, StructType
 from emulator.c28x.symbols import Module, Remark, SourceError, Symbol
 from emulator.c28x.tree import Declaration, Declare, Expr, Function, Load, LValue, Stmt, Variable, Where
 from emulator.c28x.tree_queries import source_text
@@ -39,9 +39,12 @@ class Builder:
     """Builds the body of one function, or the initialiser of one object at file scope."""
 
     def __init__(
-        self, module: Module, function: Function, *, keeps: bool = True, remarks_pointers: bool = False
+        self, module: Module, function: Function, *, keeps: bool = True, remarks_pointers: bool = False,
+        double: FloatType = FLOAT,
     ) -> None:  # fmt: skip
         """`keeps`: it builds a function and can store values in temporaries; at file scope it cannot.
+
+        `double` is the type of that name, which depends on the ABI.
 
         `remarks_pointers`: a pointer of the wrong type gets a remark instead of an error.  C compilers accept it with a
         warning.
@@ -63,6 +66,7 @@ class Builder:
         #: How many `#define`s have been replaced by their text so far.
         self.expanded = 0
         self.keeps = keeps
+        self.double = double
         self.out: list[Stmt] = []
         self.remarks_pointers = remarks_pointers
         #: Effects that C sequences before the use of their value: arguments of a call, the left side of a comma.
@@ -245,7 +249,7 @@ class Builder:
             self.module.remarks.append(made)
 
 
-def file_scope(module: Module, *, remarks_pointers: bool = False) -> Builder:
+def file_scope(module: Module, *, remarks_pointers: bool = False, double: FloatType = FLOAT) -> Builder:
     """A builder for code outside of functions."""
     function = Function("file scope", module.short, FunctionType("void", VOID, ()), [], 0, module.c_file)
-    return Builder(module, function, keeps=False, remarks_pointers=remarks_pointers)
+    return Builder(module, function, keeps=False, remarks_pointers=remarks_pointers, double=double)

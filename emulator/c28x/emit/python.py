@@ -14,6 +14,7 @@ from typing import Final
 from emulator.c28x.ctypes import (
     VOID,
     CType,
+    Double64,
     FloatType,
     FunctionType,
     HandleType,
@@ -966,19 +967,21 @@ class PythonWriter:
 
     def float_operation(self, e: Binary, left: str, right: str) -> str:
         guard = e.guard
+        wide = isinstance(e.ctype, Double64)
+        rounded, divided = ("", "_c_divide_doubles") if wide else ("_c_f32", "_c_divide_floats")
         if guard is None:
-            return f"_c_f32({left} {e.op} {right})"
+            return f"{rounded}({left} {e.op} {right})"
         number = self.number(guard)
         if guard.kind == "divide":
-            return f"_c_divide_floats({left}, {right}, {number})"
+            return f"{divided}({left}, {right}, {number})"
         # In a watched image, a NaN or an infinity is reported where it arises: times 0, they are NaN.  This is one
         # comparison: mypy looks at what a chain compares again and again, 12 times a level of nesting against 3.
         self.fresh += 1
         a, b, r = f"_a{self.fresh}_", f"_b{self.fresh}_", f"_r{self.fresh}_"
-        result = f"_c_f32(({a} := {left}) {e.op} ({b} := {right}))"
+        result = f"{rounded}(({a} := {left}) {e.op} ({b} := {right}))"
         if guard.more is not None:
             place = self.place(guard.more.where, guard.more)
-            result = f"_c_divide_floats(({a} := {left}), ({b} := {right}), {place})"
+            result = f"{divided}(({a} := {left}), ({b} := {right}), {place})"
         return f"({r} if ({r} := {result}) * 0.0 == 0.0 else _c_float_result({a}, {b}, {r}, {number}))"
 
     def unary(self, e: Unary) -> str:
@@ -1000,7 +1003,10 @@ class PythonWriter:
             text = f"_c_{e.guard.kind}({text}, {self.number(e.guard)})"
         match target, source:
             case FloatType(), IntType(bits=bits):
-                return f"({text} + 0.0)" if bits <= 16 else f"_c_f32({text} + 0.0)"
+                exact = bits <= 16 or isinstance(target, Double64)
+                return f"({text} + 0.0)" if exact else f"_c_f32({text} + 0.0)"
+            case FloatType(), Double64() if not isinstance(target, Double64):
+                return f"_c_f32({text})"
             case IntType(), FloatType():
                 assert e.guard is not None
                 helper = "_c_float_argument" if e.guard.kind == "float-argument" else "_c_float_to_int"

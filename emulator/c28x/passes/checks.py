@@ -53,7 +53,7 @@ def check(
     modules = list(modules)
     initialisers = {variable: start or [] for variable, start in objects.items()}
     found: list[StaticFinding] = []
-    reports = {module: StaticReport(module.c_file, found) for module in modules}
+    reports = {module: StaticReport(module.c_file, found, module.double) for module in modules}
     mentions = Mentions(modules, initialisers)
     entered = mentions.by_address | entries
     threads = WriterAnalysis(modules, entered)

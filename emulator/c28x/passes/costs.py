@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from emulator.c28x.ctypes import FloatType, IntType
+from emulator.c28x.ctypes import Double64, FloatType, IntType
 from emulator.c28x.float_division import FloatDivision
 from emulator.c28x.tree import (
     AddressOf,
@@ -60,6 +60,11 @@ INT_DIV: Final = 32
 FLOAT_OP: Final = 4
 CONVERT: Final = 4
 COMPARE: Final = 3
+#: Operations on floats of 64 bits are calls of the run-time library: CHOICE, in the order of magnitude of code that
+#: computes in words of 32 bits (no list of their cycles was found).
+DOUBLE_OP: Final = {"+": 250, "-": 250, "*": 300, "/": 1300}
+DOUBLE_CONVERT: Final = 60
+DOUBLE_COMPARE: Final = 60
 BRANCH: Final = 4
 CALL: Final = 16
 LOOP: Final = 4
@@ -142,10 +147,15 @@ class Costs:
                 return self.condition(e)
             case Conditional(test=test, then=then, otherwise=otherwise):
                 return BRANCH + self.condition(test) + self.cycles(then) + self.cycles(otherwise)
+            case Convert(ctype=Double64(), operand=operand) | Convert(operand=Expr(ctype=Double64()) as operand):
+                same = isinstance(e.ctype, Double64) and isinstance(operand.ctype, Double64)
+                return self.cycles(operand) + (0 if same else DOUBLE_CONVERT)
             case Convert(operand=operand):
                 floats = isinstance(e.ctype, FloatType), isinstance(operand.ctype, FloatType)
                 between = isinstance(e.ctype, IntType | FloatType) and floats[0] != floats[1]
                 return self.cycles(operand) + (CONVERT if between else 0)
+            case Binary(ctype=Double64(), op=op, left=left, right=right):
+                return DOUBLE_OP[op] + self.cycles(left) + self.cycles(right)
             case Binary(ctype=FloatType(), op=op, left=left, right=right):
                 return self._float(op, right) + self.cycles(left) + self.cycles(right)
             case Binary(ctype=IntType(words=words), op=op, left=left, right=right):
@@ -172,12 +182,13 @@ class Costs:
         """The cycles of a branch on an expression."""
         match e:
             case Compare(left=left, right=right):
-                return COMPARE + self.cycles(left) + self.cycles(right)
+                wide = isinstance(left.ctype, Double64)
+                return (DOUBLE_COMPARE if wide else COMPARE) + self.cycles(left) + self.cycles(right)
             case Logic(operands=operands):
                 return sum(map(self.condition, operands))
             case Not(operand=operand):
                 return self.condition(operand)
-        return COMPARE + self.cycles(e)
+        return (DOUBLE_COMPARE if isinstance(getattr(e, "ctype", None), Double64) else COMPARE) + self.cycles(e)
 
     def access_cycles(self, lvalue: LValue) -> int:
         """The cycles of reaching an object: its subscripts, its pointer."""

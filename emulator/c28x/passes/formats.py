@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable
 from typing import Final
 
-from emulator.c28x.ctypes import CType, FloatType, FunctionType, HandleType, IntType, PointerType
+from emulator.c28x.ctypes import CType, Double64, FloatType, FunctionType, HandleType, IntType, PointerType
 from emulator.c28x.tree import Call, String
 from emulator.c28x.tree_queries import bare, source_text
 
@@ -23,15 +23,18 @@ _SPECIFICATION: Final = re.compile(
 )
 
 
-def check_format(e: Call, report: Callable[[str, str, str], None]) -> None:
-    """Report arguments of a call that do not fit its format: `report(rule, message, object)`."""
+def check_format(e: Call, double: FloatType, report: Callable[[str, str, str], None]) -> None:
+    """Report arguments of a call that do not fit its format: `report(rule, message, object)`.
+
+    `double` is the type of that name.
+    """
     place = _FORMATS.get(e.function.name)
     if place is None or not e.function.ctype.variadic or place >= len(e.arguments):
         return
     form = bare(e.arguments[place])
     if not isinstance(form, String):
         return
-    wanted = _conversions(form.text)
+    wanted = _conversions(form.text, double)
     if wanted is None:
         return
     for (conversion, what, fits), given in zip(wanted, e.extra, strict=False):
@@ -56,7 +59,11 @@ def _long(ctype: CType) -> bool:
 
 
 def _float(ctype: CType) -> bool:
-    return isinstance(ctype, FloatType)
+    return isinstance(ctype, FloatType) and not isinstance(ctype, Double64)
+
+
+def _double(ctype: CType) -> bool:
+    return isinstance(ctype, Double64)
 
 
 def _address(ctype: CType) -> bool:
@@ -67,7 +74,7 @@ def _pointer(ctype: CType) -> bool:
     return _address(ctype) or _long(ctype)
 
 
-def _conversions(text: str) -> list[tuple[str, str, Callable[[CType], bool]]] | None:
+def _conversions(text: str, double: FloatType) -> list[tuple[str, str, Callable[[CType], bool]]] | None:
     """(text, what it reads, test of a type) of each conversion; None if one is not known."""
     found: list[tuple[str, str, Callable[[CType], bool]]] = []
     for one in _SPECIFICATION.finditer(text):
@@ -79,7 +86,9 @@ def _conversions(text: str) -> list[tuple[str, str, Callable[[CType], bool]]] | 
             found.append((written, "an int, one word", _int))
         elif kind in "diuxXo" and length == "l":
             found.append((written, "a long, two words", _long))
-        elif kind in "fFeEgG" and length in ("", "l", "L"):
+        elif kind in "fFeEgG" and (length == "L" or (length in ("", "l") and isinstance(double, Double64))):
+            found.append((written, f"a {'long double' if length == 'L' else 'double'}, four words", _double))
+        elif kind in "fFeEgG" and length in ("", "l"):
             found.append((written, "a float", _float))
         elif kind == "s" and not length:
             found.append((written, "the address of a text", _address))

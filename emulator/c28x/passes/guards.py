@@ -53,6 +53,7 @@ from emulator.c28x.ctypes import (
     ULONG,
     VOID,
     CType,
+    Double64,
     FloatType,
     FunctionType,
     HandleType,
@@ -627,7 +628,9 @@ class Guards:
         site = self.site(e.ctype, source_text(e), at=e.where)
         if self.watch:
             e.guard = Guard("float", site, site if e.op == "/" else None)
-        elif e.op == "/" and not (self.ieee and isinstance(e.right, Const) and e.right.value != 0):
+        elif e.op == "/" and not (
+            (self.ieee or isinstance(e.ctype, Double64)) and isinstance(e.right, Const) and e.right.value != 0
+        ):
             e.guard = Guard("divide", site)
 
     def dividend(self, e: Binary) -> None:

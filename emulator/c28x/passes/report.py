@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from emulator.c28x.ctypes import FLOAT, FloatType
 from emulator.c28x.sites import Place
 from emulator.c28x.tree import Declaration, Function, Where
 
@@ -26,6 +27,8 @@ class StaticReport:
 
     c_file: str
     found: list[StaticFinding] = field(repr=False)
+    #: What the module calls `double`.
+    double: FloatType = FLOAT
 
     def report(
         self, function: Function | None, where: Where, rule: str, message: str, *, object: str = "",

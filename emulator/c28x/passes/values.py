@@ -8,7 +8,7 @@ from math import ceil, floor, isfinite
 from typing import Any
 
 from emulator.c28x.arithmetic import COMPARE
-from emulator.c28x.ctypes import NOBODY, UCHAR, Double64, FloatType, IntType, PointerType
+from emulator.c28x.ctypes import LONG_DOUBLE, NOBODY, UCHAR, FloatType, IntType, PointerType
 from emulator.c28x.passes.blocks import check_blocks
 from emulator.c28x.passes.counted import CounterEndValues, known_locals, turning
 from emulator.c28x.passes.formats import check_format
@@ -68,8 +68,8 @@ class ConstantChecks:
         match e:
             case Const(
                 source=Convert(ctype=IntType() as to, operand=Const(value=value) as written, explicit=False)
-            ) if value != e.value and not _as_pattern(written, to) and not isinstance(written.ctype, Double64):
-                # Macros compute counts of cycles in double: their fraction is meant to be lost.
+            ) if value != e.value and not _as_pattern(written, to) and written.ctype != LONG_DOUBLE:
+                # Macros compute counts of cycles in long double: their fraction is meant to be lost.
                 text = source_text(written)
                 self.report_here("assignment-loses", f"{text} does not fit a {to}: it becomes {e.value}", text, value)
 
@@ -324,7 +324,7 @@ class ValueChecks(ConstantChecks):
                 for argument in arguments:
                     self.given(argument)
                 if isinstance(e, Call):
-                    check_format(e, self.report_here)
+                    check_format(e, self.to.double, self.report_here)
                     check_blocks(e, self.report_here)
             case Const():
                 self.folded(e)

@@ -19,7 +19,6 @@ from emulator.c28x.ctypes import (
     ArrayType,
     BlockType,
     CType,
-    Double64,
     FunctionType,
     StructType,
     is_arithmetic,
@@ -30,7 +29,7 @@ from emulator.c28x.readers.c.expressions import INTRINSICS, CExpressionReader
 from emulator.c28x.readers.c.library_headers import VA_GIVEN
 from emulator.c28x.readers.c.no_object import Prototype, Unsized
 from emulator.c28x.readers.c.statements import CStatementReader, initialise_local
-from emulator.c28x.readers.c.types import Abi, specifier
+from emulator.c28x.readers.c.types import Abi
 from emulator.c28x.symbols import CoreRegister, EnumType, Module, SourceError
 from emulator.c28x.tree import Const, Declaration, Expr, Function, Null, Variable, Where
 
@@ -73,7 +72,7 @@ class CDeclarationReader:
         #: Object at file scope -> its qualifiers: each declaration has the same ones.
         self.qualifiers: dict[Variable, set[str]] = {}
         self.tags: dict[str, CType | EnumType] = {}
-        self.b = build.file_scope(module, remarks_pointers=True)
+        self.b = build.file_scope(module, remarks_pointers=True, double=abi.double)
         self.expressions = CExpressionReader(self.b, self.tags, abi, self.implicit, self.use)
         self.types = self.expressions.types
 
@@ -158,7 +157,7 @@ class CDeclarationReader:
         given = self.expressions.initialiser(node.init) if node.init is not None else None
         if not extern or not isinstance(ctype, Unsized):
             ctype = self.sized(ctype, given, where)
-            self.types.complete(ctype, _place(node, ctype))
+            self.types.complete(ctype, where)
         self.object(name, ctype, node, given, extern=extern)
 
     def sized(self, ctype: CType, given: Item | Braces | None, where: Where) -> CType:
@@ -317,9 +316,6 @@ class CDeclarationReader:
                 raise SourceError.at(parameter.coord, f"a parameter of {name} has no name")
         if arguments is None:
             prototype = Prototype(prototype.name, prototype.result, (), False, ())
-        listed = zip(prototype.parameters, _list(arguments), strict=False)
-        for part, at in ((prototype.result, declaration.type), *listed):
-            self.expressions.modelled(FunctionType("", part, ()), at.coord)
         function = self.declare_function(name, prototype, declaration, defines=True)
         if function in self.module.bodies:
             raise SourceError.at(where, f"{name} is defined twice")
@@ -391,7 +387,7 @@ class FunctionReader:
         self.module = file.module
         self.function = function
         self.node = node
-        self.b = Builder(file.module, function, remarks_pointers=True)
+        self.b = Builder(file.module, function, remarks_pointers=True, double=file.abi.double)
         self.expressions = CExpressionReader(
             self.b, dict(file.tags), file.abi, file.implicit, file.use, around=file.types
         )  # fmt: skip
@@ -433,7 +429,7 @@ class FunctionReader:
             raise SourceError.at(where, f"{node.name} has no length")
         if isinstance(ctype, Unsized):
             ctype = self.file.sized(ctype, given, where)
-        self.types.complete(ctype, _place(node, ctype))
+        self.types.complete(ctype, where)
         if "static" in node.storage:
             self.static(node, ctype, given)
             return
@@ -508,9 +504,3 @@ def _completes(known: CType, ctype: CType) -> bool:
 
 def _list(arguments: c_ast.ParamList | None) -> list[c_ast.Node]:
     return list(arguments.params) if arguments is not None else []
-
-
-def _place(node: c_ast.Decl, ctype: CType) -> Where:
-    """The place of an error in a declaration: its name, or its type if that is not modelled."""
-    where: Where = node.coord
-    return specifier(node.type) if isinstance(ctype, Double64) else where

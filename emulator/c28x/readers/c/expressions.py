@@ -21,7 +21,6 @@ from emulator.c28x.ctypes import (
     ArrayType,
     BlockType,
     CType,
-    Double64,
     FunctionType,
     IntType,
     PointerType,
@@ -153,7 +152,7 @@ class CExpressionReader:
         text, where = node.value, node.coord
         if text.startswith(('"', 'L"')):
             return literals.string(text, where)
-        return literals.character(text, where) if text.endswith("'") else literals.number(text, where)
+        return literals.character(text, where) if text.endswith("'") else literals.number(text, where, self.b.double)
 
     def identifier(self, node: c_ast.ID) -> Expr:
         """The value of a name."""
@@ -509,11 +508,9 @@ class CExpressionReader:
                 return build.call(self.b, symbol, values, where)
             if isinstance(symbol, Function):
                 self.use(symbol, where)
-                self.modelled(symbol.ctype, where)
                 return build.call(self.b, symbol, self.argument_values(arguments), where)
         parts = [lambda: self.value(node.name), *[lambda a=a: self.value(a) for a in arguments]]
         target, *values = build.arguments(self.b, parts)
-        self.modelled(target.ctype, where)
         return build.call_value(self.b, target, values, where, written(node.name))
 
     def argument_values(self, nodes: list[c_ast.Node]) -> list[Expr]:
@@ -524,18 +521,11 @@ class CExpressionReader:
                 raise SourceError.at(node.coord, f"'{written(node)}' is void: it has no value")
         return values
 
-    def modelled(self, ctype: CType, where: Where) -> None:
-        """Raises SourceError for a function with 64-bit floats."""
-        if isinstance(ctype, FunctionType):
-            for part in (ctype.result, *ctype.parameters):
-                if isinstance(part, Double64):
-                    self.types.complete(part, where)
-
     def remark_implicit(self, function: Function, values: list[Expr], where: Where) -> None:
         """Make the remark about a call without a declaration: what C passes, and what the function takes."""
         wrong = []
         for i, (value, wanted) in enumerate(zip(values, function.ctype.parameters, strict=False), 1):
-            passed = build.promoted(self.b, value).ctype
+            passed = build.unnamed(self.b, value).ctype
             if passed.words != wanted.words:
                 wrong.append(f"argument {i} is passed in {passed.words} words and taken from {wanted.words}")
         if function.ctype.result.words > 1:

@@ -9,6 +9,7 @@ and float.h for this chip.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from types import MappingProxyType
@@ -19,16 +20,20 @@ from emulator.c28x.program import Program
 from emulator.c28x.readers.c.library_text import TEXT
 from emulator.c28x.readers.c.module_header import guarded, own_symbols, prototypes
 from emulator.c28x.symbols import Module
+from emulator.c28x.tree import Function
 
 #: In a variadic function, the name of the pointer to its extra arguments.
 VA_GIVEN: Final = "va_given"
+#: The functions of one or two real numbers that `rts.py` declares: of `float`, and with an `l` of `long double`.
+_REAL: Final = (
+    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log", "pow", "sqrt", "floor", "ceil", "fmod", "fabs",
+)
 #: Header -> the functions of `rts.py` that it declares.
 FUNCTIONS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
-    "math.h": ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log", "pow", "sqrt", "floor", "ceil",
-               "fmod", "fabs"),
+    "math.h": (*_REAL, *(f"{name}l" for name in _REAL)),
     "stdarg.h": ("va_arg_at",),
     "stdio.h": ("printf", "puts", "putchar", "sprintf", "snprintf", "vprintf", "vsprintf", "vsnprintf"),
-    "stdlib.h": ("atof", "atoi", "atol", "abs", "labs", "malloc", "calloc", "realloc", "free"),
+    "stdlib.h": ("atof", "atoi", "atol", "strtold", "abs", "labs", "malloc", "calloc", "realloc", "free"),
     "string.h": ("memcpy", "memset", "memcmp", "memmove", "strlen", "strcmp", "strcpy", "strcat", "strncpy", "strncmp",
                  "strncat", "strchr", "strrchr", "strstr"),
 })  # fmt: skip
@@ -53,10 +58,8 @@ _UNMODELLED: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
         "void *memchr(const void *block, int character, size_t n)", "char *strerror(int number)",
     ),
 })  # fmt: skip
-#: Function of float -> function of double: they are the same, because `double` is `float` here (COFF).
-OF_FLOAT: Final[Mapping[str, str]] = MappingProxyType(
-    {f"{name}f": name for name in (*FUNCTIONS["math.h"], *TEXT["math.h"])}
-)
+#: Function of float -> function of double: under COFF they are the same, because `double` is `float` there.
+OF_FLOAT: Final[Mapping[str, str]] = MappingProxyType({f"{name}f": name for name in (*_REAL, *TEXT["math.h"])})
 #: POSIX constants that many programs expect in math.h; the compiler's math.h has them.
 _MATHEMATICAL: Final = (
     ("PI", math.pi), ("PI_2", math.pi / 2), ("PI_4", math.pi / 4), ("1_PI", 1 / math.pi), ("2_PI", 2 / math.pi),
@@ -79,6 +82,8 @@ _CHARACTERS: Final = (
 )
 #: stdint.h: the types with an exact number of bits.
 _EXACT: Final = (("int", 16), ("long", 32), ("long long", 64))
+#: The largest number of 64 bits.
+_DOUBLE_MAX: Final = "1.7976931348623157e+308"
 _NULL: Final = ("#ifndef NULL", "#define NULL 0", "#endif")
 #: Names that programs expect in these headers but that cannot exist on this chip -> what to write instead.
 ABSENT: Final[Mapping[str, str]] = MappingProxyType({
@@ -119,9 +124,31 @@ def _functions(name: str) -> Iterator[str]:
 
 def _math(name: str) -> Iterator[str]:
     yield from _functions(name)
+    real = "|".join((*_REAL, *TEXT[name]))
+    for text in TEXT[name].values():
+        wide = re.sub(rf"\b({real})\b", r"\1l", text)
+        yield from re.sub(r"\bfloat\b", "long double", wide).strip().splitlines()
+    yield "#ifdef __TI_EABI__"
+    # `sin` is the function of float above this line, and that of double below it.
+    yield from (_of_float(function) for function in _REAL)
+    for function, text in TEXT[name].items():
+        yield from re.sub(rf"\b{function}\b", f"{function}f", text).strip().splitlines()
+    yield from (f"#define {function}(...) {function}l(__VA_ARGS__)" for function in OF_FLOAT.values())
+    yield f"#define HUGE_VAL {_DOUBLE_MAX}"
+    yield "#else"
     yield from (f"#define {of_float} {function}" for of_float, function in OF_FLOAT.items())
     yield "#define HUGE_VAL 3.402823466e+38f"
+    yield "#endif"
     yield from (f"#define M_{name} {value!r}" for name, value in _MATHEMATICAL)
+
+
+def _of_float(name: str) -> str:
+    """The function of float under the name that it has where `double` is another type."""
+    function = own_symbols(library())[name]
+    assert isinstance(function, Function)
+    names = [parameter.declaration.name for parameter in function.parameters]
+    listed = ", ".join(f"float {parameter}" for parameter in names)
+    return f"static inline float {name}f({listed}) {{ return {name}({', '.join(names)}); }}"
 
 
 def _stdio(name: str) -> Iterator[str]:
@@ -133,6 +160,8 @@ def _stdlib(name: str) -> Iterator[str]:
     yield from ("#include <stddef.h>", "#define EXIT_FAILURE 1", "#define EXIT_SUCCESS 0", "#define RAND_MAX 32767")
     yield "static inline void abort(void) { for (;;) ; }"
     yield from _functions(name)
+    yield from ("#ifdef __TI_EABI__", "#define atof(text) strtold(text, (char **)0)", "#define strtod strtold")
+    yield "#endif"
 
 
 def _time(name: str) -> Iterator[str]:
@@ -203,16 +232,25 @@ def _range(prefix: str, ctype: IntType) -> Iterator[str]:
 
 
 def _float(name: str) -> Iterator[str]:
-    # `double` is `float` under COFF.
-    values = (
+    single = (
         ("DIG", "6"), ("EPSILON", "1.192092896e-07f"), ("MANT_DIG", "24"), ("MAX", "3.402823466e+38f"),
         ("MAX_10_EXP", "38"), ("MAX_EXP", "128"), ("MIN", "1.175494351e-38f"), ("MIN_10_EXP", "(-37)"),
         ("MIN_EXP", "(-125)"),
     )  # fmt: skip
     yield "#define FLT_RADIX 2"
     yield "#define FLT_ROUNDS 1"
-    for prefix in ("FLT", "DBL"):
-        yield from (f"#define {prefix}_{name} {value}" for name, value in values)
+    double = (
+        ("DIG", "15"), ("EPSILON", "2.2204460492503131e-16"), ("MANT_DIG", "53"), ("MAX", _DOUBLE_MAX),
+        ("MAX_10_EXP", "308"), ("MAX_EXP", "1024"), ("MIN", "2.2250738585072014e-308"), ("MIN_10_EXP", "(-307)"),
+        ("MIN_EXP", "(-1021)"),
+    )  # fmt: skip
+    yield from (f"#define FLT_{name} {value}" for name, value in single)
+    yield from (f"#define LDBL_{name} {value}{'L' if '.' in value else ''}" for name, value in double)
+    yield "#ifdef __TI_EABI__"
+    yield from (f"#define DBL_{name} {value}" for name, value in double)
+    yield "#else"
+    yield from (f"#define DBL_{name} {value}" for name, value in single)
+    yield "#endif"
 
 
 def _assert(name: str) -> Iterator[str]:

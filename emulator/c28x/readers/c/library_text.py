@@ -51,7 +51,7 @@ TEXT: Final = MappingProxyType({
 static inline float round(float x)
 {
     float size = fabs(x), whole = floor(size);
-    if (size - whole >= 0.5) whole += 1;
+    if (size - whole >= 0.5f) whole += 1;
     return x < 0 ? -whole : whole;
 }
 """,

@@ -6,6 +6,7 @@ import re
 from typing import Final
 
 from emulator.c28x import build
+from emulator.c28x.ctypes import FLOAT, LONG_DOUBLE, FloatType
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Expr, Where
 
@@ -13,17 +14,19 @@ _SIMPLE: Final = {
     "n": 10, "t": 9, "r": 13, "0": 0, "a": 7, "b": 8, "f": 12, "v": 11, "\\": 92, "'": 39, '"': 34, "?": 63,
 }  # fmt: skip
 _CHARACTER: Final = re.compile(r"\\x([0-9a-fA-F]+)|\\([0-7]{1,3})|\\(.)|(.)", re.S)
+#: The types of floating constants with a suffix.
+_SUFFIXED: Final = {"f": FLOAT, "l": LONG_DOUBLE}
 _STRINGS: Final = re.compile(r'"((?:[^"\\]|\\.)*)"', re.S)
 
 
-def number(text: str, where: Where) -> Expr:
-    """An integer or floating constant.  Raises SourceError."""
+def number(text: str, where: Where, double: FloatType) -> Expr:
+    """An integer or floating constant; `double` is the type of one without a suffix.  Raises SourceError."""
     lower = text.lower()
     hexadecimal = lower.startswith("0x")
     if not hexadecimal and not lower.startswith("0b") and any(c in lower for c in ".e"):
-        return build.floating(float(lower.rstrip("fl")), where, wide=lower.endswith("l"))
+        return build.floating(float(lower.rstrip("fl")), where, _SUFFIXED.get(lower[-1], double))
     if hexadecimal and "p" in lower:
-        return build.floating(float.fromhex(lower.rstrip("fl") if lower[-1] in "fl" else lower), where)
+        return build.floating(float.fromhex(lower.rstrip("fl")), where, _SUFFIXED.get(lower[-1], double))
     digits = lower.rstrip("ul")
     marks = lower[len(digits) :]
     suffix = ("u" if "u" in marks else "") + "l" * marks.count("l")

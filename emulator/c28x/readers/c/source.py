@@ -36,7 +36,7 @@ class CSettings:
 
     include: Sequence[str | Path] = ()
     defines: Sequence[str] = ()
-    #: "coff": `.bss` is not cleared, and double has 32 bits; "eabi": it is cleared, and 64-bit double is an error.
+    #: "coff": `.bss` is not cleared, and double has 32 bits; "eabi": it is cleared, and double has 64 bits.
     abi: str = "coff"
     #: Name -> the text of a header that the project generates, if no folder has that header; None: not one of these.
     header: Callable[[str], str | None] = lambda name: None
@@ -118,8 +118,9 @@ class CFiles:
         from emulator.c28x.readers.c.types import Abi
 
         short = Path(file).name
-        module = Module(name, file, text or "", short)
-        reader = CDeclarationReader(module, Abi(self.settings.abi == "eabi"), self.find)
+        abi = Abi(self.settings.abi == "eabi")
+        module = Module(name, file, text or "", short, double=abi.double)
+        reader = CDeclarationReader(module, abi, self.find)
         self.files[name] = CFile(module, reader, unit)
         _remark_preprocessing(module, unit)
         with reading(_FRAMES):

@@ -11,6 +11,7 @@ from pycparser import c_ast
 from emulator.c28x import build
 from emulator.c28x.build import Builder
 from emulator.c28x.ctypes import (
+    DOUBLE,
     FLOAT,
     INT,
     LONG,
@@ -20,7 +21,7 @@ from emulator.c28x.ctypes import (
     ArrayType,
     BlockType,
     CType,
-    Double64,
+    FloatType,
     FunctionType,
     IntType,
     StructType,
@@ -59,9 +60,9 @@ class Abi:
     eabi: bool = False
 
     @property
-    def double(self) -> CType:
+    def double(self) -> FloatType:
         """`double`: 32 bits under COFF, 64 under EABI."""
-        return Double64("double") if self.eabi else FLOAT
+        return DOUBLE if self.eabi else FLOAT
 
 
 class CTypeReader:
@@ -122,8 +123,6 @@ class CTypeReader:
         words = sorted(names)
         if words == ["double"]:
             return self.abi.double
-        if words == ["double", "long"]:
-            return Double64("long double")
         found = specified(words)
         if found is None:
             raise SourceError.at(where, f"{' '.join(names)} is not a type of C")
@@ -177,14 +176,10 @@ class CTypeReader:
         return value
 
     def complete(self, ctype: CType, where: Where) -> CType:
-        """The type of an object or member.  Raises SourceError for one without a size, or of 64-bit floats."""
+        """The type of an object or member.  Raises SourceError for one without a size."""
         element = ctype
         while isinstance(element, ArrayType | Unsized):
             element = element.element
-        if isinstance(element, Double64):
-            bits = "64 bits under --abi eabi" if element.name == "double" else "64 bits"
-            message = f"{element.name} has {bits}, which only constants may have here: write float"
-            raise SourceError.at(where, message)
         if isinstance(element, StructType) and not element.members:
             message = f"{element} is declared, but its members are not: define it, or include what defines it, before"
             raise SourceError.at(where, message)

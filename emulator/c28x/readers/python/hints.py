@@ -22,7 +22,7 @@ _NAMES: Final = {
     "byte": "uchar: this chip has no type of 8 bits", "uint16_t": "uint16", "int16_t": "int16", "uint32_t": "uint32",
     "int32_t": "int32", "uint64_t": "uint64", "int64_t": "int64", "Uint16": "uint16", "Int16": "int16",
     "Uint32": "uint32", "Int32": "int32", "Uint64": "uint64", "Int64": "int64", "float32_t": "float32",
-    "double": "float32, as double is on this chip", "float64": "float32, as double is on this chip",
+    "double": "float32, as double is on this chip", "float64_t": "float64",
     "unsigned": "uint16", "signed": "int16", "long": "int32", "ulong": "uint32", "short": "int16", "ushort": "uint16",
     "uint": "uint16", "size_t": "uint32", "ptrdiff_t": "int32", "uintptr_t": "uint32", "PINT": "funcptr[void]",
     # C's words
