@@ -7,7 +7,7 @@ arithmetic conversions) applied to these widths: `unsigned char` is 16 bits wide
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any, Final
 
@@ -209,8 +209,27 @@ class StructType(CType):
         return any(m.width is not None or is_word_backed(m.ctype) for m in self.members)
 
     def member(self, name: str) -> Member | None:
-        """The member called `name`."""
-        return next((m for m in self.members if m.name == name), None)
+        """The member called `name`.
+
+        Members of a structure or union without a name count as members of this one (C11 6.7.2.1 p13).
+        """
+        for m in self.members:
+            if m.name == name:
+                return m
+            inner = m.ctype.member(name) if not m.name and isinstance(m.ctype, StructType) else None
+            if inner is not None:
+                volatile = m.volatile or inner.volatile
+                return replace(inner, offset=m.offset + inner.offset, leaf=m.leaf + inner.leaf, volatile=volatile)
+        return None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of all members, in order."""
+        return tuple(
+            name
+            for m in self.members
+            for name in ([m.name] if m.name or not isinstance(m.ctype, StructType) else m.ctype.names)
+        )
 
 
 @dataclass(frozen=True)
@@ -379,7 +398,7 @@ def part_name(ctype: CType, offset: int) -> str:
     if isinstance(ctype, StructType) and not ctype.word_backed:
         for member in ctype.members:
             if 0 <= offset - member.offset < member.ctype.words:
-                return f".{member.name}{part_name(member.ctype, offset - member.offset)}"
+                return f"{member.name and '.'}{member.name}{part_name(member.ctype, offset - member.offset)}"
         return f" (padding at word {offset})"
     return f" (word {offset})" if offset else ""
 

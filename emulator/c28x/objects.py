@@ -66,7 +66,7 @@ class Structure:
         place.store(place.target.wrap(others | (field & mask) << member.lo))
 
     def __dir__(self) -> list[str]:
-        return [member.name for member in _type(self).members]
+        return [*_type(self).names]
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Structure) and self._pointer == other._pointer
@@ -75,7 +75,7 @@ class Structure:
         return hash(self._pointer)
 
     def __repr__(self) -> str:
-        values = (f"{member.name}={getattr(self, member.name)!r}" for member in _type(self).members)
+        values = (f"{name}={getattr(self, name)!r}" for name in _type(self).names)
         return f"{self._pointer.target}({', '.join(values)})"
 
     def _member(self, name: str) -> Member:

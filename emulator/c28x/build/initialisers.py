@@ -228,28 +228,38 @@ def _parts(ctype: CType) -> int:
     )
 
 
-def _number(ctype: CType, designator: str | int, where: Where) -> int:
-    """Which member or element a designator means."""
+def _step(ctype: CType, way: Sequence[str | int], where: Where) -> tuple[int, Sequence[str | int]]:
+    """Which part the first of some designators leads to, and the designators that are left within it."""
+    designator = way[0]
     if isinstance(ctype, ArrayType) and isinstance(designator, int):
         if not 0 <= designator < ctype.length:
             raise SourceError.at(where, f"[{designator}] is outside of a {ctype}")
-        return designator
+        return designator, way[1:]
     if isinstance(ctype, StructType) and isinstance(designator, str):
         for i, m in enumerate(ctype.members):
             if m.name == designator:
-                return i
+                return i, way[1:]
+            if not m.name and isinstance(m.ctype, StructType) and m.ctype.member(designator) is not None:
+                return i, way
         raise SourceError.at(where, f"{ctype} has no member {designator}")
     raise SourceError.at(where, f"this designator does not fit a {ctype}")
 
 
-def _fill(b: Builder, ctype: CType, cursor: _Cursor, at: _Offsets, result: list[_Scalar], *, top: bool) -> None:
-    """Fill an aggregate from the items at the cursor: from its own list (`top`), or from an outer list."""
+def _fill(
+    b: Builder, ctype: CType, cursor: _Cursor, at: _Offsets, result: list[_Scalar], *, top: bool, led: bool = False
+) -> None:  # fmt: skip
+    """Fill an aggregate from the items at the cursor: from its own list (`top`), or from an outer list.
+
+    `led`: designators of the first item have led into it (ISO C99 6.7.8 p17: the list goes on behind that part).
+    """
     number = 0
     while (item := cursor.peek()) is not None:
         if item.way:
-            if not top:
+            if not top and not led:
                 return
-            number = _number(ctype, item.way[0], item.where)
+            led = False
+            number, way = _step(ctype, item.way, item.where)
+            cursor.items[cursor.at] = replace(item, way=way)
         elif number >= _parts(ctype):
             return
         _next(b, ctype, number, cursor, at, result)
@@ -260,10 +270,8 @@ def _next(b: Builder, ctype: CType, number: int, cursor: _Cursor, at: _Offsets, 
     """Fill part `number` of an aggregate from the item at the cursor."""
     item = cursor.items[cursor.at]
     part, inner, member = at.part(ctype, number)
-    way = item.way[1:]
-    item = cursor.items[cursor.at] = replace(item, way=way)
-    if way:  # `.a.b[1] = x`: further designators lead into the part
-        _next(b, part, _number(part, way[0], item.where), cursor, inner, result)
+    if item.way:  # `.a.b[1] = x`: further designators lead into the part
+        _fill(b, part, cursor, inner, result, top=False, led=True)
     elif isinstance(part, ArrayType | StructType):
         found = _whole(b, part, item, inner)
         if found is None:  # no braces of its own: it takes as many items as it has scalars

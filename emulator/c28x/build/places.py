@@ -142,7 +142,7 @@ def member(b: Builder, base: Place | Expr, name: str, where: Where, *, text: str
         raise SourceError.at(where, f"no file that is included says what {ctype} holds: {why}")
     found = ctype.member(name)
     if found is None:
-        raise SourceError.at(where, f"{ctype} has no member {name}" + nearest(name, (m.name for m in ctype.members)))
+        raise SourceError.at(where, f"{ctype} has no member {name}" + nearest(name, ctype.names))
     if ctype.word_backed:
         place = seen_by_words(base, found, where, text)
     else:

@@ -65,6 +65,12 @@ class Abi:
         return DOUBLE if self.eabi else FLOAT
 
 
+def _anonymous(declaration: c_ast.Decl) -> bool:
+    """Whether a declaration without a name makes a member: a structure or union without a tag (C11 6.7.2.1 p13)."""
+    ctype = declaration.type
+    return isinstance(ctype, c_ast.Struct | c_ast.Union) and ctype.name is None and ctype.decls is not None
+
+
 class CTypeReader:
     """Reads types in the scopes of one file; tags have their own name space.
 
@@ -285,16 +291,15 @@ class CTypeReader:
             if isinstance(ctype, Unsized):
                 message = f"the member {name} has no length, which is not modelled: give it the most that it may have"
                 raise SourceError.at(where, message)
-            if not name and declaration.bitsize is None:
-                if isinstance(ctype, StructType):
-                    raise SourceError.at(where, "a structure without a name within another is C11: give it a name")
+            if not name and declaration.bitsize is None and not _anonymous(declaration):
                 continue
             if ctype == owner:
                 raise SourceError.at(where, f"{owner} holds itself: make {name} a pointer to it")
             self.complete(ctype, where)
-            if name and name in names:
-                raise SourceError.at(where, f"the member {name} is declared twice")
-            names.add(name)
+            for each in [name] if name or not isinstance(ctype, StructType) else ctype.names:
+                if each and each in names:
+                    raise SourceError.at(where, f"the member {each} is declared twice")
+                names.add(each)
             members.append((name, ctype, None if declaration.bitsize is None else self.width(declaration, ctype)))
         return members
 
