@@ -27,6 +27,8 @@ from emulator.c28x.tree import (
     For,
     Function,
     If,
+    Jump,
+    LeaveSwitch,
     Load,
     LValue,
     PointerAdd,
@@ -178,9 +180,13 @@ class _FollowedCall:
                         return
                 case Switch(subject=subject, cases=cases):
                     self._branch(self._cases(self._values(subject), cases))
+                    if any(isinstance(inner, LeaveSwitch) for inner in statements([s])):
+                        changed = assigned_variables([s])  # a case may have been left before its end
+                        self._known |= dict.fromkeys(changed)
+                        self._sum_of = {v: known for v, known in self._sum_of.items() if v not in changed}
                 case While() | For():
                     self._loop(s)
-                case Return() | Break() | Continue():
+                case Return() | Break() | Continue() | Jump():
                     return
 
     def _set(self, variable: Variable, value: Expr) -> None:

@@ -559,15 +559,23 @@ class For(Stmt):
 class Switch(Stmt):
     """A `switch`: cases of constants, in order; None is the default.
 
-    A body ends the switch unless its last statement is `FallThrough`; `LeaveSwitch` ends it from within.
+    A body ends the switch unless its last statement is `FallThrough`; `LeaveSwitch` ends it from within, `Jump` from
+    within other loops and switches.  A constant as the subject makes it a block that can be left.
     """
 
     subject: Expr
     cases: list[tuple[list[int] | None, list[Stmt]]]
     #: If all cases name constants of one enumeration: its other constants, with their names.
     left: dict[int, str] | None = None
+    #: Its name for `Jump`, unique in the function; empty: none leads to its end.
+    label: str = ""
     #: Pass `guards`: the check for a value without a case, which nobody can have meant.
     guard: Guard | None = field(default=None, kw_only=True, repr=False, compare=False, metadata=FOUND)
+
+    @property
+    def only_block(self) -> bool:
+        """Whether it is no choice in the source, but the statements before a label."""
+        return self.label != "" and isinstance(self.subject, Const)
 
     @property
     def complete(self) -> bool:
@@ -586,6 +594,9 @@ class Return(Stmt):
 class Break(Stmt):
     """`break`."""
 
+    #: The source has it; else it ends the statements that a `goto` may repeat.
+    said: bool = field(default=True, kw_only=True, compare=False)
+
 
 @dataclass
 class Continue(Stmt):
@@ -595,6 +606,13 @@ class Continue(Stmt):
 @dataclass
 class LeaveSwitch(Stmt):
     """`break` out of a switch, before the end of a case."""
+
+
+@dataclass
+class Jump(LeaveSwitch):
+    """`goto` to the end of the switch around it that has this label; loops and switches may lie between."""
+
+    label: str = ""
 
 
 @dataclass

@@ -32,6 +32,7 @@ from emulator.c28x.tree import (
     FunctionRef,
     If,
     Index,
+    Jump,
     LeaveSwitch,
     Load,
     Logic,
@@ -214,7 +215,9 @@ def observable(e: Any) -> bool:
 def executes(s: Stmt) -> bool:
     """Whether a statement executes anything at its start.  A declaration without a value does not, nor does `do`."""
     match s:
-        case Declare(value=None) | FallThrough() | While(first=False):
+        case Declare(value=None) | FallThrough() | While(first=False) | Break(said=False):
+            return False
+        case Switch(only_block=True):
             return False
     return True
 
@@ -227,7 +230,7 @@ def polls(loop: While) -> bool:
 def without_end(loop: While) -> bool:
     """Whether no test ends a loop, and nothing leaves it."""
     endless = isinstance(loop.test, Const) and loop.test.value != 0
-    return endless and not any(isinstance(s, Break | Return) for s in statements(loop.body))
+    return endless and not any(isinstance(s, Break | Return | Jump) for s in statements(loop.body))
 
 
 def last_loop(function: Function) -> While | None:

@@ -545,4 +545,5 @@ def statement_text(s: Stmt) -> str:
         case Declare(variable=variable, value=value):
             begins = "" if value is None else f" = {text_of(value)}"
             return f"{variable.ctype} {variable.declaration.name}{begins}"
-    return {"LeaveSwitch": "break", "FallThrough": "the fall through"}.get(type(s).__name__, type(s).__name__.lower())
+    named = {"LeaveSwitch": "break", "FallThrough": "the fall through", "Jump": "goto"}
+    return named.get(type(s).__name__, type(s).__name__.lower())

@@ -19,6 +19,7 @@ from emulator.c28x.tree import (
     CopyStruct,
     Function,
     FunctionRef,
+    Jump,
     LValue,
     RegisterAt,
     RegisterLoad,
@@ -116,7 +117,7 @@ def retries(frames: Sequence[Place], functions: Iterable[Function]) -> set[tuple
         for place in frames for function in functions for loop in _loops_at(function, place)
         if not isinstance(loop.test, Const) and not polls(loop)
         and not any(isinstance(part, Compare) and part.op not in ("==", "!=") for part in parts(loop.test))
-        and not any(isinstance(s, Break | Return) for s in statements(loop.body))
+        and not any(isinstance(s, Break | Return | Jump) for s in statements(loop.body))
     }  # fmt: skip
 
 
@@ -157,7 +158,7 @@ def loop_without_end(frames: Sequence[Place], roles: Roles, ended: EndedParties)
 
 def _written_within(loop: While, roles: Roles, by_path: dict[str, Function]) -> set[Variable] | None:
     """The objects that a loop and the functions that it calls write; None if it can be left, or this is not known."""
-    if any(isinstance(s, Break | Return) for s in statements(loop.body)):
+    if any(isinstance(s, Break | Return | Jump) for s in statements(loop.body)):
         return None
     functions = {other.path: other for first in called([loop]) for other in reached(first, by_path)}
     bodies: list[list[Stmt]] = [[loop], *(f.body for f in functions.values())]

@@ -214,6 +214,22 @@ class Builder:
                 self.ended[name] = symbol
         self.scope, self.declared = outer, declared
 
+    @contextmanager
+    def region(self, where: Where, loops: int) -> Iterator[list[Stmt]]:
+        """Collect statements that a `goto` leaves or repeats: they are in no block, in generated code in `loops` loops.
+
+        Raises SourceError where too many are nested.
+        """
+        if self.loops + loops > LOOP_NESTING:
+            message = f"more than {LOOP_NESTING} loops and labels nested within each other: write a function"
+            raise SourceError.at(where, message)
+        self.loops += loops
+        self.chained += loops
+        with self.collect() as statements:
+            yield statements
+        self.loops -= loops
+        self.chained -= loops
+
     # Limits
 
     @contextmanager

@@ -230,9 +230,12 @@ def for_range(
 
 def switch(
     b: Builder, subject: Expr, cases: Sequence[tuple[list[int] | None, list[Stmt]]], where: Where,
-    named: Collection[str], enumerations: Iterable[EnumType],
+    named: Collection[str], enumerations: Iterable[EnumType], label: str = "",
 ) -> None:  # fmt: skip
-    """`switch`.  Labels are converted to the promoted type of the subject.  `named`: the labels, if all are names."""
+    """`switch`.  Labels are converted to the promoted type of the subject.  `named`: the labels, if all are names.
+
+    `label` is its name for `Jump`.
+    """
     if not isinstance(subject.ctype, IntType):
         raise SourceError.at(subject.where, "switch needs an integer")
     ctype = promote(subject.ctype)
@@ -245,7 +248,21 @@ def switch(
         for enumeration in enumerations
         if named and set(named) <= set(enumeration.constants)
     ]
-    b.emit(Switch(where, subject, converted, min(left, key=len) if left else None))
+    b.emit(Switch(where, subject, converted, min(left, key=len) if left else None, label))
+
+
+def before_label(b: Builder, body: list[Stmt], label: str, where: Where) -> None:
+    """The statements before a label, which a `goto` from within (`Jump`) leaves."""
+    b.emit(Switch(where, Const(INT, 0, where=where), [(None, body)], label=label))
+
+
+def from_label(b: Builder, body: list[Stmt], label: str, where: Where) -> None:
+    """The statements behind a label, which a `goto` from within repeats: a `continue`, or a `Jump` to `label`."""
+    if not leaves(body):
+        body = [*body, Break(where, said=False)]
+    if label:
+        body = [Switch(where, Const(INT, 0, where=where), [(None, body)], label=label)]
+    b.emit(While(where, Const(INT, 1, where=where), body))
 
 
 def return_(b: Builder, value: Expr | None, where: Where) -> None:

@@ -62,6 +62,7 @@ from emulator.c28x.tree import (
     Guard,
     If,
     Index,
+    Jump,
     LeaveSwitch,
     Load,
     Logic,
@@ -111,6 +112,9 @@ class _Breakable:
     carries_on: str = ""
     ends: str = ""
     used: set[str] = field(default_factory=set)
+    #: The label of such a switch; the labels of those around that a `goto` from within ends.
+    label: str = ""
+    jumps: set[str] = field(default_factory=set)
 
 
 class PythonWriter:
@@ -150,6 +154,8 @@ class PythonWriter:
         self.stored_place = 0
         self.fresh = 0
         self.around: list[_Breakable] = []
+        #: Label -> the flag that a `goto` from within another loop or switch has set.
+        self.jump_flags: dict[str, str] = {}
         #: The loops with turns that time may skip, and what ends the idleness of a turn.  Nobody stops there.
         self.idle_loops, self.busy = idle_turns(function) if watch and not steps else ({}, {})
         #: Identity of a loop -> the variable with the beginning of its turn, and the text of its time limit.
@@ -351,6 +357,9 @@ class PythonWriter:
                 self.break_loop()
             case Continue():
                 self.continue_turn(s.where)
+            case Jump(label=label):
+                self.flush()
+                self.jump(label)
             case LeaveSwitch():
                 self.flush()
                 self.put("break")
@@ -386,11 +395,15 @@ class PythonWriter:
             self.stored_place = 0
 
     def switch(self, s: Switch) -> None:
+        if s.only_block:
+            self.block_before_label(s)
+            return
         subject = self.value(s.subject)
         self.cost += s.cycles
         self.flush()
         self.put(f"_w = {subject}")
-        if any(isinstance(inner, LeaveSwitch | FallThrough) for _, body in s.cases for inner in own_statements(body)):
+        inner = (each for _, body in s.cases for each in own_statements(body))
+        if s.label or any(isinstance(each, LeaveSwitch | FallThrough) for each in inner):
             self.switch_at_large(s)
             return
         # Cases that do not fall through may come in any order: the default is last.
@@ -441,7 +454,7 @@ class PythonWriter:
         self.put(f"{entered} = {chosen}")
         if s.guard is not None:
             self.put(f"if {entered} == {default}: _c_no_case(_w, {self.number(s.guard)})")
-        around = _Breakable(None, f"_g{self.fresh}", f"_b{self.fresh}")
+        around = _Breakable(None, f"_g{self.fresh}", f"_b{self.fresh}", label=s.label)
         self.around.append(around)
         flag = len(self.items)
         self.put("while True:")
@@ -459,12 +472,53 @@ class PythonWriter:
         self.depth -= 1
         self.around.pop()
         self.stored_place = stored_place if not s.cases else 0
+        self.left(around, flag, s.where)
+
+    def block_before_label(self, s: Switch) -> None:
+        """Write the statements before a label, as a loop of one turn."""
+        self.flush()
+        self.fresh += 1
+        around = _Breakable(None, f"_g{self.fresh}", f"_b{self.fresh}", label=s.label)
+        self.around.append(around)
+        flag = len(self.items)
+        self.put("while True:")
+        (_, body), = s.cases
+        self.branch(body)
+        if not leaves(body):
+            self.depth += 1
+            self.put("break")
+            self.depth -= 1
+        self.around.pop()
+        self.stored_place = 0
+        self.left(around, flag, s.where)
+
+    def left(self, around: _Breakable, start: int, where: Where) -> None:
+        """Write what follows a switch that is written as a loop, from item `start` on: what else has ended in it."""
+        if around.label in self.jump_flags:
+            name = self.jump_flags[around.label]
+            self.items.insert(start, EmittedLine(self.depth, where.line, f"{name} = False"))
         for name in sorted(around.used):
-            self.items.insert(flag, EmittedLine(self.depth, s.where.line, f"{name} = False"))
+            self.items.insert(start, EmittedLine(self.depth, where.line, f"{name} = False"))
             self.put(f"if {name}:")
             self.depth += 1
-            self.continue_turn(s.where) if name == around.carries_on else self.break_loop()
+            self.continue_turn(where) if name == around.carries_on else self.break_loop()
             self.depth -= 1
+        self.jump_on(around)
+
+    def jump(self, label: str) -> None:
+        """`goto` to the end of a switch: it first leaves the loops and switches within."""
+        if self.around[-1].label != label:
+            self.around[-1].jumps.add(label)
+            name = self.jump_flags.setdefault(label, f"_j{len(self.jump_flags)}")
+            self.put(f"{name} = True")
+        self.put("break")
+
+    def jump_on(self, around: _Breakable) -> None:
+        """Write what follows a loop or switch that a `goto` may have left."""
+        for label in sorted(around.jumps):
+            self.put(f"if {self.jump_flags[label]}: break")
+            if self.around[-1].label != label:
+                self.around[-1].jumps.add(label)
 
     # Loops
 
@@ -538,8 +592,9 @@ class PythonWriter:
             self.end_of_turn(s)
             self.put(f"if not {self.condition(s.test)}: break")
         self.depth -= 1
-        self.around.pop()
+        around = self.around.pop()
         self.stored_place = 0
+        self.jump_on(around)
 
     def put_loop_limit(self, loop: While | For) -> None:
         """Write the time limit of a loop that nobody else can end."""
@@ -611,7 +666,7 @@ class PythonWriter:
             self.flush()
         self.cost = 0
         self.depth -= 1
-        self.around.pop()
+        around = self.around.pop()
         self.stored_place = 0
         # After the loop, the C variable holds the first value for which the test failed.
         if s.trips is not None:
@@ -622,6 +677,7 @@ class PythonWriter:
             final = f"{start} + _len(_range({start}, {stop}{step})) * {s.step}"
         self.put("else:")
         self.put(f"    {name} = {final}")
+        self.jump_on(around)
 
     def counting_at_large(self, s: For) -> None:
         """Write a `for` as C defines it: its variable or bound is changed in the body, is shared, or may wrap."""
@@ -639,8 +695,9 @@ class PythonWriter:
         self.where = s.where
         self.end_of_turn(s)
         self.depth -= 1
-        self.around.pop()
+        around = self.around.pop()
         self.stored_place = 0
+        self.jump_on(around)
 
     def counter(self, s: For) -> str:
         """The text of the variable of a counting loop."""

@@ -17,6 +17,7 @@ from emulator.c28x.tree import (
     For,
     Function,
     If,
+    Jump,
     Load,
     LValue,
     Not,
@@ -251,5 +252,5 @@ def _against_zero(e: Expr, counter: Variable) -> bool:
 def _breaks(body: list[Stmt]) -> bool:
     """Whether the body of a loop contains a `break` of that loop; that of a switch is another node."""
     return any(
-        isinstance(s, Break) or (not isinstance(s, For | While) and any(map(_breaks, blocks(s)))) for s in body
+        isinstance(s, Break | Jump) or (not isinstance(s, For | While) and any(map(_breaks, blocks(s)))) for s in body
     )

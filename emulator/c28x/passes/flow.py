@@ -46,6 +46,7 @@ from emulator.c28x.tree import (
     For,
     Function,
     If,
+    Jump,
     LeaveSwitch,
     Load,
     Logic,
@@ -129,8 +130,10 @@ class FlowState:
         return implied | self.written if implied else self.written
 
 
-#: The states at the end of a turn, and at every break; None: no path arrives there.
-Turn = tuple[FlowState | None, list[FlowState | None]]
+#: A jump out of a loop: the label of the switch that it ends, and the state there.
+JumpState = tuple[str, FlowState]
+#: The states at the end of a turn, and at every break; None: no path arrives there.  The jumps out of the loop.
+Turn = tuple[FlowState | None, list[FlowState | None], list[JumpState]]
 
 
 class Flow:
@@ -142,6 +145,9 @@ class Flow:
         #: For each enclosing loop: the states at its `break`s and at its `continue`s; for each switch, at its `break`s.
         self.loops: list[tuple[list[FlowState | None], list[FlowState | None]]] = []
         self.switches: list[list[FlowState | None]] = []
+        #: For each enclosing loop the jumps out of it, for each switch with a label the states at its end; by label, ""
+        #: for a loop.
+        self.jumps: list[tuple[str, list[JumpState]]] = []
         #: Locals that every case of a switch without default writes -> the place of that switch.
         self.undefaulted: dict[Variable, Where] = {}
         #: Locals that every case of a complete switch without default writes -> the places of such switches; the places
@@ -211,15 +217,24 @@ class Flow:
             case Continue():
                 self.loops[-1][1].append(state)
                 return None
+            case Jump(label=label):
+                self.jump((label, state))
+                return None
             case LeaveSwitch():
                 self.switches[-1].append(state)
                 return None
         return state
 
+    def jump(self, taken: JumpState) -> None:
+        """A jump goes to the end of its switch; or to the end of the loop around, which passes it on."""
+        next(arrived for label, arrived in reversed(self.jumps) if label in ("", taken[0])).append(taken)
+
     def switch(self, s: Switch, state: FlowState) -> FlowState | None:
         self.read(s.subject, state)
         ends: list[FlowState | None] = []
         self.switches.append(ends)
+        if s.label:
+            self.jumps.append((s.label, []))
         falling: FlowState | None = None
         for _, body in s.cases:
             after = self.block(body, self.join(state, falling))
@@ -229,6 +244,8 @@ class Flow:
                 ends.append(after)
         ends.append(falling)
         self.switches.pop()
+        if s.label:
+            ends += [arrived for _, arrived in self.jumps.pop()[1]]
         if any(values is None for values, _ in s.cases):
             return self.join(*ends)
         everywhere = [end.written for end in ends if end is not None]
@@ -249,7 +266,7 @@ class Flow:
         head = self.head(s, state, assigned_variables([s]))
         if s.first:
             self.read(s.test, head)
-        end, breaks = self.turn(s, head)
+        end, breaks = self.last_turn(s, head)
         if isinstance(s.test, Const) and s.test.value != 0:
             return self.join(*breaks)
         out = end if runs or not s.first else self.join(head, end)
@@ -269,8 +286,15 @@ class Flow:
         self.read(s.variable, head)
         if s.test is not None:
             self.read(s.test, head)
-        end, breaks = self.turn(s, head)
+        end, breaks = self.last_turn(s, head)
         return self.join(end if runs else self.join(head, end), *breaks)
+
+    def last_turn(self, loop: While | For, head: FlowState) -> tuple[FlowState | None, list[FlowState | None]]:
+        """One turn of a loop from the state that is valid in every turn; its jumps go on behind the loop."""
+        end, breaks, jumps = self.turn(loop, head)
+        for taken in jumps:
+            self.jump(taken)
+        return end, breaks
 
     def turn(self, loop: While | For, head: FlowState) -> Turn:
         """One turn of a loop, from its head to the next evaluation of its test; a quiet walk uses known results."""
@@ -287,21 +311,23 @@ class Flow:
     def walk(self, loop: While | For, head: FlowState) -> Turn:
         """Walk one turn of a loop."""
         self.loops.append(([], []))
+        self.jumps.append(("", []))
         end = self.block(
             loop.body, self.assume(loop.test, True, head) if isinstance(loop, While) and loop.first else head
         )
         if isinstance(loop, For) and not self.quiet:
             loop.turns = end is not None
         breaks, continues = self.loops.pop()
+        _, jumps = self.jumps.pop()
         end = self.join(end, *continues)
         if end is None:
-            return None, breaks
+            return None, breaks, jumps
         if isinstance(loop, For):
-            return self.write(loop.counter, None, end), breaks
+            return self.write(loop.counter, None, end), breaks, jumps
         end = self.block(loop.step, end)
         if end is not None and not loop.first:
             self.read(loop.test, end)
-        return end, breaks
+        return end, breaks, jumps
 
     def head(self, loop: While | For, state: FlowState, changed: Set[Variable]) -> FlowState:
         """The state at the head of a loop that is valid in every turn."""
@@ -311,7 +337,7 @@ class Flow:
             values={k: v for k, v in state.values.items() if isinstance(k, Variable) and k not in changed},
         )  # fmt: skip
         for _ in range(_TURNS):
-            end, _ = self.turn(loop, head)
+            end, _, _ = self.turn(loop, head)
             if end is not None and isinstance(loop, While) and not loop.first:
                 end = self.assume(loop.test, True, end)
             following = self.join(head, end)

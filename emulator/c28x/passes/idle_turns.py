@@ -25,6 +25,7 @@ from emulator.c28x.tree import (
     FallThrough,
     Function,
     If,
+    Jump,
     LValue,
     RegisterAt,
     RegisterLoad,
@@ -99,7 +100,7 @@ class _Turn:
                     self.carries_on = True
                     self._reads(self.last, known)
                     return None
-                case Break() | Return():
+                case Break() | Return() | Jump():
                     return None  # the loop ends
                 case Declare(value=None) | FallThrough():
                     pass

@@ -26,6 +26,7 @@ from emulator.c28x.tree import (
     Function,
     FunctionRef,
     If,
+    Jump,
     LeaveSwitch,
     Load,
     LValue,
@@ -84,7 +85,7 @@ class Liveness:
         self.read_anywhere = {v for used in self.used.values() for v in used}
         #: The live variables after each enclosing loop and at its `continue`; after each enclosing switch.
         self.loops: list[tuple[Live, Live]] = []
-        self.switches: list[Live] = []
+        self.switches: list[tuple[str, Live]] = []
         self.reporting = True
         #: Identities of statements that only limit the local of their `if`.
         self.limits = {id(s) for test in statements(function.body) if isinstance(test, If) for s in _limits(test)}
@@ -140,8 +141,10 @@ class Liveness:
                 return self.loops[-1][0]
             case Continue():
                 return self.loops[-1][1]
+            case Jump(label=label):
+                return next(live for name, live in self.switches if name == label)
             case LeaveSwitch():
-                return self.switches[-1]
+                return self.switches[-1][1]
             case If(then=then, otherwise=otherwise):
                 return self.block(then, live) | self.block(otherwise, live) | used
             case Switch():
@@ -155,7 +158,7 @@ class Liveness:
 
     def switch(self, s: Switch, live: Live) -> Live:
         """The live variables before the cases."""
-        self.switches.append(live)
+        self.switches.append((s.label, live))
         entries: list[Live] = []
         following = live
         for _, body in reversed(s.cases):

@@ -41,6 +41,7 @@ from emulator.c28x.tree import (
     For,
     Function,
     If,
+    Jump,
     LeaveSwitch,
     Load,
     LValue,
@@ -336,7 +337,7 @@ class States:
                     if any(isinstance(p, Compare) and p.op not in ("==", "!=") for p in parts(test)):
                         continue
                     for inner in body:
-                        if isinstance(inner, If) and any(isinstance(e, Return | Break) for e in inner.then):
+                        if isinstance(inner, If) and any(isinstance(e, Return | Break | Jump) for e in inner.then):
                             for compare, v, goal, ends in self._tests(inner.test):
                                 if ends and self._stepped(v, body):
                                     self._step_past(f, inner, compare, v, goal, inner.then, report)

@@ -27,6 +27,7 @@ from emulator.c28x.tree import (
     For,
     Function,
     If,
+    Jump,
     Load,
     Logic,
     LValue,
@@ -178,7 +179,7 @@ class _Loop:
     def exits(self) -> Iterator[Expr | None]:
         """The conditions that decide whether the loop ends (None: a counter at its limit)."""
         for block in blocks(self.loop):
-            if block and isinstance(block[-1], Break | Return):
+            if block and isinstance(block[-1], Break | Return | Jump):
                 return  # it turns once
         match self.loop:
             case While(test=test) if not isinstance(test, Const):
@@ -260,7 +261,7 @@ def _turning(block: list[Stmt], *, inner: bool) -> Iterator[Stmt]:
         yield s
         within = inner or isinstance(s, While | For)
         for b in blocks(s):
-            if not b or not isinstance(b[-1], Return if within else Return | Break):
+            if not b or not isinstance(b[-1], Return | Jump if within else Return | Jump | Break):
                 yield from _turning(b, inner=within)
 
 
@@ -295,7 +296,7 @@ def _decisions(block: list[Stmt], *, inner: bool) -> Iterator[Expr | None]:
 def _leaves(block: list[Stmt], *, inner: bool) -> bool:
     """Whether a block contains a statement that leaves the loop.  From an inner loop (`inner`), only `return` does."""
     return any(
-        isinstance(s, Return) or (isinstance(s, Break) and not inner)
+        isinstance(s, Return | Jump) or (isinstance(s, Break) and not inner)
         or any(_leaves(b, inner=inner or isinstance(s, While | For)) for b in blocks(s))
         for s in block
     )  # fmt: skip

@@ -32,6 +32,7 @@ from emulator.c28x.tree import (
     Function,
     If,
     Index,
+    Jump,
     Load,
     Logic,
     LValue,
@@ -538,7 +539,7 @@ def rereads(loop: While) -> bool:
     tests = [loop.test]
     for statement in statements(loop.body):
         if isinstance(statement, If) and any(
-            isinstance(inner, Break | Return) for block in blocks(statement) for inner in statements(block)
+            isinstance(inner, Break | Return | Jump) for block in blocks(statement) for inner in statements(block)
         ):
             tests.append(statement.test)
     return any(_again(part, copies) for test in tests for part in parts(test) if isinstance(part, Compare))

@@ -17,6 +17,7 @@ from emulator.c28x.tree import (
     Expr,
     Function,
     If,
+    Jump,
     LValue,
     RegisterLoad,
     Return,
@@ -151,7 +152,7 @@ class Ways:
             told = test is not None and self.tells(test)
             ends = [self._walk(block, free=free and not told) for block in blocks(statement)]
             leaves = any(
-                isinstance(inner, Return | Break | Continue)
+                isinstance(inner, Return | Break | Continue | Jump)
                 for branch in blocks(statement)
                 for inner in statements(branch)
             )

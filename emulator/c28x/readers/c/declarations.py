@@ -399,7 +399,7 @@ class FunctionReader:
         if self.function.given is not None:
             self.b.scope[VA_GIVEN] = self.function.given
         with self.b.collect() as self.function.body:
-            self.statements.statements(self.node.body.block_items)
+            self.statements.function(self.node.body.block_items)
 
     def local(self, node: c_ast.Node) -> None:
         """Read a declaration within the function."""

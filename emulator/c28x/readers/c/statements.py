@@ -1,9 +1,14 @@
-"""Statements of C: the reader passes each to the builder; labels, `goto` and computed cases are errors."""
+"""Statements of C: the reader passes each to the builder.
+
+A `goto` forward out of blocks, loops and switches ends the statements before its label.  One backward repeats those
+behind its label.  Any other is an error: into a block, or into the middle of what another one repeats.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final, Protocol
 
@@ -23,6 +28,7 @@ from emulator.c28x.tree import (
     Evaluate,
     Expr,
     FallThrough,
+    Jump,
     LeaveSwitch,
     LValue,
     Return,
@@ -44,6 +50,30 @@ class Locals(Protocol):
         """Read a declaration within a function."""
 
 
+@dataclass
+class _Around:
+    """What surrounds a statement: a "loop" or a "switch", or what a `goto` ends ("block") or repeats ("again").
+
+    `label` is its name for `Jump`: that of the label, or one that is made for a switch when it is needed.  `again` is
+    `crossed` if a `goto` that repeats it comes from within a loop in it.
+    """
+
+    kind: str
+    label: str = ""
+    crossed: bool = False
+
+
+@dataclass
+class _Region:
+    """The statements of a block, from number `first` to before `end`, that a `goto` ends ("block") or repeats."""
+
+    kind: str
+    label: str
+    first: int
+    end: int
+    where: Where
+
+
 class CStatementReader:
     """Reads the body of one function."""
 
@@ -51,8 +81,11 @@ class CStatementReader:
         self.b = b
         self.expressions = expressions
         self.declarations = declarations
-        #: What a `break` ends, innermost last: "loop" or "switch".
-        self.breakable: list[str] = []
+        #: What a `break`, `continue` or `goto` ends or repeats, innermost last.
+        self.around: list[_Around] = []
+        #: The labels of the function -> their places.
+        self.labels: dict[str, Where] = {}
+        self._switches = 0
 
     def statement(self, node: c_ast.Node | None) -> None:
         """Read one statement."""
@@ -84,17 +117,16 @@ class CStatementReader:
             case c_ast.Return():
                 self.return_(node)
             case c_ast.Break():
-                if not self.breakable:
-                    raise SourceError.at(where, "break is outside of a loop or a switch")
-                b.emit(Break(where) if self.breakable[-1] == "loop" else LeaveSwitch(where))
+                self.break_(where)
             case c_ast.Continue():
-                if "loop" not in self.breakable:
+                if not any(around.kind == "loop" for around in self.around):
                     raise SourceError.at(where, "continue is outside of a loop")
+                self.inside(where, "continue", "loop")
                 b.emit(Continue(where))
             case c_ast.Goto():
-                raise SourceError.at(where, "goto is not modelled: write a loop, a function or an if")
+                self.goto(node)
             case c_ast.Label():
-                raise SourceError.at(where, f"the label {node.name} is for goto, which is not modelled")
+                self.statements([node])
             case c_ast.Case() | c_ast.Default():
                 word = "case" if isinstance(node, c_ast.Case) else "default"
                 raise SourceError.at(where, f"{word} is outside of a switch, or in a block within one: not modelled")
@@ -105,8 +137,110 @@ class CStatementReader:
 
     def statements(self, items: list[c_ast.Node] | None) -> None:
         """Read statements in order."""
+        if self.labels and any(isinstance(item, c_ast.Label) for item in items or ()):
+            self.with_labels(items or [])
+            return
         for item in items or ():
             self.statement(item)
+
+    # Jumps
+
+    def function(self, items: list[c_ast.Node] | None) -> None:
+        """Read the body of the function."""
+        for node in _within(items or ()):
+            if isinstance(node, c_ast.Label):
+                if node.name in self.labels:
+                    raise SourceError.at(node.coord, f"the label {node.name} is here twice in one function")
+                self.labels[node.name] = node.coord
+        self.statements(items)
+
+    def break_(self, where: Where) -> None:
+        """`break` of a loop, or of a switch."""
+        around = next((each for each in reversed(self.around) if each.kind in ("loop", "switch")), None)
+        if around is None:
+            raise SourceError.at(where, "break is outside of a loop or a switch")
+        self.inside(where, "break", "loop", "switch")
+        if around.kind == "loop":
+            self.b.emit(Break(where))
+        elif around is self.around[-1]:
+            self.b.emit(LeaveSwitch(where))
+        else:
+            if not around.label:
+                self._switches += 1
+                around.label = f"switch {self._switches}"
+            self.b.emit(Jump(where, label=around.label))
+
+    def inside(self, where: Where, word: str, *kinds: str) -> None:
+        """Raises SourceError for a `break` or `continue` that leaves what a `goto` repeats."""
+        for around in reversed(self.around):
+            if around.kind in kinds:
+                return
+            if around.kind == "again":
+                label = around.label
+                message = f"{word} leaves the statements that goto {label} repeats: not modelled, write a loop for them"
+                raise SourceError.at(where, message)
+
+    def goto(self, node: c_ast.Goto) -> None:
+        """`goto`: to the end of statements around it, or to the beginning of some."""
+        name, where = node.name, node.coord
+        crosses = False
+        for around in reversed(self.around):
+            if around.label == name and around.kind == "block":
+                self.b.emit(Jump(where, label=name))
+                return
+            if around.label == name and around.kind == "again":
+                around.crossed |= crosses
+                self.b.emit(Jump(where, label=_again(name)) if crosses else Continue(where))
+                return
+            crosses |= around.kind in ("loop", "again")
+        if name not in self.labels:
+            raise SourceError.at(where, f"goto {name}: the function has no such label")
+        message = f"goto {name} leads into a block, or into the middle of what another goto repeats: not modelled"
+        raise SourceError.at(where, f"{message}, write a loop, a function or an if")
+
+    def with_labels(self, items: list[c_ast.Node]) -> None:
+        """Read the statements of a block with labels."""
+        parts: list[c_ast.Node] = []
+        at: dict[str, int] = {}
+        for item in items:
+            inner = item
+            while isinstance(inner, c_ast.Label):
+                at[inner.name] = len(parts)
+                inner = inner.stmt
+            if inner is not None:
+                parts.append(inner)
+        regions: list[_Region] = []
+        used = [{each.name for each in _within([part]) if isinstance(each, c_ast.Goto)} for part in parts]
+        for name, place in at.items():
+            where = self.labels[name]
+            by = [number for number, names in enumerate(used) if name in names]
+            if by and by[0] < place:
+                regions.append(_Region("block", name, by[0], place, where))
+            if by and by[-1] >= place:
+                regions.append(_Region("again", name, place, by[-1] + 1, where))
+        _nest(regions)
+        self.parts(parts, 0, len(parts), regions)
+
+    def parts(self, parts: list[c_ast.Node], first: int, end: int, regions: list[_Region]) -> None:
+        """Read some statements of a block; `regions` are those among them, the outer ones first."""
+        while first < end:
+            region = next((each for each in regions if each.first == first and each.end <= end), None)
+            if region is None:
+                self.statement(parts[first])
+                first += 1
+                continue
+            rest = regions[regions.index(region) + 1 :]
+            where = parts[first].coord if region.kind == "block" else region.where
+            around = _Around(region.kind, region.label)
+            self.around.append(around)
+            with self.b.region(where, 1 if region.kind == "block" else 2) as body:
+                self.parts(parts, region.first, region.end, rest)
+            self.around.pop()
+            if region.kind == "block":
+                build.before_label(self.b, body, region.label, where)
+            else:
+                build.from_label(self.b, body, _again(region.label) if around.crossed else "", where)
+            first = region.end
 
     def expression(self, node: c_ast.Node) -> None:
         """An expression statement; a call becomes a statement directly."""
@@ -132,12 +266,12 @@ class CStatementReader:
         """A function that reads the body of a loop; the builder calls it within a block that the builder opens."""
 
         def read() -> None:
-            self.breakable.append(kind)
+            self.around.append(_Around(kind))
             if isinstance(node, c_ast.Compound):
                 self.statements(node.block_items)
             else:
                 self.statement(node)
-            self.breakable.pop()
+            self.around.pop()
 
         return read
 
@@ -298,7 +432,8 @@ class CStatementReader:
         if not isinstance(subject.ctype, IntType):
             raise SourceError.at(node.cond.coord, f"switch needs an integer, not a {subject.ctype}")
         items = node.stmt.block_items or [] if isinstance(node.stmt, c_ast.Compound) else [node.stmt]
-        self.breakable.append("switch")
+        around = _Around("switch")
+        self.around.append(around)
         with b.block(where, loop=True) as before:
             while items and not isinstance(items[0], c_ast.Case | c_ast.Default):
                 if not isinstance(items[0], c_ast.Decl) or items[0].init is not None:
@@ -306,9 +441,9 @@ class CStatementReader:
                 self.statement(items[0])
                 items = items[1:]
             cases = self.cases(items, subject)
-        self.breakable.pop()
+        self.around.pop()
         b.out.extend(before)
-        build.switch(b, subject, cases, where, self.named(items), self.expressions.types.enumerations)
+        build.switch(b, subject, cases, where, self.named(items), self.expressions.types.enumerations, around.label)
 
     def cases(self, items: list[Any], subject: Expr) -> list[tuple[list[int] | None, list[Stmt]]]:
         """Labels and bodies, in order.  Adjacent labels share a body."""
@@ -352,7 +487,12 @@ class CStatementReader:
         """One case.  A `break` at its end ends it; without one it falls through to the case at `behind`."""
         b = self.b
         ended = False
+        last = statements[-1] if statements else None
         with b.collect() as body:
+            if any(isinstance(statement, c_ast.Label) for statement in statements):
+                ended = isinstance(statements[-1], c_ast.Break)
+                self.statements(statements[:-1] if ended else statements)
+                statements = statements[-1:] if ended else []
             for i, statement in enumerate(statements):
                 if isinstance(statement, c_ast.Break):
                     ended = True
@@ -362,7 +502,7 @@ class CStatementReader:
                 else:
                     self.statement(statement)
         if behind is not None and not ended and not leaves(body) and not (body and isinstance(body[-1], LeaveSwitch)):
-            end = statements[-1].coord if statements else where
+            end = last.coord if last is not None else where
             body.append(FallThrough(end, said=self.falls(end, behind)))
         return labels, body
 
@@ -410,6 +550,43 @@ class CStatementReader:
         if value.ctype == VOID:
             raise SourceError.at(node.expr.coord, f"'{written(node.expr)}' is void: it has no value")
         build.return_(b, value, where)
+
+
+def _again(label: str) -> str:
+    """The label of the block whose end begins the next turn of what a `goto` repeats."""
+    return f"{label} again"
+
+
+def _nest(regions: list[_Region]) -> None:
+    """Extend regions until each two lie within each other or apart, and sort them, the outer ones first.
+
+    Raises SourceError where a jump would lead into the middle of what another one repeats.
+    """
+    changed = True
+    while changed:
+        changed = False
+        for one in regions:
+            for other in regions:
+                if not one.first < other.first < one.end < other.end:
+                    continue
+                if other.kind == "block":
+                    other.first = one.first
+                elif one.kind == "again":
+                    one.end = other.end
+                else:
+                    message = f"a goto leads to {one.label}, into the middle of what goto {other.label} repeats"
+                    raise SourceError.at(one.where, f"{message}: not modelled, write a loop for it")
+                changed = True
+    regions.sort(key=lambda region: (region.first, -region.end, region.kind != "block"))
+
+
+def _within(nodes: Iterable[c_ast.Node]) -> Iterator[c_ast.Node]:
+    """Nodes and all that is in them."""
+    waiting = list(nodes)
+    while waiting:
+        node = waiting.pop()
+        yield node
+        waiting.extend(child for _, child in node.children())
 
 
 def initialise_local(b: Builder, reader: CExpressionReader, variable: Variable, init: c_ast.Node, where: Where) -> None:
