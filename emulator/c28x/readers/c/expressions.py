@@ -27,6 +27,7 @@ from emulator.c28x.ctypes import (
     StructType,
 )  # fmt: skip
 from emulator.c28x.readers.c import headers, literals
+from emulator.c28x.readers.c.intrinsics import PLAIN, plain
 from emulator.c28x.readers.c.no_object import Prototype, Unsized
 from emulator.c28x.readers.c.types import Abi, CTypeReader, specifier
 from emulator.c28x.readers.c.written import written
@@ -95,7 +96,7 @@ _KEPT: Final = re.compile(
 )
 #: All functions that the compiler knows; a declaration of them in a file or header changes nothing.
 INTRINSICS: Final = frozenset(
-    {*INTERRUPTS, *FLOATS, *FIXED_POINT, "__eallow", "__edis", "__byte", "__byte_peripheral_32"}
+    {*INTERRUPTS, *FLOATS, *FIXED_POINT, *PLAIN, "__qmpy32", "__eallow", "__edis", "__byte", "__byte_peripheral_32"}
 )
 
 
@@ -546,6 +547,10 @@ class CExpressionReader:
                 return Const(VOID, 0, where=where)
             case _ if known := INTERRUPTS.get(name) or FLOATS.get(name) or FIXED_POINT.get(name):
                 return build.call(b, known, self.argument_values(arguments), where)
+            case "__qmpy32", 3:
+                return build.call(b, FIXED_POINT["__IQmpy"], self.argument_values(arguments), where)
+            case _ if name in PLAIN:
+                return plain(b, name, self.argument_values(arguments), where)
             case "__byte" | "__byte_peripheral_32", _ if len(arguments) == (2 if name == "__byte" else 1):
                 return build.value_of(b, self.octet(c_ast.FuncCall(c_ast.ID(name), c_ast.ExprList(arguments), where)))
         return None
