@@ -581,12 +581,12 @@ def _nest(regions: list[_Region]) -> None:
 
 
 def _within(nodes: Iterable[c_ast.Node]) -> Iterator[c_ast.Node]:
-    """Nodes and all that is in them."""
-    waiting = list(nodes)
+    """Nodes and all that is in them, in the order of the source."""
+    waiting = list(nodes)[::-1]
     while waiting:
         node = waiting.pop()
         yield node
-        waiting.extend(child for _, child in node.children())
+        waiting.extend(child for _, child in reversed(node.children()))
 
 
 def initialise_local(b: Builder, reader: CExpressionReader, variable: Variable, init: c_ast.Node, where: Where) -> None:

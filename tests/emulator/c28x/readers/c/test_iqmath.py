@@ -137,7 +137,7 @@ def test_a_constant_of_64_bits_is_as_exact_as_the_compilers() -> None:
     assert value("_IQ30(-0.1L)") == -107374182
     assert value("_IQ30(0.1)") == 107374184
     assert value("_IQ30(1.0L / 3)") == 357913941  # 2**30 / 3 = 357913941.33
-    assert value("_IQ(0.1L + x)", x=2) == 35232152  # beside a variable it is a float: 2.1 is 8808038 / 2**22
+    assert value("_IQ(0.1L + x)", x=2) == 35232153  # 2.1 * 2**24 is 35232153.6
     before = "float half(float f) { return f * 0.5L + (f > 0.1L ? 0.25L : f); }\n"
     assert value("(long)(8 * half(2.0f)) + (long)sizeof(float)", before) == 10 + 2
 
