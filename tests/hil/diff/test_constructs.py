@@ -15,6 +15,30 @@ HEADER = "from emulator.c28x.language import *\n"
 
 #: What -> C-shaped Python, C, a function with its arguments, and its value as C gives it.
 CONSTRUCTS = {
+    "a float of 64 bits": (
+        """
+class sample(struct):
+    number: int16
+    value: float64
+last: sample
+def half(x: float64) -> float64:
+    return x / 2
+def f(x: int32) -> int32:
+    last.value = float64(x) + 1
+    return int32(half(last.value * 3)) + sizeof(last)
+""",
+        """
+struct sample { int number; long double value; };
+struct sample last;
+long double half(long double x) { return x / 2; }
+long f(long x)
+{
+    last.value = (long double)x + 1;
+    return (long)half(last.value * 3) + sizeof(last);
+}
+""",
+        ("f", (20000001,), 30000009),  # 30000003, which a float does not hold, and 6 words
+    ),
     "a structure as a parameter is a copy": (
         """
 class point(struct):
