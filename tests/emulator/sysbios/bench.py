@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from emulator.c28x.ctypes import FLOAT
 from emulator.c28x.findings import Findings
 from emulator.c28x.sites import Place
 from emulator.clock import Clock
@@ -83,7 +84,7 @@ class Ctype:
 
 INT = Ctype(1)
 LONG = Ctype(2)
-DOUBLE = Ctype(2)
+DOUBLE = FLOAT
 POINTER = Ctype(2)
 
 
