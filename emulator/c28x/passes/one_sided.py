@@ -226,9 +226,8 @@ def _of_counts(test: Expr, counts: set[Variable]) -> bool:
     """Whether a test asks for counts alone, as of a clock that is divided."""
     every = parts(test)
     asked = [p.root for p in every if isinstance(p, LValue)]
-    if any(isinstance(root, Expr) or root not in counts for root in asked):
-        return False
-    return bool(asked) and not any(isinstance(p, Call) for p in every)
+    counted = bool(asked) and all(isinstance(root, Variable) and root in counts for root in asked)
+    return counted and not any(isinstance(p, Call) for p in every)
 
 
 def _with_tests(body: list[Stmt], tests: list[Expr]) -> Iterator[tuple[Stmt, list[Expr]]]:
