@@ -208,20 +208,77 @@ another period), and for functions that nothing else calls. Times that are no pe
 """,
     ),
     _rule(
+        "count-by-name", Severity.WARNING, "A count of a timer is taken for a time that it is not.", """
+A pulse, a distance or a time-out is wrong by one factor: the counter counts faster or slower than the program reckons.
+
+The value is a count of a CPU timer (`CpuTimer1Regs.TIM`), of an eCAP (`ECap1Regs.CAP2`) or a difference of such counts,
+also through objects, parameters and functions. How long a count lasts, the registers say at the end of the run: the
+prescaler of the timer, SYSCLK for an eCAP. Two uses are reported:
+
+* the count goes where a name or a comment states a time (`width > GAP_US`), and a count does not last so long;
+* it is divided by, or multiplied with, a constant whose name says how fast the counter counts (`CYCLES_PER_US`,
+  `TICKS_PER_MS`, `TIMER_HZ`), and it counts with another frequency.
+
+Nothing is reported about a counter that stands, an eCAP that prescales its edges, an object that holds other values
+too, or another factor: half of an echo is a distance, too.
+
+**Fix:** compute the prescaler or the constant from SYSCLK, which has 200 MHz.
+""",
+    ),
+    _rule(
+        "stated-rate", Severity.WARNING, "A rate that is stated beside a setting is not that of the hardware.", """
+Samples come at half the rate, a control runs twice as fast, a line has another bit rate: somebody reckoned with a clock
+that the chip does not have. TBCLK is EPWMCLK, which has 100 MHz after reset; LSPCLK has 50 MHz.
+
+At the end of the run the period of a CPU timer or an ePWM is compared with what stands beside the statement that has
+set it:
+
+* a comment there, or beside a definition that the value uses (`// 200 MHz / 25000 = 8 kHz`, `/* 1 ms */`): what is
+  behind the last `=` counts;
+* the name of a constant from which the count is computed (`TBCLK_HZ / CARRIER_HZ - 1`, `PERIOD_US * 200`).
+
+A call of `SCI_setConfig` or `SPI_setConfig` is reported if it is told another frequency than LSPCLK has.
+
+It is reported if the two rates differ by a power of two or of ten. Every rate of the ePWM counts: that of its counter,
+its interrupts, its triggers (every third event, both ends of the period), and of a pin that toggles. Comments about
+counts, pulses, limits or delays are not meant, nor a period that two statements set, nor a count with a factor of its
+own (`CLOCK_HZ / (2 * BLINK_HZ)`).
+
+**Fix:** compute the period from the clock that is set; or correct the comment or the name.
+""",
+        "TRM CPU timers; ePWM: time-base period; SCI: baud rate",
+    ),
+    _rule(
         "scale-by-face", Severity.WARNING, "An object follows a part of the board in another scale than its unit.", """
 A weight of 1250 g is shown as 125 g, a limit in tenths of a degree is never reached: the object is wrong by a power of
 ten.
 
 The name or the comment of an object states its unit (`// tenths of a gram`), and a face of a part of the board has the
-same quantity in its own unit. In the run the face changed, and the object changed with it, by a factor that is a power
-of ten but not the one between the units.
+same quantity in its own unit. A number of a part whose name states a unit (`self.rpm`, `self.mbar`) is looked at like
+a face. In the run the face changed, and the object changed with it, but not by the factor between the units: it is
+wrong by a power of ten, or by a factor that programs forget: edges, pole pairs and minutes of a speed (2, 4, 8, 60),
+degrees of a radian (57.3).
 
-It is reported at the object's declaration if the values agree before and behind a step, or if two steps of different
-height agree, as after a tare. Objects with a stated unit at file scope are looked at, and members of structures there,
-but no arrays. Nothing is reported if two faces of the board have the quantity, if no face changes, or if any object
-follows the face in the right scale.
+It is reported where the object gets its scale if the values agree before and behind a step, or if two steps of
+different height agree, as after a tare. If the face never changes, only an object is reported that came to its value in
+the run and is wrong by a power of ten. Objects with a stated unit at file scope are looked at, and members of
+structures there, but no arrays. Of several objects that follow the face, the closest one is reported. Nothing is
+reported if any object follows the face in the right scale, or if the object follows two faces.
 
 **Fix:** correct the factor of the conversion, or the unit that the comment states.
+""",
+    ),
+    _rule(
+        "sign-by-face", Severity.NOTE, "An object follows a part of the board with the other sign.", """
+A speed is negative while the shaft turns forwards: a control that uses it drives away from its target.
+
+As for `scale-by-face`, an object in a stated unit is compared with the face or the number of a part that has the
+quantity. It has the value of the face, but for its sign. Usually a difference is taken the wrong way (`last - now`),
+two wires are crossed, or a bit for the direction is inverted.
+
+It is a note, because the direction that counts as positive may be chosen: of a current, an angle, a mirrored motor.
+
+**Fix:** turn the difference, or the sign of the conversion; or count the other direction as positive in the board.
 """,
     ),
     _rule(

@@ -23,6 +23,8 @@ from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
 from hil.drivers.sources import ArrivalWatch
 from hil.drivers.stale import AgeWatch, watched
+from hil.drivers.stated_rates import wrong_rates
+from hil.drivers.units import misread_counts
 from hil.drivers.used_sources import buses, cut_off, receives_characters, silent_sources
 from hil.drivers.waiting import (
     EndedParties,
@@ -196,7 +198,7 @@ def _run(
         image.board.clock.after(round(parts_s * SYSCLK_HZ), lambda: cut_off(image.board))
     arrivals = ArrivalWatch(image.board) if roles.main is not None and parts_s is None else None
     routines = RoutinePeriods(image.board)
-    scales = FaceScales(image, build.files, for_s)
+    scales = FaceScales(image, build, for_s)
     budget = TimeBudget(RUN)
     stop: BaseException | None = None
     stood = EndPosition()
@@ -230,7 +232,12 @@ def _run(
     for hung in image.board.findings.of("endless-poll"):
         if hung.task == "main" and hung.place is not None and not waits_for_others(hung, roles):
             image.board.watchdog.report_hung_main(hung.time_cycles - image.linked.runtime.poll_limit, hung.place)
-    for wrong in (*wrong_periods(build.modules, routines.periods()), *scales.wrong()):
+    told = (
+        *wrong_periods(build.modules, routines.periods()), *scales.wrong(),
+        *misread_counts(build.modules, image.board.kernel.clocks.tick_period_us, image.board),
+        *wrong_rates(build.modules, image.board),
+    )  # fmt: skip
+    for wrong in told:
         image.board.findings.report_at(wrong.place, wrong.rule, wrong.message, object=wrong.object, how="dynamic")
     seen = [anchored(finding, build.files, build.others) for finding in image.board.findings if finding.how != "static"]
     # Behind the end only the poll that was waited for is the run's, and what its close shows.

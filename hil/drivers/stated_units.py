@@ -9,7 +9,7 @@ from math import isclose
 from typing import Final
 
 from emulator.c28x.declarations import lines_with_comments
-from emulator.c28x.tree import Where
+from emulator.c28x.tree import Const, Where
 from hil.drivers.unit_names import PhysicalUnit, UnitRemark, remark, unit_of_name
 
 #: One number: C, and C-shaped Python.
@@ -41,6 +41,8 @@ class Measured:
     named: bool = False
     #: The object or constant that has the unit; empty: the value itself.
     of: str = ""
+    #: The hardware counter whose counts it is in; empty: another unit.
+    counter: str = ""
 
     def __str__(self) -> str:
         return f"{self.unit.name}{self.by and f' by its {self.by}'}"
@@ -83,6 +85,15 @@ def of_definition(where: Where, value: float) -> Measured | None:
     return replace(found, of=name) if found is not None else None
 
 
+def defined_number(e: Const) -> tuple[str, str]:
+    """The name of the number that a constant is, and the comment beside its definition; "": it has no name."""
+    if e.where.macro is None or e.source is not None:
+        return "", ""
+    code, comment = _line(e.where.macro)
+    match = _DEFINITION.match(code)
+    return (match[1] or match[2], comment) if match is not None else ("", "")
+
+
 def macro_name(where: Where) -> str:
     """The name of the macro with one parameter that is defined at a place; "": it is another text."""
     match = _MACRO.match(_line(where)[0])
@@ -95,14 +106,22 @@ def comment_beside(where: Where, name: str) -> UnitRemark:
     return remark(comment) if re.search(rf"\b{re.escape(name)}\b", code) else UnitRemark()
 
 
-def members(files: Iterable[str]) -> dict[str, UnitRemark]:
-    """What comments say about members of structures, by name; members that are declared differently say nothing."""
+def members(files: Iterable[str], *, silent_agrees: bool = False) -> dict[str, UnitRemark]:
+    """What comments say about members of structures, by name; members that are declared differently say nothing.
+
+    `silent_agrees`: a declaration without a comment agrees with every other one.
+    """
     said: dict[str, UnitRemark] = {}
     for file in sorted(files):
         for code, comment in lines_with_comments(file):
             match = _MEMBERS.match(code)
             for name in _IDENTIFIER.findall(_SUBSCRIPT.sub("", match[1])) if match is not None else ():
                 new = remark(comment)
+                if silent_agrees and not comment:
+                    said.setdefault(name, new)
+                    continue
+                if silent_agrees and said.get(name) == UnitRemark():
+                    said[name] = new
                 said[name] = new if said.get(name, new) == new else UnitRemark(unclear=True)
     return said
 

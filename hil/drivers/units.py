@@ -44,13 +44,17 @@ from emulator.c28x.tree import (
     Function,
     Load,
     LValue,
+    RegisterLoad,
     Return,
     Stmt,
     Unary,
     Variable,
     Where,
 )
-from emulator.c28x.tree_queries import bare, parts, roots, source_text, statements
+from emulator.c28x.tree_queries import assigned, bare, own_nodes, parts, roots, source_text, statements
+from emulator.chip import Chip
+from hil.drivers.clock_names import clock_by_name, factors
+from hil.drivers.hardware_counts import HardwareCounts, tick_seconds
 from hil.drivers.stated_units import Measured, comment_beside, macro_name, members, misnamed, of_definition, stated
 from hil.drivers.unit_names import PhysicalUnit, UnitRemark, unit_of_text, words_of
 
@@ -104,7 +108,7 @@ class UnitMismatch:
     rule: str = "unit"
 
 
-Report = Callable[[Where, str, str, bool], None]
+Report = Callable[[Where, str, str, str], None]
 
 
 def mixed_units(modules: Iterable[Module], tick_us: int) -> list[UnitMismatch]:
@@ -114,17 +118,49 @@ def mixed_units(modules: Iterable[Module], tick_us: int) -> list[UnitMismatch]:
     """
     modules = list(modules)
     units = _Units(modules, tick_us)
-    found = [found for module in modules for function in module.functions for found in units.of(function)]
+    found = _of_all(units, modules)
     for wrong in misnamed(units.files):
         place = Place(wrong.file, wrong.line, "", wrong.file)
         found.append(UnitMismatch(place, str(wrong), wrong.name, "unit-in-comment"))
     return found
 
 
+def misread_counts(modules: Iterable[Module], tick_us: int, chip: Chip) -> list[UnitMismatch]:
+    """The places where counts of the chip's counters are taken for what they are not, after a run of the program."""
+    modules = list(modules)
+    units = _Units(modules, tick_us, _Counters(HardwareCounts(modules), chip))
+    return [found for found in _of_all(units, modules) if found.rule == "count-by-name"]
+
+
+def _of_all(units: _Units, modules: list[Module]) -> list[UnitMismatch]:
+    return [found for module in modules for function in module.functions for found in units.of(function)]
+
+
+class _Counters:
+    """The units of counts: what one of them lasts is what the registers say now."""
+
+    def __init__(self, counts: HardwareCounts, chip: Chip) -> None:
+        self._counts = counts
+        self._chip = chip
+        self._units: dict[str, Measured | None] = {"": None}
+
+    def unit_of(self, e: Expr) -> Measured | None:
+        """The unit of a count; None: the value is none, or the counter stands."""
+        counter = self._counts.counter_of(e)
+        if counter not in self._units:
+            tick = tick_seconds(self._chip, counter)
+            self._units[counter] = None
+            if tick is not None:
+                name = f"counts of {tick * 1e9:g} ns of {counter}"
+                self._units[counter] = Measured(PhysicalUnit(name, "time", tick, tick), counter=counter)
+        return self._units[counter]
+
+
 class _Units:
     """The units of functions and objects, and the units that follow from them."""
 
-    def __init__(self, modules: list[Module], tick_us: int) -> None:
+    def __init__(self, modules: list[Module], tick_us: int, counters: _Counters | None = None) -> None:
+        self._counters = counters
         self.results: dict[str, Measured] = {}
         self.variables: dict[Variable, Measured | None] = {}
         self._tick = PhysicalUnit(f"ticks of {tick_us / 1000:g} ms", "time", tick_us * 1e-6, tick_us * 1e-6)
@@ -145,6 +181,9 @@ class _Units:
             _name(target) for function in functions for target, value in _assignments(function)
             if _scales_itself(target, value)
         }  # fmt: skip
+        for function in functions:
+            self._infer(function)
+        self._infer_parameters(functions)
         for function in functions:
             self._infer(function)
         self._degrees = self._in_degrees(functions)
@@ -183,8 +222,27 @@ class _Units:
             if first is not None and not variable.escapes and all(
                 v is not None and v.factor == 1.0 and v.unit == first.unit for v in values
             ):  # fmt: skip
-                stated_by = first.by if not first.by or first.by.startswith("value's") else f"value's {first.by}"
-                self.variables[variable] = replace(first, by=stated_by, of="")
+                self.variables[variable] = _inherited(first)
+
+    def _infer_parameters(self, functions: list[Function]) -> None:
+        """Give a unit to parameters to which each call passes a value of this unit."""
+        passed: dict[Variable, list[Measured | None]] = {}
+        for function in functions:
+            for s in statements(function.body):
+                for p in own_nodes(s):
+                    if isinstance(p, Call) and not p.function.extern:
+                        for n, (parameter, value) in enumerate(zip(p.function.parameters, p.arguments, strict=False)):
+                            if self._of_parameter(p.function, n)[0] is None:
+                                passed.setdefault(parameter, []).append(self._value(value))
+        changed = {assigned(s) for function in functions for s in statements(function.body)}
+        for parameter, values in passed.items():
+            first = values[0]
+            if parameter in changed or parameter.escapes or not _is_number(parameter.ctype):
+                continue
+            if first is not None and all(
+                v is not None and v.factor == 1.0 and v.unit == first.unit and not v.counter for v in values
+            ):  # fmt: skip
+                self.variables[parameter] = _inherited(first)
 
     def _in_degrees(self, functions: list[Function]) -> set[str]:
         """The objects at file scope, by their text, that take only products with 180/pi, sums of them, and numbers."""
@@ -203,9 +261,9 @@ class _Units:
         """The places in one function where units are mixed."""
         self._found = []
 
-        def report(where: Where, message: str, what: str, certain: bool) -> None:
+        def report(where: Where, message: str, what: str, rule: str) -> None:
             place = Place(function.where.file, where.line, function.name, function.c_file, where.column)
-            self._found.append(UnitMismatch(place, message, what, "unit" if certain else "unit-by-name"))
+            self._found.append(UnitMismatch(place, message, what, rule))
 
         for s in statements(function.body):
             for root in roots(s):
@@ -229,13 +287,30 @@ class _Units:
                     )  # fmt: skip
                     if message:
                         what = f"{source_text(left)} {op} {source_text(right)}"
-                        report(where, message, what, _certain(one, other))
+                        report(where, message, what, _rule(one, other))
+            case Binary(op="*" | "/"):
+                self._check_clock(e, where, report)
             case Call(function=callee, arguments=[value]) if callee.extern and callee.name in _OF_ANGLES:
                 self._check_target(value, Measured(RADIANS), where, report, f"the angle of {callee.name}")
             case Call(function=callee, arguments=arguments):
                 for number, value in enumerate(arguments):
                     wanted, name = self._of_parameter(callee, number)
                     self._check_target(value, wanted, where, report, f"parameter {name} of {callee.name}")
+
+    def _check_clock(self, e: Binary, where: Where, report: Report) -> None:
+        """Check a product or a quotient of counts with a constant whose name says how fast the counter counts."""
+        for counted, other in ((e.left, e.right), (e.right, e.left)) if self._counters is not None else ():
+            counts = [found for f in factors(counted) if (found := self._value(f)) is not None and found.counter]
+            claims = [claim for f in factors(other) if (claim := clock_by_name(f)) is not None]
+            if len(counts) != 1 or len(claims) != 1:
+                continue
+            (name, claimed), real = claims[0], 1 / counts[0].unit.scale
+            if not isclose(claimed, real, rel_tol=_ALMOST):
+                message = (
+                    f"{name} says that {counts[0].counter} counts {claimed / 1e6:g} million times a second, and it "
+                    f"counts {real / 1e6:g} million times"
+                )
+                report(where, message, name, "count-by-name")
 
     def _check_statement(self, s: Stmt, function: Function, report: Report) -> None:
         match s:
@@ -268,17 +343,22 @@ class _Units:
         if wanted is not None and given is not None:
             message = _mismatch(given, wanted, _text(given, value), target)
             if message:
-                report(where, message, target, _certain(given, wanted))
+                report(where, message, target, _rule(given, wanted))
 
     def _value(self, e: Expr) -> Measured | None:
         """The unit of a value; None if it is not known."""
+        if self._counters is not None and isinstance(e, RegisterLoad | Call | Unary):
+            counts = self._counters.unit_of(e)
+            if counts is not None:
+                return counts
         match e:
             case Const(source=Expr() as source):
                 return self._value(source)
             case Const():
                 return _of_constant(e)
             case Load(lvalue=lvalue) | AddressOf(lvalue=lvalue):
-                return self._of_lvalue(lvalue)
+                by_name = self._of_lvalue(lvalue)
+                return by_name or (self._counters.unit_of(e) if self._counters is not None else None)
             case Call(function=function) if function.extern and function.name in _ANGLES:
                 return Measured(RADIANS)
             case Call(function=function, arguments=[value]) if function.extern and function.name in _SAME:
@@ -377,6 +457,12 @@ def _makes_degrees(op: str, by: Expr) -> bool:
     return isclose(factor, _DEGREES_PER_RADIAN, rel_tol=_ROUNDED_PI)
 
 
+def _inherited(given: Measured) -> Measured:
+    """The unit of an object that takes only values of this unit."""
+    stated_by = given.by if not given.by or given.by.startswith("value's") else f"value's {given.by}"
+    return replace(given, by=stated_by, of="")
+
+
 def _only_numbers(value: Expr, target: LValue) -> bool:
     """Whether a value is a constant, or the target itself plus or minus a constant: a start, or a turn taken off."""
     match bare(value):
@@ -437,6 +523,13 @@ def _power_of_ten(number: float) -> int | None:
 def _certain(one: Measured, other: Measured) -> bool:
     """Whether both units are declared, or those of a library."""
     return not one.by and not other.by
+
+
+def _rule(one: Measured, other: Measured) -> str:
+    """The rule that a mismatch of two units breaks."""
+    if one.counter or other.counter:
+        return "count-by-name"
+    return "unit" if _certain(one, other) else "unit-by-name"
 
 
 def _text(given: Measured, value: Expr) -> str:

@@ -161,6 +161,24 @@ def test_a_converted_value_is_not_told(tmp_path: Path, body: str) -> None:
     assert told(tmp_path, f"{HEAD}void f(void)\n{{\n    {body}\n}}\n", "unit-by-name") == []
 
 
+CALLED = """#include <stdint.h>
+#define GAP_US 500u
+#define LATE_US 900u
+uint16_t left_ms;
+static uint16_t half(uint16_t number) { left_ms = number; return number; }
+"""
+
+
+@pytest.mark.parametrize(("calls", "messages"), [
+    ("half(GAP_US); half(LATE_US);", ["number is in us by its value's name, left_ms in ms by its name"]),
+    # Another unit, none, a product; two units.
+    ("half(left_ms); half(left_ms);", []), ("half(GAP_US); half(3);", []), ("half(GAP_US / 1000);", []),
+    ("half(GAP_US); half(left_ms);", []),
+])  # fmt: skip
+def test_a_parameter_has_the_unit_that_each_call_passes(tmp_path: Path, calls: str, messages: list[str]) -> None:
+    assert told(tmp_path, f"{CALLED}void f(void) {{ {calls} }}\n", "unit-by-name") == messages
+
+
 def test_python_states_units_in_the_same_way(tmp_path: Path) -> None:
     text = (
         "from emulator.c28x.language import *\n\nPOLL_US = 500\nlast: int16 = 0  # ms\nlevel_mV: int16 = 0\n\n\n"

@@ -217,6 +217,7 @@ def up(folder: Path, *, count: str = NOW_AND_THEN, back: str = "", test: str = "
     {"count": "switch (mode) { case RUN: bad++; break; default: break; }", "back": "if (Raw == 5) mode = RUN;"},
     {"count": "if (Raw == 3) Sum |= 1u << bad++;"},
     {"count": "Uint16 *at = Log; if (at[Raw & 7] > 9) bad++;"},
+    {"count": "{ const volatile Uint16 *in = &Raw; if (*in > 9) bad++; }"},
 ])  # fmt: skip
 def test_a_count_with_a_limit_that_nothing_begins_again_is_told(tmp_path: Path, given: dict[str, str]) -> None:
     assert up(tmp_path, **given) == ["bad"]

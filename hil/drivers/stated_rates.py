@@ -1,0 +1,302 @@
+"""Compares the rates that a program states with those that its hardware has at the end of a run.
+
+    EPwm1Regs.TBPRD = 9999;                          // 200 MHz / 10000 = 20 kHz
+    EPwm2Regs.TBPRD = TBCLK_HZ / CARRIER_HZ - 1;
+
+A comment beside the statement that sets a period, or beside a definition that it uses, states a rate; so does the name
+of a constant in it.  The rate that counts is the one behind the last `=`.  It is told if it is none of those that the
+hardware has then: that of the counter, of its interrupts and triggers, of a pin that toggles.
+
+TI's driverlib is told the frequency of a clock (`SCI_setConfig(base, lspclkHz, baud, ...)`): that is checked too.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from math import isclose
+from typing import Final
+
+from emulator.c28x.declarations import lines_with_comments
+from emulator.c28x.sites import Place
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    AddressOf,
+    Assign,
+    Call,
+    Const,
+    Expr,
+    Function,
+    Load,
+    LValue,
+    RegisterRef,
+    Stmt,
+    Variable,
+)  # fmt: skip
+from emulator.c28x.tree_queries import bare, own_nodes, parts, statements
+from emulator.chip import Chip
+from emulator.clock import SYSCLK_HZ
+from emulator.peripherals.epwm_time_base import STOPPED, UP_DOWN
+from emulator.registers.core import F
+from emulator.registers.epwm import ETINTPS, ETPS, ETSEL, ETSOCPS, TBCTL
+from hil.drivers.clock_names import clock_by_name
+from hil.drivers.stated_units import defined_number
+from hil.drivers.unit_names import unit_of_name, unit_of_text
+from hil.drivers.units import UnitMismatch
+
+#: A rate in a comment: a number with a unit of frequency or time.
+_AMOUNT: Final = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?) ?([kM]?Hz|khz|hz|mhz|us|µs|ms|ns|s)\b(?!\w)")
+#: Comments about something else than the period: a part of it, a limit, a length.
+_ELSE: Final = re.compile(
+    r"\b(?:counts?|steps?|ticks?|each|dead|delay|pulses?|high|low|width|until|longest|shortest|max\w*|min\w*|most|"
+    r"least|resolution|per|of|about|than|window|filter\w*|every|or)\b|[<>~]",
+    re.IGNORECASE,
+)  # fmt: skip
+#: A frequency from here on is that of a clock, and not of what it counts.
+_CLOCK_HZ: Final = 1e6
+#: Two rates are equal up to this; integer dividers round.
+_EQUAL: Final = 0.03
+#: Between them lies what a divider that was forgotten, or a slip of the decimal point, makes.
+_SLIPS: Final = tuple(2.0**n for n in (-4, -3, -2, -1, 1, 2, 3, 4)) + tuple(10.0**n for n in range(-6, 7) if n)
+#: Numbers without a name beside which the name of a rate still states the rate: conversions, and clocks in MHz and Hz.
+_CONVERTING: Final = frozenset({1, 1000, 1e6, 1e9, 50, 100, 200, 50e6, 100e6, 200e6})
+#: The addresses of blocks, as driverlib passes them (DS table of peripheral registers): first one, words, first number.
+_BASES: Final = {"EPwm": (0x4000, 0x100, 1), "CpuTimer": (0x0C00, 8, 0)}
+_PERIODS: Final = {"EPWM_setTimeBasePeriod": "EPwm", "CPUTimer_setPeriod": "CpuTimer"}
+#: Functions of driverlib that take the frequency of LSPCLK as their second argument.
+_TOLD_LSPCLK: Final = frozenset({"SCI_setConfig", "SPI_setConfig"})
+_TSS: Final = 1 << 4
+#: An interrupt or a trigger at both ends of an up-down period.
+_BOTH_ENDS: Final = 3
+_TOGGLES: Final = 3
+
+
+@dataclass(frozen=True, slots=True)
+class _Setting:
+    """A statement that sets the period of a counter."""
+
+    function: Function
+    statement: Stmt
+    #: `EPwm1`, `CpuTimer0`.
+    counter: str
+    value: Expr
+    #: `value` is the count itself, which the register then holds, and not a time in microseconds.
+    counted: bool
+
+
+@dataclass(frozen=True, slots=True)
+class _Rates:
+    """The rates in Hz that a counter has; the first one is its own."""
+
+    own: float
+    others: frozenset[float]
+    up_down: bool = False
+    #: What the register of the period holds.
+    period: int = 0
+
+    def has(self, rate: float) -> bool:
+        """Whether it is one of them."""
+        return any(isclose(rate, each, rel_tol=_EQUAL) for each in (self.own, *self.others))
+
+
+def wrong_rates(modules: Iterable[Module], chip: Chip) -> Iterator[UnitMismatch]:
+    """The statements beside which a rate is stated that the hardware does not have."""
+    functions = [function for module in modules for function in module.functions]
+    passed = _passed(functions)
+    settings = [found for function in functions for found in _settings(function, passed)]
+    for each in settings:
+        alone = sum(other.counter == each.counter and other.counted == each.counted for other in settings) == 1
+        rates = _rates(chip, each.counter) if alone else None
+        if rates is None or not _holds(each, rates):
+            continue
+        stated = _stated(each, rates)
+        if stated is not None and any(isclose(stated[1] / rates.own, slip, rel_tol=_EQUAL) for slip in _SLIPS):
+            text, rate = stated
+            message = f"{text} states {_hz(rate)}, and {each.counter} counts its period {_hz(rates.own)}"
+            yield UnitMismatch(_place(each.function, each.statement), message, each.counter, "stated-rate")
+    yield from _wrong_clocks(functions, chip)
+
+
+def _hz(rate: float) -> str:
+    """A rate as text."""
+    for size, unit in ((1e6, "MHz"), (1e3, "kHz")):
+        if rate >= size:
+            return f"{rate / size:.4g} {unit}"
+    return f"{rate:.4g} Hz"
+
+
+def _place(function: Function, s: Stmt) -> Place:
+    return Place(function.where.file, s.where.line, function.name, function.c_file, s.where.column)
+
+
+def _passed(functions: Iterable[Function]) -> dict[Variable, list[Expr]]:
+    """What calls pass to each parameter."""
+    found: dict[Variable, list[Expr]] = {}
+    for function in functions:
+        for s in statements(function.body):
+            for p in own_nodes(s):
+                if isinstance(p, Call):
+                    for parameter, value in zip(p.function.parameters, p.arguments, strict=False):
+                        found.setdefault(parameter, []).append(bare(value))
+    return found
+
+
+def _settings(function: Function, passed: dict[Variable, list[Expr]]) -> Iterator[_Setting]:
+    for s in statements(function.body):
+        if isinstance(s, Assign) and isinstance(s.target, RegisterRef) and s.target.field is None:
+            block = s.target.block.removesuffix("Regs")
+            if (block[:4], s.target.register) == ("EPwm", "TBPRD") or (block[:8], s.target.register) == (
+                "CpuTimer", "PRD",
+            ):  # fmt: skip
+                yield _Setting(function, s, block, s.value, counted=True)
+        for p in own_nodes(s):
+            match p:
+                case Call(function=callee, arguments=[timer, _, period]) if callee.name == "ConfigCpuTimer":
+                    for block in _timers(timer):
+                        yield _Setting(function, s, block, period, counted=False)
+                case Call(function=callee, arguments=[base, count]) if callee.name in _PERIODS:
+                    kind = _PERIODS[callee.name]
+                    first, words, number = _BASES[kind]
+                    for address in _constants(base, passed):
+                        n, rest = divmod(address - first, words)
+                        if not rest and 0 <= n < 16:
+                            yield _Setting(function, s, f"{kind}{number + n}", count, counted=True)
+
+
+def _timers(e: Expr) -> Iterator[str]:
+    """The CPU timer that an argument of `ConfigCpuTimer` means."""
+    match bare(e):
+        case AddressOf(lvalue=LValue(root=Variable() as structure)):
+            yield structure.declaration.name
+        case Const(value=int() as n):
+            yield f"CpuTimer{n}"
+
+
+def _constants(e: Expr, passed: dict[Variable, list[Expr]]) -> list[int]:
+    """The constants that an argument can be; also those that calls pass to a parameter."""
+    match bare(e):
+        case Const(value=int() as value):
+            return [value]
+        case Load(lvalue=LValue(root=Variable(kind="parameter") as parameter, indices=[])):
+            given = passed.get(parameter, [])
+            return [c.value for c in given if isinstance(c, Const) and isinstance(c.value, int)]
+    return []
+
+
+def _rates(chip: Chip, counter: str) -> _Rates | None:
+    """The rates of a counter; None: it stands."""
+    block = f"{counter}Regs"
+    if counter.startswith("CpuTimer"):
+        if chip.register(block, "TCR").value & _TSS or (
+            counter == "CpuTimer2" and chip.register("CpuSysRegs", "TMR2CLKCTL").value
+        ):
+            return None
+        prescale = (chip.register(block, "TPRH").value & 0xFF) << 8 | chip.register(block, "TPR").value & 0xFF
+        period = chip.register(block, "PRD").value
+        return _Rates(SYSCLK_HZ / ((period + 1) * (prescale + 1)), frozenset(), period=period)
+    control, period = chip.register(block, "TBCTL").value, chip.register(block, "TBPRD").value
+    mode = _field(control, TBCTL.CTRMODE)
+    if mode == STOPPED or not period:
+        return None
+    tick = chip.sysctrl.epwmclk_divider * (2 * _field(control, TBCTL.HSPCLKDIV) or 1) << _field(control, TBCTL.CLKDIV)
+    own = SYSCLK_HZ / (tick * (2 * period if mode == UP_DOWN else period + 1))
+    select, events = chip.register(block, "ETSEL").value, chip.register(block, "ETPS").value
+    more, triggers = chip.register(block, "ETINTPS").value, chip.register(block, "ETSOCPS").value
+    others: set[float] = set()
+    for divider in (
+        _field(events, ETPS.INTPRD), _field(events, ETPS.SOCAPRD), _field(events, ETPS.SOCBPRD),
+        _field(more, ETINTPS.INTPRD2), _field(triggers, ETSOCPS.SOCAPRD2), _field(triggers, ETSOCPS.SOCBPRD2),
+    ):  # fmt: skip
+        others.add(own / max(1, divider))
+    if _BOTH_ENDS in (_field(select, ETSEL.INTSEL), _field(select, ETSEL.SOCASEL), _field(select, ETSEL.SOCBSEL)):
+        others |= {2 * each for each in others}
+    for name in ("AQCTLA", "AQCTLB"):
+        actions = chip.register(block, name).value
+        if any(actions >> bit & _TOGGLES == _TOGGLES for bit in range(0, 12, 2)):
+            others.add(own / 2)
+    return _Rates(own, frozenset(others), mode == UP_DOWN, period)
+
+
+def _field(word: int, field: F) -> int:
+    return (word & field.mask) >> field.lo
+
+
+def _holds(each: _Setting, rates: _Rates) -> bool:
+    """Whether the register still holds what the statement set."""
+    value = bare(each.value)
+    if not isinstance(value, Const):
+        return False
+    return int(value.value) == rates.period if each.counted else isclose(rates.own, 1e6 / value.value, rel_tol=_EQUAL)
+
+
+def _stated(each: _Setting, rates: _Rates) -> tuple[str, float] | None:
+    """A rate that is stated beside a setting and that the counter has not, with its text; None: there is none."""
+    named = [p for p in _leaves(each.value) if isinstance(p, Const)]
+    where = each.statement.where
+    lines = lines_with_comments(where.file)
+    comments = [lines[where.line - 1][1]] if 0 < where.line <= len(lines) else []
+    comments += [comment for p in named if (comment := defined_number(p)[1])]
+    said = [(f"the comment {comment!r}", rate) for comment in comments for rate in _in_comment(comment)]
+    said += list(_by_names(each, named, rates))
+    return said[0] if said and not any(rates.has(rate) for _, rate in said) else None
+
+
+def _in_comment(comment: str) -> Iterator[float]:
+    """The rates in Hz that a comment states of a period."""
+    result = comment.rpartition("=")[2]
+    if _ELSE.search(result):
+        return
+    for number, unit_text in _AMOUNT.findall(result):
+        unit = unit_of_text(unit_text)
+        amount = float(number) * unit.scale if unit is not None else 0.0
+        if unit is not None and amount:
+            rate = amount if unit.quantity == "frequency" else 1 / amount
+            if rate < _CLOCK_HZ:
+                yield rate
+
+
+def _by_names(each: _Setting, named: list[Const], rates: _Rates) -> Iterator[tuple[str, float]]:
+    """The rates in Hz that the names of constants state from which a count is computed, with the names."""
+    found: list[tuple[str, float]] = []
+    for p in named:
+        name, _ = defined_number(p)
+        unit = unit_of_name(name) if name else None
+        own = p.where.file == each.function.where.file and (p.where.macro is None or p.where.macro.file == p.where.file)
+        if unit is not None and unit.quantity in ("frequency", "time") and p.value > 0:
+            amount = p.value * unit.scale
+            rate = amount if unit.quantity == "frequency" else 1 / amount
+            if clock_by_name(p) is None and rate < _CLOCK_HZ:
+                found.append((name, rate))
+        elif own and clock_by_name(p) is None and not (
+            p.value in _CONVERTING or (rates.up_down and p.value in (2, 0.5))
+        ):  # fmt: skip
+            return  # a part or a multiple can be meant
+    if len(found) == 1:
+        yield from found
+
+
+def _leaves(e: Expr) -> Iterator[Expr]:
+    """The operands of a sum or product of constants, with those that a constant was folded from."""
+    for p in parts(e):
+        if isinstance(p, Const) and p.source is not None:
+            yield from _leaves(p.source)
+        elif isinstance(p, Const):
+            yield p
+
+
+def _wrong_clocks(functions: Iterable[Function], chip: Chip) -> Iterator[UnitMismatch]:
+    """The calls of driverlib that are told another frequency of LSPCLK than it has."""
+    real = chip.sysctrl.lspclk_hz
+    for function in functions:
+        for s in statements(function.body):
+            for p in own_nodes(s):
+                if isinstance(p, Call) and p.function.name in _TOLD_LSPCLK and len(p.arguments) > 1:
+                    told = bare(p.arguments[1])
+                    if isinstance(told, Const) and told.value > 0 and not isclose(told.value, real, rel_tol=_EQUAL):
+                        message = (
+                            f"{p.function.name} is told that LSPCLK has {_hz(told.value)}, and it has {_hz(real)}: the "
+                            f"bit rate is {real / told.value:.4g} times the wanted one"
+                        )
+                        yield UnitMismatch(_place(function, s), message, "LSPCLK", "stated-rate")
+

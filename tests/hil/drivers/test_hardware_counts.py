@@ -1,0 +1,103 @@
+"""Counts of hardware counters that are taken for times that they are not: wrong programs, and their right twins."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from hil.board import load
+from hil.drivers.check import DriverFiles, check_files
+
+PROGRAM = """#include "F28x_Project.h"
+#define GAP_US          500UL
+#define {define}
+#define HALF            2
+volatile Uint32 Long = 0, pulse_us = 0, other = 0;
+volatile float seconds = 0;
+static Uint32 Last = 0, Kept = 0, Mixed = 0;
+static Uint32 Elapsed(Uint32 begun) {{ return begun - CpuTimer1Regs.TIM.all; }}
+static int Longer(Uint32 measured, Uint32 nominal) {{ return measured > nominal + nominal / 4; }}
+void main(void)
+{{
+    InitSysCtrl();
+    DINT;
+    InitCpuTimers();
+    CpuTimer1Regs.TPR.all = {prescale} & 0xFF;
+    CpuTimer1Regs.TPRH.all = {prescale} >> 8;
+    CpuTimer1Regs.TCR.bit.TRB = 1;
+    {start}
+    EALLOW;
+    CpuSysRegs.PCLKCR3.bit.ECAP1 = 1;
+    EDIS;
+    for (;;)
+    {{
+        Uint32 now = ~CpuTimer1Regs.TIM.all;
+        Uint32 width = now - Last;
+        Uint32 cap = ECap1Regs.CAP2 - ECap1Regs.CAP1;
+        Mixed = width;
+        Mixed = GAP_US;
+        {use}
+        Last = now;
+    }}
+}}
+"""
+START = "CpuTimer1Regs.TCR.bit.TSS = 0;"
+
+
+def told(
+    folder: Path, use: str, *, prescale: int = 1999, define: str = "CYCLES_PER_US 200UL", start: str = START,
+    rule: str = "count-by-name",
+) -> list[str]:  # fmt: skip
+    """The messages of the rule."""
+    file = folder / "pulse.c"
+    text = PROGRAM.format(use=use, prescale=prescale, define=define, start=start)
+    file.write_text(text, encoding="utf-8")
+    found = check_files(DriverFiles([file], calls=1, board=load("bare"), seconds=0.01)).findings
+    return [f.message for f in found if f.rule == rule]
+
+
+@pytest.mark.parametrize(("use", "message"), [
+    ("if (width > GAP_US) Long++;", "width is in counts of 10000 ns of CpuTimer1, GAP_US in us by its name"),
+    ("if (Longer(width, GAP_US)) Long++;",
+     "measured is in counts of 10000 ns of CpuTimer1, nominal + nominal / 4 in us by its value's name"),
+    ("pulse_us = Elapsed(Kept); Kept = CpuTimer1Regs.TIM.all;",
+     "Elapsed(...) is in counts of 10000 ns of CpuTimer1, pulse_us in us by its name"),
+    ("pulse_us = cap;", "cap is in counts of 5 ns of ECap1, pulse_us in us by its name"),
+    ("other = width / CYCLES_PER_US;",
+     "CYCLES_PER_US says that CpuTimer1 counts 200 million times a second, and it counts 0.1 million times"),
+])  # fmt: skip
+def test_a_count_that_lasts_another_time_is_told(tmp_path: Path, use: str, message: str) -> None:
+    assert told(tmp_path, use) == [message]
+
+
+@pytest.mark.parametrize(("define", "use", "rate"), [
+    ("CYCLES_PER_US 100UL", "other = cap / CYCLES_PER_US;", "100"),
+    ("TICKS_PER_MS 150000UL", "other = cap * 10 / TICKS_PER_MS;", "150"),
+    ("TIMER_HZ 100000000.0f", "seconds = cap / TIMER_HZ;", "100"),
+    ("SYSCLK_MHZ 100", "other = (cap >> 1) + cap / SYSCLK_MHZ;", "100"),
+    ("CPU_HZ 90000000UL", "if (cap > 0) other = 60 * CPU_HZ / cap;", "90"),
+])  # fmt: skip
+def test_a_constant_that_states_another_clock_is_told(tmp_path: Path, define: str, use: str, rate: str) -> None:
+    name = define.partition(" ")[0]
+    assert told(tmp_path, use, define=define) == [
+        f"{name} says that ECap1 counts {rate} million times a second, and it counts 200 million times"
+    ]
+
+
+@pytest.mark.parametrize(("use", "given"), [
+    # The prescaler makes microseconds; the constant is that of SYSCLK.
+    ("if (width > GAP_US || Longer(width, GAP_US)) Long++; pulse_us = width;", {"prescale": 199}),
+    ("pulse_us = cap / CYCLES_PER_US; pulse_us = cap / 200; pulse_us = width * 10;", {}),
+    ("seconds = cap / TIMER_HZ;", {"define": "TIMER_HZ 200000000.0f"}),
+    # Half of a path, or a part of it; another factor; no time; other values too.
+    ("pulse_us = cap / (HALF * CYCLES_PER_US); pulse_us = cap / 400;", {}),
+    ("other = cap * CUBES_PER_US; other = cap / GAP_US;", {"define": "CUBES_PER_US 3"}),
+    ("if (Mixed > GAP_US) Long++;", {}),
+    ("other = Long / CYCLES_PER_US;", {"define": "CYCLES_PER_US 100UL"}),
+    # It stands, or captures each second edge.
+    ("if (width > GAP_US) Long++;", {"start": "CpuTimer1Regs.TCR.bit.TSS = 1;"}),
+    ("pulse_us = cap;", {"start": "ECap1Regs.ECCTL1.bit.PRESCALE = 1;"}),
+])  # fmt: skip
+def test_a_count_that_is_converted_is_not_told(tmp_path: Path, use: str, given: dict[str, object]) -> None:
+    assert told(tmp_path, use, **given) == []  # type: ignore[arg-type]
