@@ -284,13 +284,14 @@ It is a note, because the direction that counts as positive may be chosen: of a 
     _rule(
         "limit-unused",
         Severity.NOTE,
-        "A limit is defined, and nothing applies it.",
+        "A limit or a time is defined, and nothing applies it.",
         """
-The value that the limit is for may be anything: the check that belongs to it is missing, or has been removed.
+The value that the limit is for may be anything: the check that belongs to it is missing, or has been removed. So may the
+wait be that a time is for.
 
 The limit is a `#define` of a number in a C file. Its name says that it is one (`SPEED_MAX`, `POT_MIN`, `TRAVEL_LIMIT`,
-`REPLY_TIMEOUT_MS`, `BATTERY_LOW_MV`, `OVERCURRENT_MA`), and its name occurs nowhere else in the C files. Headers are
-not looked at, nor a file that leaves more of its limits unused than it uses.
+`REPLY_TIMEOUT_MS`, `BATTERY_LOW_MV`, `OVERCURRENT_MA`) or states a unit (`SETTLING_US`, `COLD_TENTHS`), and it occurs
+nowhere else in the C files. Headers are not looked at, nor a file that leaves more of them unused than it uses.
 
 **Fix:** apply the limit, or remove it.
 """,

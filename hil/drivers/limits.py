@@ -1,7 +1,8 @@
-"""Finds limits that nobody applies: a definition in a C file whose name says that it is a limit, and that nothing uses.
+"""Finds limits, times and other quantities that nobody applies: definitions in a C file that nothing uses.
 
-It speaks only of numbers, in a file that uses at least as many limits of its own as it leaves: where most are unused,
-they are a list of what a part can do.
+The name says that it is a limit (`SPEED_MAX`), or states a unit (`SETTLING_US`, `COLD_TENTHS`).  It speaks only of
+numbers, in a file that uses at least as many of them as it leaves: where most are unused, they are a list of what a
+part can do.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import Final
 
 from emulator.c28x.declarations import lines_with_comments
 from emulator.c28x.sites import Place
+from hil.drivers.unit_names import unit_of_name
 from hil.drivers.units import UnitMismatch
 
 #: The words of a name, and those that say that it is a limit.
@@ -20,6 +22,10 @@ _WORD: Final = re.compile(r"[A-Za-z]+")
 _LIMITS: Final = re.compile(r"MAX|MIN|LIMIT|TIMEOUT|LOW|HIGH|(OVER|UNDER)(VOLTAGE|CURRENT|TEMP|TEMPERATURE|SPEED)?")
 _DEFINITION: Final = re.compile(r"^\s*#\s*define\s+(\w+)\s+(?:[-+(\s]|\([A-Za-z][\w ]*\))*\.?\d[\w.]*[)\s]*$")
 _NAME: Final = re.compile(r"[A-Za-z_]\w*")
+
+
+def _is_limit(name: str) -> bool:
+    return any(_LIMITS.fullmatch(word) for word in _WORD.findall(name.replace("_", " ")))
 
 
 def unused_limits(files: Iterable[str]) -> Iterator[UnitMismatch]:
@@ -31,10 +37,10 @@ def unused_limits(files: Iterable[str]) -> Iterator[UnitMismatch]:
         limits: dict[str, int] = {}
         for number, (code, _) in enumerate(lines[file], 1):
             match = _DEFINITION.match(code)
-            if match is not None and any(_LIMITS.fullmatch(word) for word in _WORD.findall(match[1].replace("_", " "))):
+            if match is not None and (_is_limit(match[1]) or unit_of_name(match[1]) is not None):
                 limits[match[1]] = number
         unused = [name for name in limits if times[name] == 1]
         for name in unused if 2 * len(unused) <= len(limits) else ():
             place = Place(file, limits[name], "", file)
-            message = f"nothing uses {name}: the check that it is for may be missing"
+            message = f"nothing uses {name}: the check or wait that it is for may be missing"
             yield UnitMismatch(place, message, name, "limit-unused")

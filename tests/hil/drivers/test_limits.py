@@ -1,4 +1,4 @@
-"""Limits that are defined and that nothing applies."""
+"""Limits, and times and other quantities, that are defined and that nothing applies."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 
 from hil.drivers.check import DriverFiles, check_files
 
-HEAD = "#define DUTY_MAX 950\n#define PAUSE_MS 20u\nint duty = 0;\nint level = 0;\n"
+HEAD = "#define DUTY_MAX 950\n#define PAUSE 20u\nint duty = 0;\nint level = 0;\n"
 USES = "int limit(int v) { return v > DUTY_MAX ? DUTY_MAX : v; }\n"
 
 
@@ -22,7 +22,7 @@ def told(folder: Path, text: str, name: str = "pump.c") -> list[tuple[str, int]]
 
 @pytest.mark.parametrize("limit", [
     "#define LEVEL_MIN 40", "# define LEVEL_LOW_MV (40L)", "#define REPLY_TIMEOUT_MS 0x28",
-    "#define OVERCURRENT_MA 3.5f",
+    "#define OVERCURRENT_MA 3.5f", "#define SETTLING_US 150", "#define COLD_TENTHS (-50)",
     "#define TRAVEL_LIMIT ((long)-8000)   // steps", "#define LEVEL_MIN 40  // LEVEL_MIN is in mm",
 ])  # fmt: skip
 def test_a_limit_that_nothing_applies_is_told(tmp_path: Path, limit: str) -> None:
