@@ -286,8 +286,8 @@ It is a note, because the direction that counts as positive may be chosen: of a 
         Severity.NOTE,
         "A limit or a time is defined, and nothing applies it.",
         """
-The value that the limit is for may be anything: the check that belongs to it is missing, or has been removed. So&
-true of the wait that a time is for.
+The value that the limit is for may be anything: the check that belongs to it is missing, or has been removed. A time
+that nothing uses is for a wait that is missing.
 
 The limit is a `#define` of a number in a C file. Its name says that it is one (`SPEED_MAX`, `POT_MIN`, `TRAVEL_LIMIT`,
 `REPLY_TIMEOUT_MS`, `BATTERY_LOW_MV`, `OVERCURRENT_MA`) or states a unit (`SETTLING_US`, `COLD_TENTHS`), and it occurs
