@@ -87,6 +87,42 @@ the element; `ring[in++] = c`, whose order C leaves to the compiler.
 """, "ISO C 5.1.2.3 p2", how="static",
     ),
     _rule(
+        "released-early", Severity.WARNING,
+        "A buffer is given back to an interrupt routine before it has been read.", """
+Now and then, the characters of the next message stand in this one.
+
+`Ready = 0; for (i = 0; i < n; i++) order[i] = Line[i];`. The routine writes `Line` only while `Ready` is 0. From the
+first statement on it may do so, and `main` reads what belongs to the next message. The same is true of the index at
+which the routine goes on: `n = Length; Length = 0; copy(Line, n);`.
+
+The check reads the source of a whole program without a kernel. It speaks if a routine writes the buffer only while a
+word has the value that `main` gives it (or at an index that `main` only ever sets to 0, without such a word), if `main`
+has read that word before, and if it reads the buffer later without having asked again. Not reported: a buffer that is
+filled on request (`Ready = 0; while (!Ready); use(Line);`), one of two buffers, what masks hold off.
+
+**Fix:** copy first, then give the buffer back: `for (...) order[i] = Line[i]; Ready = 0;`, both objects volatile.
+""", "ISO C 5.1.2.3 p2", how="static",
+    ),
+    _rule(
+        "cleared-late", Severity.WARNING,
+        "An object that an interrupt routine writes is cleared a while after it was read.", """
+Now and then, an order or a count is lost without a trace.
+
+`if (Order) { Obey(Order); Order = 0; }`. An order that comes while `Obey` works on the one before is cleared with it. A
+count is the same: `n = Count; Report(n); Count = 0;` loses what the routine counts during the report.
+
+The check reads the source of a whole program without a kernel. It speaks of a value that a routine stores if `main`
+waits between the read and the clear (a loop that asks a register, or what a routine changes; a delay), and of a sum or
+a count in a routine if its value is used and a loop or `sprintf` comes between. Not reported: a routine that writes
+only while the object, or another one that `main` writes, allows it (a handshake); a flag that is only set to constants;
+an object to which `main` gives more than one value; an index of a buffer; a count that is only held against a limit;
+what masks hold off over both.
+
+**Fix:** take the value and clear the object at once, masked, and work then:
+`DINT; order = Order; Order = 0; EINT; if (order) Obey(order);`.
+""", "ISO C 5.1.2.3 p2", how="static",
+    ),
+    _rule(
         "unmasked-long", Severity.NOTE,
         "main and an interrupt routine share a 32-bit scalar, and the interrupt is not masked.", """
 `main` and an interrupt routine share a 32-bit value, and `main` does not mask the interrupt while it uses it.

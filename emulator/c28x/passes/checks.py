@@ -11,12 +11,14 @@ from typing import Any
 
 from emulator.c28x.passes.anew import check_begun_anew
 from emulator.c28x.passes.begun_again import check_begun_again
+from emulator.c28x.passes.cleared import check_cleared
 from emulator.c28x.passes.copies import check_copies
 from emulator.c28x.passes.decided import check_decided
 from emulator.c28x.passes.drained import check_drained
 from emulator.c28x.passes.dropped import check_dropped
 from emulator.c28x.passes.entrances import check_entrances
 from emulator.c28x.passes.flow import FlowReport
+from emulator.c28x.passes.interrupted import sides_of
 from emulator.c28x.passes.likes import check_likes
 from emulator.c28x.passes.masked import check_masked
 from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
@@ -24,6 +26,7 @@ from emulator.c28x.passes.never_back import check_never_back
 from emulator.c28x.passes.null_tests import NullTests
 from emulator.c28x.passes.one_sided import check_one_sided
 from emulator.c28x.passes.published import check_published
+from emulator.c28x.passes.released import check_released
 from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.spans import check_spans
 from emulator.c28x.passes.stamps import Stamps
@@ -85,7 +88,11 @@ def check(
     check_one_sided(modules, reports)
     check_never_back(modules, reports)
     check_tables(modules, reports)
-    check_published(modules, reports)
+    sides = sides_of(modules, reports)
+    if sides is not None:
+        check_published(sides)
+        check_released(sides)
+        check_cleared(sides)
     check_dropped(modules, reports)
     check_likes(modules, reports)
     check_spans(modules, reports)
