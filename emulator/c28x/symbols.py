@@ -175,9 +175,19 @@ class Module:
 
 
 def library_headers(modules: Iterable[Module]) -> frozenset[str]:
-    """The headers with functions that stand beside files which were only brought: headers of libraries."""
+    """The headers with functions that belong to files which were only brought: headers of libraries.
+
+    They stand beside these files, or in the folder `include` beside their folder `source`.  The name of a header is as
+    the user wrote it, and may lead over a link; that of a brought file does not.
+    """
     modules = list(modules)
-    folders = {os.path.dirname(module.file) for module in modules if module.brought}
-    folders -= {os.path.dirname(module.file) for module in modules if not module.brought}
+    folders = {_folder(module.file) for module in modules if module.brought}
+    folders -= {_folder(module.file) for module in modules if not module.brought}
+    folders |= {os.path.join(os.path.dirname(f), "include") for f in folders if os.path.basename(f) == "source"}
     files = {f.where.file for module in modules for f in module.functions} - {module.file for module in modules}
-    return frozenset(file for file in files if os.path.dirname(file) in folders)
+    return frozenset(file for file in files if _folder(file) in folders)
+
+
+def _folder(file: str) -> str:
+    """The folder of a file, with links resolved."""
+    return os.path.dirname(os.path.realpath(file))

@@ -94,6 +94,7 @@ class Adc:
         "_latched",
         "_late",
         "_left_by",
+        "_mode_by",
         "_noise",
         "_noise_lsb",
         "_notes_collisions",
@@ -102,6 +103,7 @@ class Adc:
         "_plain_from",
         "_position",
         "_ppb",
+        "_prescale_by",
         "_pulses",
         "_reads",
         "_ready",
@@ -230,6 +232,9 @@ class Adc:
         self._flag_at = self._flags_then = self._overflows_then = -1
         self._socs.reset()
         self._ppb.reset()
+        #: The statements that chose the clock, and resolution and signal mode.
+        self._prescale_by: Cause | None = None
+        self._mode_by: Cause | None = None
         self._begun = 0  # SOCs that have begun a conversion
         self._extra_work_socs = 0xFFFF  # SOCs of which more is to be done when they begin: see `_extra_work`
         self._soc = self._last_soc = self._socs.every[0]
@@ -390,13 +395,16 @@ class Adc:
     def _check_use(self, n: int, acqps: int, powered: bool) -> None:
         """Report doubts about a conversion at the statement that forced it.
 
-        A hardware trigger has no statement.  Then the place is the write to ADCSOCxCTL.
+        A hardware trigger has no statement.  Then the place is the write to ADCSOCxCTL.  A wrong clock or mode has the
+        statement that chose it, if one did.
         """
         findings = self._findings
         by_hardware = self._by_hardware >> n & 1
         findings.cause = self._socs.settings.get(n) if by_hardware else self._cause
         try:
-            self._converter.check_use(findings, n, acqps, powered)
+            self._converter.check_use(
+                findings, n, acqps, powered, prescale_by=self._prescale_by, mode_by=self._mode_by
+            )
         finally:
             findings.cause = None
 
@@ -655,7 +663,13 @@ class Adc:
         self._configure()
 
     def _write_ADCCTL2(self, word: int, lanes: int = ALL) -> None:
+        before = self._ctl2.value
         self._ctl2.store(word, lanes)
+        changed = before ^ self._ctl2.value
+        if changed & 0xF:
+            self._prescale_by = self._findings.mark()
+        if changed & 0xC0:
+            self._mode_by = self._findings.mark()
         self._configure()
 
     def _write_configuration(self, register: Cell, word: int, lanes: int = ALL) -> None:

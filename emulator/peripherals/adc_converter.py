@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from random import Random
 from typing import Final
 
-from emulator.c28x.findings import Findings
+from emulator.c28x.findings import Cause, Findings
 from emulator.noise import Gaussian
 from emulator.signals import AnalogWire
 
@@ -91,8 +91,14 @@ class Converter:
         self._faults = tuple(each for each in self._faults if each is not by)
         self._simplify()
 
-    def check_use(self, findings: Findings, soc: int, acqps: int, powered: bool) -> None:
-        """Report errors that spoil the conversion that begins and that no chip detects."""
+    def check_use(
+        self, findings: Findings, soc: int, acqps: int, powered: bool, *, prescale_by: Cause | None,
+        mode_by: Cause | None,
+    ) -> None:  # fmt: skip
+        """Report errors that spoil the conversion that begins and that no chip detects.
+
+        `prescale_by` and `mode_by`: the statements that chose the clock, and resolution and signal mode; None: none.
+        """
         name, ctl2 = f"{self.name}.ADCSOC{soc}CTL", f"{self.name}.ADCCTL2"
         bits16 = bool(self._ctl2 & 0x40)
         shortest = ACQPS_MIN_16_BIT if bits16 else ACQPS_MIN_12_BIT
@@ -105,10 +111,10 @@ class Converter:
                             object=name, value=acqps)  # fmt: skip
         if prescale < PRESCALE_MIN:
             findings.report("adc-clock", f"{ctl2}.PRESCALE = {prescale} makes ADCCLK too fast (50 MHz): {PRESCALE_MIN} "
-                            "at least", object=ctl2, value=prescale)  # fmt: skip
+                            "at least", object=ctl2, value=prescale, cause=prescale_by)  # fmt: skip
         if self.differential != bits16:
             findings.report("adc-mode", f"{ctl2}: only 12 bits single-ended and 16 bits differential work",
-                            object=ctl2, value=self._ctl2)  # fmt: skip
+                            object=ctl2, value=self._ctl2, cause=mode_by)  # fmt: skip
 
     def force_codes(self, codes: Iterable[int] | Callable[[int], int] | None) -> None:
         """Yield `codes` (16 bits) whatever the volts: in order, or `codes(soc)`.  None: volts again."""

@@ -566,7 +566,7 @@ class CallChecker:
             elif finding.count > earlier.get(key, 0) and _leaves_guess(finding):
                 outcome.left_guess = True
             elif finding.how != "static" and finding.count > earlier.get(key, 0):
-                here = anchored(finding, self._files, self._others)
+                here = anchored(finding, self._others)
                 if here is not None:
                     outcome.findings[key_of(here)] = replace(here, details=(*here.details, called))
         if outcome.left_guess:  # it has changed what lies beside, too

@@ -19,15 +19,16 @@ _WIRED: Final = (
 _PARTS: Final = re.compile(r"sonar |AN of sonar |L3G4200D|XBee")
 
 
-def anchored(finding: Finding, files: Set[str], others: Set[str]) -> Finding | None:
-    """A finding at the innermost place of its call path that lies in `files`, or in one of their headers.
+def anchored(finding: Finding, others: Set[str]) -> Finding | None:
+    """A finding at the innermost place of its call path that lies in the named files, or in one of their headers.
 
-    `others` are the modules that the files need.  Returns None for a finding that occurs without the files.
+    `others` are the files of what the named files need, such as a library with its headers.  Where the finding itself
+    was seen stays as a detail.  Returns None for a finding that occurs without the named files.
     """
     if finding.place is None or finding.place.file not in others:
         return finding
     for depth, place in enumerate(finding.call_path):
-        if place.file in files:
+        if place.file not in others and not place.file.startswith("<"):
             seen = f"seen in {finding.place}"
             return replace(
                 finding, place=place, call_path=finding.call_path[depth:], details=(*finding.details, seen)

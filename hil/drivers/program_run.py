@@ -148,7 +148,7 @@ def _stale(build: Build, roles: Roles, for_s: float, *, asked: bool) -> list[Fin
             image.close()
         return whole
 
-    seen = (anchored(finding, build.files, build.others) for finding in watched(build, roles, run, asked=asked))
+    seen = (anchored(finding, build.others) for finding in watched(build, roles, run, asked=asked))
     return [finding for finding in seen if finding is not None]
 
 
@@ -165,7 +165,7 @@ def _cut(build: Build, roles: Roles, for_s: float) -> list[Finding]:
         with suppress(*STOPS):
             image.close()
 
-    seen = (anchored(finding, build.files, build.others) for finding in cut_messages(run))
+    seen = (anchored(finding, build.others) for finding in cut_messages(run))
     return [finding for finding in seen if finding is not None]
 
 
@@ -239,7 +239,7 @@ def _run(
     )  # fmt: skip
     for wrong in told:
         image.board.findings.report_at(wrong.place, wrong.rule, wrong.message, object=wrong.object, how="dynamic")
-    seen = [anchored(finding, build.files, build.others) for finding in image.board.findings if finding.how != "static"]
+    seen = [anchored(finding, build.others) for finding in image.board.findings if finding.how != "static"]
     # Behind the end only the poll that was waited for is the run's, and what its close shows.
     waited_for = ("endless-poll", "watchdog-in-vain")
     found = [f for f in seen if f and (f.rule in waited_for or not end < f.time_cycles < closed)]

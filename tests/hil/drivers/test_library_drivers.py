@@ -32,6 +32,13 @@ static inline void Adc_powerUp(unsigned long base)
     EDIS;
 }
 
+static inline void Adc_setClock(unsigned long base, unsigned int divider)
+{
+    EALLOW;
+    WORD(base + 1) = (WORD(base + 1) & 0xFFF0u) | divider;
+    EDIS;
+}
+
 static inline void Adc_convertAt(unsigned long base, int soc, int trigger, enum Input input)
 {
     unsigned long at = base + 0x10 + 2 * soc;
@@ -168,14 +175,23 @@ void main(void)
 """
 
 
-def found(tmp_path: Path, program: str) -> list[Finding]:
-    """The errors and warnings of a program on that library."""
-    folder = tmp_path / "ports"
-    folder.mkdir(parents=True)
-    (folder / "ports.h").write_text(HEADER, encoding="utf-8")
-    (folder / "ports.c").write_text(SOURCE, encoding="utf-8")
+def found(tmp_path: Path, program: str, layout: str = "") -> list[Finding]:
+    """The errors and warnings of a program on that library.
+
+    `layout` says where the library's header is: beside its C file, there behind a link ("link"), or in `include` beside
+    `source` ("include").
+    """
+    folder = tmp_path / ("far" if layout == "link" else "ports")
+    here, there = (folder / "include", folder / "source") if layout == "include" else (folder, folder)
+    here.mkdir(parents=True)
+    there.mkdir(exist_ok=True)
+    (here / "ports.h").write_text(HEADER, encoding="utf-8")
+    (there / "ports.c").write_text(SOURCE, encoding="utf-8")
+    if layout == "link":
+        here = tmp_path / "ports"
+        here.symlink_to(folder, target_is_directory=True)
     (tmp_path / "program.c").write_text(program.replace("TURN", ";"), encoding="utf-8")
-    checked = check_files(DriverFiles([tmp_path / "program.c"], include=[folder], seconds=0.004))
+    checked = check_files(DriverFiles([tmp_path / "program.c"], include=[here], seconds=0.004))
     return [finding for finding in checked.findings if rule_of(finding.rule).severity.value != "note"]
 
 
@@ -240,12 +256,37 @@ def test_a_compare_value_beyond_the_period_is_told_at_the_call(tmp_path: Path) -
     assert (finding.rule, finding.place.line) == ("compare-above-period", line_of(program, "Pwm_compare("))
 
 
-def test_what_happens_in_a_header_of_a_library_is_told_at_the_call(tmp_path: Path) -> None:
+@pytest.mark.parametrize("layout", ["", "link", "include"])
+def test_what_happens_in_a_header_of_a_library_is_told_at_the_call(tmp_path: Path, layout: str) -> None:
     program = PROGRAM.replace("TURN", "if (Sample < 5000u) Ticks = Share(Ticks, Sample - Sample);")
+    (finding,) = [f for f in found(tmp_path, program, layout) if f.rule == "division-by-zero"]
+    assert finding.place is not None
+    assert finding.place.file == str(tmp_path / "program.c")
+    assert finding.place.line == line_of(program, "Share(Ticks")
+    assert finding.call_path[0] == finding.place
+    assert any("ports.h" in detail for detail in finding.details)
+
+
+def test_a_header_of_ones_own_is_no_library(tmp_path: Path) -> None:
+    (tmp_path / "own").mkdir()
+    header = """#include "ports.h"
+static inline unsigned int Part(unsigned int all, unsigned int of)
+{
+    return Share(all, of);
+}
+"""
+    (tmp_path / "own" / "own.h").write_text(header, encoding="utf-8")
+    program = PROGRAM.replace('"ports.h"', '"own/own.h"').replace("TURN", "Ticks = Part(Ticks, Sample - Sample);")
     (finding,) = [f for f in found(tmp_path, program) if f.rule == "division-by-zero"]
     assert finding.place is not None
-    assert finding.place.line == line_of(program, "Share(Ticks")
-    assert any("ports.h" in detail for detail in finding.details)
+    assert (Path(finding.place.file).name, finding.place.line) == ("own.h", line_of(header, "Share("))
+
+
+def test_a_wrong_clock_of_the_adc_is_told_where_it_is_set(tmp_path: Path) -> None:
+    program = PROGRAM.replace("    Adc_convertAt(", "    Adc_setClock(ADC_A, 2u);\n    Adc_convertAt(")
+    (finding,) = found(tmp_path, program)
+    assert finding.place is not None
+    assert (finding.rule, finding.place.line) == ("adc-clock", line_of(program, "Adc_setClock("))
 
 
 ELSEWHERE = """#include "F28x_Project.h"
