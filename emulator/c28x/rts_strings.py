@@ -76,17 +76,20 @@ class Strings(Mathematics):
         self._runtime.touch_block(source, n, False)
         self._runtime.touch_block(to, n, True)
 
-    def _check_size(self, function: str, verb: str, p: Pointer, n: int, other: Pointer | None) -> None:
-        """Report a block that extends outside of its object, on either side."""
+    def _check_size(
+        self, function: str, verb: str, p: Pointer, n: int, other: Pointer | None, why: str = ""
+    ) -> None:  # fmt: skip
+        """Report a block that extends outside of its object, on either side.  `why`: where its size comes from."""
         obj = p.obj
         self._runtime.examine_block(p, function, "read" if verb == "reads" else "written")
         if obj is None or (p.offset >= 0 and p.offset + n <= obj.words):
             return
         path = obj.declaration.path
         outside = p.offset + n - obj.words if p.offset >= 0 else -p.offset
-        octets = any(_counted_in_octets(side, n) for side in (p, other))
+        octets = not why and any(_counted_in_octets(side, n) for side in (p, other))
         rule = "memcpy-octets" if octets else "memcpy-outside"
-        why = f"{n} counts octets; in 16-bit words it is {n // 2}" if octets else "sizes count 16-bit words here"
+        if not why:
+            why = f"{n} counts octets; in 16-bit words it is {n // 2}" if octets else "sizes count 16-bit words here"
         hit = self._runtime.memory.neighbour(obj.base + (obj.words if p.offset >= 0 else p.offset))
         self._runtime.findings.report(
             rule, f"{function} of {n} words {verb} {outside} words outside {path} ({obj.words} words): {why}",
@@ -145,8 +148,9 @@ class Strings(Mathematics):
         if to is None:
             self._runtime.findings.report("null-dereference", f"{name} was given NULL")
             return to
-        self._check_size(name, "writes", to, at + len(characters), None)
         words = at + len(characters)
+        why = "" if name == "strncpy" else f"the text has {words} characters with its NUL"
+        self._check_size(name, "writes", to, words, None, why)
         if words > characters_left(to):
             path, room = _path(to), characters_left(to)
             message = f"{name} writes {words} words at {path}, a member with {room} words from there"

@@ -55,8 +55,8 @@ class Builder:
         self.scope: dict[str, Symbol] = {}
         #: Locals of inner blocks that have ended.
         self.ended: dict[str, Variable] = {}
-        #: Names declared in the innermost block so far.
-        self.declared: set[str] = set()
+        #: Names declared in the innermost block so far, at file scope in the whole file: where they were first.
+        self.declared: dict[str, Where] = {}
         self.depth = 0
         self.loops = 0
         #: How many `else if` enclose the statement: in generated code each one is a nested block.
@@ -101,8 +101,8 @@ class Builder:
         """A new local, in scope from here to the end of the block.  Raises SourceError if the block has it already."""
         known = self.scope.get(name)
         if known is not None and (not self.depth or name in self.declared):
-            raise SourceError.at(where, f"{name} is declared twice in one block of {self.function.name}")
-        self.declared.add(name)
+            raise self._twice(name, where)
+        self.declared[name] = where
         declaration = Declaration(
             name, ctype, self.module.short, where.file, where.line, self.function.name, where.column
         )  # fmt: skip
@@ -116,10 +116,18 @@ class Builder:
         self.function.locals.append(variable)
         return variable
 
+    def _twice(self, name: str, where: Where) -> SourceError:
+        """The error about a second declaration of a name in one block; a parameter belongs to the outermost one."""
+        message = f"{name} is declared twice in one block of {self.function.name}"
+        known, first = self.scope.get(name), self.declared.get(name)
+        if first is None and isinstance(known, Variable):
+            first = Where(where.file, known.declaration.line, known.declaration.column)
+        return SourceError.at(where, message if first is None else f"{message}, first at {first}")
+
     def declare_static(self, name: str, ctype: CType, where: Where) -> Variable:
         """A new `static` local: an object of the file, visible in this block.  Raises SourceError as `declare` does."""
         if name in self.declared:
-            raise SourceError.at(where, f"{name} is declared twice in one block of {self.function.name}")
+            raise self._twice(name, where)
         declared = Declaration(
             name, ctype, self.module.short, where.file, where.line, self.function.name, where.column
         )  # fmt: skip
@@ -127,7 +135,7 @@ class Builder:
         namesakes = self._static_namesakes[name]
         self._static_namesakes[name] += 1
         variable.alias = f"{self.function.name}__{name}" + (f"__{namesakes}" if namesakes else "")
-        self.declared.add(name)
+        self.declared[name] = where
         self.scope[name] = variable
         self.module.variables.append(variable)
         return variable
@@ -201,7 +209,7 @@ class Builder:
         if loop and self.loops == LOOP_NESTING:
             raise SourceError.at(where, f"more than {LOOP_NESTING} loops nested within each other: write a function")
         outer, declared = dict(self.scope), self.declared
-        self.declared = set()
+        self.declared = {}
         self.depth += 1
         self.loops += loop
         with self.collect() as statements:

@@ -132,6 +132,20 @@ def test_a_block_names_what_lies_behind_its_target() -> None:
     assert only(shop, "memcpy-outside").details == ("what lies there: drv.flag",)
 
 
+@pytest.mark.parametrize(
+    ("call", "why"),
+    [
+        ('sprintf(text, "%d of %d", 12, 34)', "the text has 9 characters with its NUL"),
+        ('strcpy(text, "overload")', "the text has 9 characters with its NUL"),
+        ("memset(text, 0, 9)", "sizes count 16-bit words here"),
+    ],
+)
+def test_a_text_that_is_too_long_is_no_matter_of_sizes(call: str, why: str) -> None:
+    shop = Workshop(f"from emulator.c28x.rts import sprintf\ntext: array[char, 8]\ndef f() -> void:\n    {call}\n")
+    shop.f()
+    assert only(shop, "memcpy-outside").message.endswith(f"(8 words): {why}")
+
+
 def test_the_element_that_was_never_written_is_named() -> None:
     source = """
 class P(struct):

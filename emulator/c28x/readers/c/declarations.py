@@ -181,7 +181,7 @@ class CDeclarationReader:
         where = node.coord
         known = self.module.symbols.get(name)
         if known is not None and not isinstance(known, Variable):
-            raise SourceError.at(where, f"{name} is declared again as something else")
+            raise self._otherwise(name, where)
         if known is not None:
             if isinstance(ctype, Unsized) and isinstance(known.ctype, ArrayType):
                 ctype = known.ctype
@@ -199,6 +199,7 @@ class CDeclarationReader:
                 variable = Variable(declared, ctype, "global")
                 self.module.symbols[name] = variable
                 self.module.own.append(name)
+                self.b.declared.setdefault(name, where)
         if isinstance(node.type, c_ast.TypeDecl):
             self.declared_as(variable, node.type)
         qualifiers = {word for word in ("const", "volatile") if self.types.qualified(node, word)}
@@ -267,7 +268,7 @@ class CDeclarationReader:
         where = node.coord
         known = self.module.symbols.get(name)
         if known is not None and not isinstance(known, Function):
-            raise SourceError.at(where, f"{name} is declared again as something else")
+            raise self._otherwise(name, where)
         if known is not None and self._makes_way(known, prototype, where, defines=defines):
             known = None
         if known is not None:
@@ -288,7 +289,15 @@ class CDeclarationReader:
         )  # fmt: skip
         self.module.symbols[name] = function
         self.linkage.declared[name] = where
+        self.b.declared.setdefault(name, where)
         return function
+
+    def _otherwise(self, name: str, where: Where) -> SourceError:
+        """The error about a declaration of what is something else already."""
+        first = self.b.declared.get(name)
+        return SourceError.at(
+            where, f"{name} is declared again as something else" + (f", first at {first}" if first else "")
+        )
 
     def parameters(self, name: str, prototype: Prototype, where: Where) -> list[Variable]:
         """The parameters of a function."""

@@ -372,8 +372,9 @@ class CTypeReader:
         scope = self.b.scope if self.b.depth or self.b.function.name != "file scope" else self.b.module.symbols
         known = scope.get(name) if scope is self.b.module.symbols or name in self.b.declared else None
         if known is not None and known != symbol:
-            raise SourceError.at(where, f"{name} is declared twice")
-        self.b.declared.add(name)
+            first = self.b.declared.get(name)
+            raise SourceError.at(where, f"{name} is declared twice" + (f", first at {first}" if first else ""))
+        self.b.declared.setdefault(name, where)
         scope[name] = symbol
 
     def typedef(self, node: c_ast.Typedef) -> None:
