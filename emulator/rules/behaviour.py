@@ -313,6 +313,9 @@ else
     value = target;
 ```
 
+A value that lasts and takes a share of the difference does the same where it takes it with the wrong sign:
+`zero -= (reading() - zero) / 16` moves it away from `reading()` faster and faster.
+
 **Fix:** step towards the target.
 """, how="static",
     ),
@@ -397,12 +400,14 @@ With `--silence`, `hil check` runs a whole program once more. When the usual tim
 Then the program gets one of its own messages again, the last one of the usual length: three times whole, with pauses of
 0.6 and 1.2 s; once only its first half; and after 0.6 s three times whole. Something that ran for each whole message
 before, when it was complete, does not run for the first one after the half. The finding is at what first
-runs for a character of that one and did not for the same character before; its details say what did not run.
+runs for a character of that one and did not for the same character before, or where characters are kept; its details
+say what did not run.
 
 A start character that is known in any state is right, and so is a limit for the time between two characters. A limit
 of more than 0.6 s is reported: accept it in the source. A line of text that ends with CR or LF may lose the line behind
-the cut one, but no later one. Nothing is said about messages that a program does not take when they are sent again,
-like an answer that it has not asked for.
+the cut one, but no later one; behind a line that your own run does not finish it may lose none, and that line is then
+the one that is sent. Nothing is said about messages that a program does not take when they are sent again, like an
+answer that it has not asked for.
 
 **Fix:** give the rest of a message a limit of some characters' time, and begin anew behind it. Or use a start character
 that occurs nowhere else, and begin anew whenever it comes.

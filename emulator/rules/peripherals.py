@@ -1034,7 +1034,7 @@ at the statement that made both accesses, the write and the refused one.
 Without the part, or with a broken wire, the program never goes on: no control, no answer, no message about the fault.
 
 The finding is made when a run ends in a loop that repeats a transaction on the I2C until it works, which it has done
-for half of the run, and no address was acknowledged. It is at the loop.
+for the last quarter of a second, or for half of a shorter run, and no address was acknowledged. It is at the loop.
 
 **Fix:** limit the number of attempts, go on without the part, and report the fault.
 """,

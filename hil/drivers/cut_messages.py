@@ -11,6 +11,9 @@ Not modelled
     Messages that a program only takes as an answer, or only once: what it does with them again is nothing, and so
     nothing is told.  A line of text that ends with CR or LF may lose the line after a cut one, because a person or
     a master ends the remains with an empty line; it must understand the next ones.
+
+If the run itself has a line of text that nobody finishes, and then another line, the program is meant to cope with it.
+Then these two are what is sent, and the second one must be understood.
 """
 
 from __future__ import annotations
@@ -40,6 +43,8 @@ _TAKEN: Final = 150 * CYCLES_PER_MS
 _LENGTHS: Final = range(2, 65)
 #: So many messages show what the program usually gets.
 _MESSAGES: Final = 2
+#: In a run with a line that is not finished, at least this part of the messages end with CR or LF.
+_FINISHED: Final = 0.75
 #: Characters of one message are not farther apart than this many of their own length.
 _APART: Final = 3
 #: Pauses before whole messages ahead of the cut, before the half, and before whole ones behind it.
@@ -109,6 +114,45 @@ def _usual(messages: list[list[SerialFrame]]) -> list[SerialFrame]:
     return next(message for message in reversed(messages) if len(message) == length) if length > 1 else []
 
 
+def _text(message: list[SerialFrame]) -> bytes:
+    return bytes(frame.data & 0xFF for frame in message)
+
+
+def _ends_line(message: list[SerialFrame]) -> bool:
+    return message[-1].data in b"\r\n"
+
+
+def _unfinished(messages: list[list[SerialFrame]]) -> tuple[list[SerialFrame], list[SerialFrame]] | None:
+    """A line of text that is not finished, and the line behind it, which the run also has behind a finished one.
+
+    Somebody who types slowly finishes few messages: they are the parts of lines.
+    """
+    finished = sum(map(_ends_line, messages))
+    behind = {_text(message) for before, message in pairwise(messages) if _ends_line(before) and _ends_line(message)}
+    for cut, message in pairwise(messages):
+        if not _ends_line(cut) and _text(message) in behind and finished >= _FINISHED * len(messages):
+            return cut, message
+    return None
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """A message, and what is sent of one that is cut off before it; `own`: the run itself has both."""
+
+    cut: list[SerialFrame]
+    message: list[SerialFrame]
+    own: bool = False
+
+    @classmethod
+    def of(cls, messages: list[list[SerialFrame]]) -> _Plan | None:
+        """What to send, when these were the messages of a line; None: nothing."""
+        found = _unfinished(messages)
+        if found is not None:
+            return cls(*found, own=True)
+        message = _usual(messages)
+        return cls(message[: len(message) // 2], message) if message else None
+
+
 class CutTrial:
     """Sends messages to one image, and judges what its program does with them."""
 
@@ -121,8 +165,8 @@ class CutTrial:
         }
         self._heard: dict[str, list[SerialFrame]] = {name: [] for name in self._lines}
         self._ends = [line.sent.connect(self._heard[name].append) for name, line in self._lines.items()]
-        #: The lines that are still to be tried, with a message; None: the usual time is not over.
-        self._waiting: list[tuple[str, list[SerialFrame]]] | None = None
+        #: The lines that are still to be tried, with what to send; None: the usual time is not over.
+        self._waiting: list[tuple[str, _Plan]] | None = None
         self._until = 0
 
     def until(self, usual: int) -> int:
@@ -131,31 +175,30 @@ class CutTrial:
         if now < usual:
             return usual
         if self._waiting is None:
-            chosen = {name: _usual(messages_of(frames)) for name, frames in self._heard.items()}
-            self._waiting = [(name, message) for name, message in chosen.items() if message]
+            chosen = {name: _Plan.of(messages_of(frames)) for name, frames in self._heard.items()}
+            self._waiting = [(name, plan) for name, plan in chosen.items() if plan is not None]
             for line in self._board.serial_pins.values():
                 line.disturb(lambda frame: ())
         if now >= self._until:
             if not self._waiting:
                 return now
-            name, message = self._waiting.pop(0)
-            self._try(name, message)
+            name, plan = self._waiting.pop(0)
+            self._try(name, plan)
         return self._until
 
-    def _try(self, name: str, message: list[SerialFrame]) -> None:
+    def _try(self, name: str, plan: _Plan) -> None:
         sent: list[SentMessage] = []
         half: list[SentMessage] = []
-        cut = message[: len(message) // 2]
         at = self._board.clock.now
-        plan = [
-            *((pauses, message, sent) for pauses in _BEFORE), (1, cut, half),
-            *((pauses, message, sent) for pauses in _AFTER),
+        steps = [
+            *((pauses, plan.message, sent) for pauses in _BEFORE), (1, plan.cut, half),
+            *((pauses, plan.message, sent) for pauses in _AFTER),
         ]  # fmt: skip
-        for pauses, characters, into in plan:
+        for pauses, characters, into in steps:
             at += pauses * PAUSE
             at = self._send(name, characters, at, into)
         # Behind everything that happens at that time, the result is known.
-        self._board.clock.schedule(at + 1, partial(self._judge, name, message, cut, sent))
+        self._board.clock.schedule(at + 1, partial(self._judge, name, plan, sent))
         self._until = at + 2
 
     def _send(self, name: str, characters: list[SerialFrame], at: int, into: list[SentMessage]) -> int:
@@ -181,7 +224,7 @@ class CutTrial:
         clock.schedule(end + _TAKEN, taken)
         return end + _TAKEN
 
-    def _judge(self, name: str, message: list[SerialFrame], cut: list[SerialFrame], sent: list[SentMessage]) -> None:
+    def _judge(self, name: str, plan: _Plan, sent: list[SentMessage]) -> None:
         before, after = sent[: len(_BEFORE)], sent[len(_BEFORE) :]
         idle = set[CountedPlace]().union(*(each.idle for each in sent))
         takes = set.intersection(*(each.complete for each in before)) - idle
@@ -190,19 +233,24 @@ class CutTrial:
         if not lost:
             return
         again = next((n for n, each in enumerate(after) if lost <= each.complete), 0)
-        if again and message[-1].data in b"\r\n":
+        if again and _ends_line(plan.message) and not plan.own:
             return
         usual = [set[CountedPlace]().union(*same) for same in zip(*(each.characters for each in before), strict=True)]
-        other = (ran - known - idle for ran, known in zip(after[0].characters, usual, strict=True))
-        instead = next(filter(None, other), lost)
+        other = (ran - known - idle for ran, known in zip(after[0].characters[:-1], usual, strict=False))
+        # A receiver that does the same for each character but the last one goes wrong where it keeps them.
+        keeps = usual[0] - usual[-1] - idle
+        instead = next(filter(None, other), keeps or lost)
         place, missing = _place(self._image, instead), _place(self._image, lost)
-        pause, text = PAUSE // CYCLES_PER_MS, " ".join(f"{frame.data:02x}" for frame in message)
+        pause, text = PAUSE // CYCLES_PER_MS, _text(plan.message).hex(" ")
         count = again or len(after)
+        cut = (
+            f"the line {_text(plan.cut).decode('latin-1')!r} that the run itself does not finish" if plan.own
+            else f"a message that ended after {len(plan.cut)} of {len(plan.message)} characters"
+        )  # fmt: skip
         lost_ones = "the next whole one is" if count == 1 else f"the next {count} whole ones are"
         self._board.findings.report_at(
             place, "cut-message",
-            f"after a message that ended after {len(cut)} of {len(message)} characters, and {pause} ms of silence, "
-            f"{lost_ones} not understood",
+            f"after {cut}, and {pause} ms of silence, {lost_ones} not understood",
             object=f"{name}.SCIRXBUF", how="dynamic",
             details=(
                 f"tried after the usual time, with the message {text} on a line that is silent otherwise; "

@@ -44,6 +44,9 @@ from hil.testing.stops import STOPS, announced
 _STACK_WORDS: Final = 1024
 #: After this many addresses in a row without acknowledge, the part is missing and not only busy.
 _REFUSALS: Final = 8
+#: A loop that repeats something until it succeeds has no limit if it has lasted so long, or half of a shorter run.
+#: CHOICE: longer than parts take to wake up or to write.
+_RETRYING: Final = SYSCLK_HZ // 4
 #: A `main` that uses at least this part of the CPU's time does more than poll.
 _BUSY: Final = 0.01
 #: The run that follows ages may be longer by this factor.
@@ -58,11 +61,11 @@ _OBSERVED: Final = 2 * RUN
 class EndPosition:
     """Where a `main` stood at the end of its time; empty if it returned.
 
-    It holds the places, innermost first, and the loops without a limit that `main` was in for half of its run.
+    It holds the places, innermost first, and the loops without a limit that `main` has been in for `_RETRYING`.
     """
 
     frames: list[Place] = field(default_factory=list)
-    loops: set[tuple[str, int]] | None = None
+    loops: set[tuple[str, int]] = field(default_factory=set)
 
 
 class _TimeUp(Exception):
@@ -267,7 +270,7 @@ def _run(
 def _retried(image: Image, stood: EndPosition, roles: Roles) -> None:
     """Report a transaction that the program repeats until it succeeds, and that no device answers."""
     for letter, i2c in image.board.i2c.items() if stood.loops else ():
-        found = retried(stood.loops or (), f"I2c{letter.lower()}Regs", roles) if i2c.refusals >= _REFUSALS else None
+        found = retried(stood.loops, f"I2c{letter.lower()}Regs", roles) if i2c.refusals >= _REFUSALS else None
         if found is not None:
             function, loop = found
             at = loop.where
@@ -295,23 +298,24 @@ def _bare(
     clock, position, places = image.board.clock, image.board.findings.position, image.board.findings.places
     end = until()
     step = max(1, min((end - clock.now) // 50, SYSCLK_HZ // 50))
-    half = (clock.now + end) // 2
+    since: dict[tuple[str, int], int] = {}
+    enough = min((end - clock.now) // 2, _RETRYING)
     latest = end + image.linked.runtime.poll_limit + step
     computed_before, executed_before = computed(image), clock.now - clock.waited
 
     def look() -> None:
-        nonlocal computed_before, executed_before
+        nonlocal computed_before, executed_before, since
         end = until()
         budget.spend(computed(image) - computed_before)
         executed = clock.now - clock.waited
         idle = executed - executed_before < step * _BUSY
         computed_before, executed_before = computed(image), executed
-        if clock.now >= half:
-            around = retries([places[at] for at, _ in position.frames()], roles.functions)
-            stood.loops = around if stood.loops is None else stood.loops & around
+        around = retries([places[at] for at, _ in position.frames()], roles.functions)
+        since = {loop: since.get(loop, clock.now) for loop in around}
         polls = idle and places[position.innermost()].kind == "poll"
         if budget.over or clock.now >= (latest if polls else end):
             stood.frames = [places[at] for at, _ in position.frames()]
+            stood.loops = {loop for loop, begun in since.items() if clock.now - begun >= enough}
             if image.board.connections is not None:
                 image.board.connections.started_up = in_last_loop(stood.frames, main)
             raise _TimeUp

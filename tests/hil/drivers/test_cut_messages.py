@@ -131,6 +131,17 @@ class Console(Dimmer):
     text = True
 
 
+class Abandoned(Console):
+    """The same, by somebody who leaves one line unfinished."""
+
+    def solder(self) -> None:
+        """Send the orders, and part of one between two of them."""
+        super().solder()
+        pacer = LinePacer(self.clock, self.serial_pins[85], 115200)
+        self.clock.after(365 * CYCLES_PER_MS, lambda: pacer.send(b"9"))
+        self.clock.after(385 * CYCLES_PER_MS, lambda: pacer.send(b"627\r"))
+
+
 def told(folder: Path, text: str, board: type[Board] = Dimmer, *, silence: bool = True) -> list[Finding]:
     (folder / "drv.c").write_text(text, encoding="utf-8")
     wanted = DriverFiles([folder / "drv.c"], calls=1, board=board, seconds=0.4, silence=silence, board_named=True)
@@ -169,6 +180,30 @@ def test_a_line_may_lose_the_line_after_a_cut_one_but_no_more(tmp_path: Path) ->
     stuck = text.replace("END", "if (Filled == 3) Filled = 0;")
     (finding,) = told(tmp_path, stuck, Console)
     assert "the next 3 whole ones are not understood" in finding.message
+
+
+def test_behind_a_line_that_the_run_does_not_finish_the_next_one_has_to_be_understood(tmp_path: Path) -> None:
+    text = PROGRAM.replace("RECEIVE", LINE).replace("LONG", "").replace("END", "Filled = 0;")
+    (finding,) = told(tmp_path, text.replace("IDLE", ""), Abandoned)
+    assert finding.message.startswith("after the line '9' that the run itself does not finish, and 600 ms of silence")
+    assert finding.place is not None
+    assert text.splitlines()[finding.place.line - 1].strip() == "if (Filled < 8)"
+    assert not told(tmp_path, text.replace("IDLE", LAPSED), Abandoned)
+
+
+def test_somebody_who_types_slowly_leaves_no_line_unfinished(tmp_path: Path) -> None:
+    class Typist(Console):
+        """Types two more orders, with 5 ms between the digits."""
+
+        def solder(self) -> None:
+            """Send the orders."""
+            super().solder()
+            pacer = LinePacer(self.clock, self.serial_pins[85], 115200)
+            for n, key in enumerate(b"527\r627\r"):
+                self.clock.after((358 + 5 * n) * CYCLES_PER_MS, lambda key=key: pacer.send(bytes([key])))
+
+    text = PROGRAM.replace("RECEIVE", LINE).replace("LONG", "").replace("END", "Filled = 0;").replace("IDLE", "")
+    assert not told(tmp_path, text, Typist)
 
 
 def test_what_is_taken_only_once_shows_nothing(tmp_path: Path) -> None:

@@ -263,6 +263,21 @@ WAYS = [
     # A threshold that is lowered when it is passed follows nothing; nor does a value that turns at its limit.
     ("void f(void) { if (wanted > reference + STEP) reference -= STEP; else wanted = 0; }", ""),
     ("void f(void) { if (reference > wanted + STEP) reference += STEP; else if (wanted > 3) reference = 0; }", ""),
+    # A share of the difference.
+    ("void f(void) { reference -= (wanted - reference) / 8; }",
+     "reference follows wanted: reference -= (wanted - reference) / 8 goes away from it"),
+    ("int Read(void) { return wanted; } void f(void) { if (wanted < 9) reference += (reference - Read()) >> 3; }",
+     "reference follows Read(...): reference += reference - Read(...) >> 3 goes away from it"),
+    ("void f(Ramp *r, float to) { float error = to - r->value; r->value -= 0.1f * error; }",
+     "r->value follows to: r->value -= 0.1 * error goes away from it"),
+    ("void f(void) { reference += (wanted - reference) / 8; }", ""),
+    ("void f(void) { reference -= (reference - wanted) / 8; }", ""),
+    ("void f(Ramp *r, float to) { float error = r->value - to; r->value -= 0.1f * error; }", ""),
+    # A local is computed once; a constant is not followed; an extrapolation takes what it is compared with along.
+    ("int f(int y) { y += (y - wanted) / 2; return y; }", ""),
+    ("void f(void) { reference += (reference - 100) / 2; }", ""),
+    ("void f(void) { int now = reference; reference += (reference - wanted) / 2; wanted = now; }", ""),
+    ("void f(Ramp *r) { r->value -= (r->rise - r->value) * 2; }", ""),
 ]  # fmt: skip
 
 

@@ -203,17 +203,26 @@ void main(void)"""
     ("Try();\n    while (GpioDataRegs.GPADAT.bit.GPIO19 == 0)\n        DELAY_US(10);", False),  # for a button
 ])  # fmt: skip
 def test_a_transaction_is_repeated_without_a_limit(tmp_path: Path, loop: str, told_it: bool) -> None:
+    found = retries(tmp_path, loop, "", 0.05)
+    assert [line.strip() for line in found] == [loop.splitlines()[0]] * told_it
+
+
+@pytest.mark.parametrize(("begins", "told_it"), [(0.33, True), (0.5, False)])
+def test_it_is_known_after_a_while_whenever_it_begins(tmp_path: Path, begins: float, told_it: bool) -> None:
+    waits = f"for (tries = 0; tries < {begins * 1000:.0f}; tries++)\n        DELAY_US(1000);\n    "
+    assert bool(retries(tmp_path, "while (!Try())\n        ;", waits, 0.6)) == told_it
+
+
+def retries(tmp_path: Path, loop: str, before: str, seconds: float) -> list[str]:
+    """The lines with an `endless-retry`, of a program with `loop` around `Try()`."""
     begin = REFUSED.index("    I2caRegs.I2CCNT = 1;")
     end = REFUSED.index("    for (;;) {")
-    text = f"{REFUSED[:begin]}    {loop}\n{REFUSED[end:]}".replace("void main(void)", ATTEMPT)
+    text = f"{REFUSED[:begin]}    {before}{loop}\n{REFUSED[end:]}".replace("void main(void)", ATTEMPT)
     text = text.replace("InitSysCtrl();", "Uint16 tries = 0;\n    InitSysCtrl();")
     (tmp_path / "drv.c").write_text(text, encoding="utf-8")
-    wanted = DriverFiles([tmp_path / "drv.c"], calls=1, board=load("bare"), seconds=0.05)
+    wanted = DriverFiles([tmp_path / "drv.c"], calls=1, board=load("bare"), seconds=seconds)
     findings = [f for f in check_files(wanted).findings if f.rule == "endless-retry"]
-    lines = text.splitlines()
-    assert [lines[f.place.line - 1].strip() for f in findings if f.place is not None] == [
-        loop.splitlines()[0]
-    ] * told_it  # fmt: skip
+    return [text.splitlines()[f.place.line - 1] for f in findings if f.place is not None]
 
 
 #: A node that sends 0x123 each millisecond, and acknowledges.
