@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
+from emulator.c28x.findings import Cause
 from emulator.clock import Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.registers.core import ALL, LOW
@@ -51,6 +52,8 @@ class CpuTimer:
         self._event: ClockEvent | None = None
         #: SYSCLK cycles of one period of the clock that is counted.
         self._tick = 1
+        #: The statement that has set the period; None: none.
+        self.period_by: Cause | None = None
         self.reset()
 
     def reset(self) -> None:
@@ -79,6 +82,11 @@ class CpuTimer:
             self._psc = (self._psc // self._tick + 1) * cycles - 1
             self._tick = cycles
             self._plan()
+
+    @property
+    def period_cycles(self) -> int:
+        """SYSCLK cycles between two underflows; 0: the timer stands."""
+        return (self._prd.value + 1) * (self._reload() + 1) if self._running() else 0
 
     # --- counters ----------------------------------------------------------------------------------------------------
 
@@ -191,6 +199,7 @@ class CpuTimer:
         # Takes effect at the next reload.
         self._sync()
         self._prd.store(word, lanes)
+        self.period_by = self._cpu.findings.mark()
 
     def _read_TCR(self) -> int:
         tcr = self._tcr.value

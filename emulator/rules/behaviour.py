@@ -204,6 +204,10 @@ It is reported for routines that run steadily, for statements that every run exe
 another period), and for functions that nothing else calls. Times that are no period by their name (`_TAU_`, `_FILTER_`,
 `_DELAY_`, `_TIMEOUT_`) are not meant.
 
+A constant that is handed to a function, which computes the period of a CPU timer from it and from nothing else that
+changes (`startTimer(1, SAMPLE_HZ)`), is told where it is handed on if that timer is slower than it says, by any factor:
+a prescaler of 1 that divides by 2. A faster timer may be divided by the program.
+
 **Fix:** compute the timer's period from the constant, or correct the timer or the name.
 """,
     ),

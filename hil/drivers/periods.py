@@ -3,6 +3,10 @@
 `CONTROL_S 0.01` says that a control runs each 10 ms.  Where an interrupt routine always divides by it, or multiplies
 with it, the routine has to run so often.  `tickMs++` says that a routine runs each millisecond.  A difference by a
 power of ten is told: the timer or the name changed, and the other one did not.
+
+A constant that is handed to a function from which alone the function computes the period of a CPU timer
+(`startTimer(1, SAMPLE_HZ)`) says how often that timer underflows.  A slower timer is told: a program can divide a
+faster one.
 """
 
 from __future__ import annotations
@@ -18,11 +22,15 @@ from emulator.c28x.passes.begun_again import is_number, step_of
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
+    AddressOf,
+    Assign,
     Binary,
     Break,
     Call,
     Const,
     Continue,
+    Declare,
+    Expr,
     Function,
     If,
     LeaveSwitch,
@@ -31,7 +39,7 @@ from emulator.c28x.tree import (
     Variable,
     Where,
 )  # fmt: skip
-from emulator.c28x.tree_queries import assigned, bare, parts, roots, statements
+from emulator.c28x.tree_queries import assigned, bare, parts, roots, statements, variables
 from emulator.clock import SYSCLK_HZ
 from hil.board import Board
 from hil.drivers.stated_units import comment_beside, stated
@@ -98,6 +106,85 @@ def wrong_periods(modules: Iterable[Module], periods: dict[str, float]) -> Itera
                     yield from _told_of_count(function, s, *time, routine, periods[routine.name])
 
 
+def wrong_timers(modules: Iterable[Module], board: Board) -> Iterator[UnitMismatch]:
+    """The calls that hand on a constant's period, for CPU timers that are slower at the end of a run."""
+    functions = [function for module in modules for function in module.functions]
+    for n, timer in enumerate(board.timers):
+        set_by, cycles = timer.period_by, timer.period_cycles
+        path = board.findings.path(*set_by[:2]) if set_by is not None and cycles else ()
+        of: frozenset[Variable] | None = None
+        inner = ""
+        for place in path:
+            found = _handed_on(functions, place, inner, of)
+            if found is None:
+                break
+            s, f, arguments = found
+            for constant in arguments:
+                name, seconds = _stated(constant)
+                if name and seconds and cycles / SYSCLK_HZ > seconds * (1 + _EXACT):
+                    message = (
+                        f"{name} is {seconds:g} s by its name, and CPU timer {n}, whose period is computed from it, "
+                        f"underflows every {cycles / SYSCLK_HZ:.4g} s"
+                    )  # fmt: skip
+                    yield UnitMismatch(_place(f, s), message, name, "period-by-name")
+            of = frozenset(_given_by(f, arguments))
+            inner = place.function
+            if not of:
+                break
+
+
+def _handed_on(
+    functions: list[Function], place: Place, inner: str, of: frozenset[Variable] | None
+) -> tuple[Stmt, Function, list[Expr]] | None:  # fmt: skip
+    """The statement at a place, its function, and what the period depends on there.
+
+    `inner` is the function that it calls, and `of` its parameters that decide on the period; None: it sets the period
+    itself.  Returns None if this is not known.
+    """
+    for f in functions:
+        if f.name != place.function or f.where.file != place.file:
+            continue
+        for s in statements(f.body):
+            calls = [p for root in roots(s) for p in parts(root) if isinstance(p, Call)]
+            if of is None:
+                if isinstance(s, Assign) and _is_at(place, s.where):
+                    return s, f, [bare(s.value)]
+                for call in calls:  # of a function of ours, which has no place of its own
+                    ours = not call.function.body or call.function.where.file.startswith("<")
+                    if ours and (_is_at(place, call.where) or _is_at(place, s.where)):
+                        given = map(bare, call.arguments)
+                        return s, f, [value for value in given if not isinstance(value, AddressOf)]
+                continue
+            for call in calls:
+                if call.function.name == inner and (_is_at(place, call.where) or _is_at(place, s.where)):
+                    both = zip(call.function.parameters, call.arguments, strict=False)
+                    return s, f, [bare(argument) for parameter, argument in both if parameter in of]
+    return None
+
+
+def _is_at(place: Place, where: Where) -> bool:
+    return (place.line, place.column) == (where.line, where.column)
+
+
+def _given_by(f: Function, values: list[Expr]) -> set[Variable]:
+    """The one parameter of a function on which values depend, and nothing else that changes; empty: there is none."""
+    stores = [(v, s) for s in statements(f.body) if (v := assigned(s)) is not None]
+    seen: set[Variable] = set()
+    waiting = list(values)
+    while waiting:
+        for variable in variables(parts(waiting.pop())):
+            if variable in seen:
+                continue
+            seen.add(variable)
+            if variable not in f.parameters:
+                set_to = [s.value for v, s in stores if v is variable and isinstance(s, Assign | Declare)]
+                if variable.kind != "local" or len(set_to) != 1 or not isinstance(set_to[0], Expr):
+                    return set()
+                waiting.append(set_to[0])
+    given = seen.intersection(f.parameters)
+    return given if len(given) == 1 and not any(v in given for v, _ in stores) else set()
+
+
 def _counts_time(s: Stmt) -> tuple[Variable, PhysicalUnit, float] | None:
     """An object that a statement counts up and whose name states a unit of time, with that unit, and by how many."""
     variable = assigned(s)
@@ -154,9 +241,10 @@ def _factors(e: object) -> Iterator[Const]:
                     yield factor
 
 
-def _stated(e: Const) -> tuple[str, float]:
+def _stated(e: Expr) -> tuple[str, float]:
     """The name of a constant, and the period in seconds that it states; 0: none."""
-    assert e.where.macro is not None
+    if not isinstance(e, Const) or e.where.macro is None:
+        return "", 0.0
     lines = lines_with_comments(e.where.macro.file)
     line = lines[e.where.macro.line - 1][0] if 0 < e.where.macro.line <= len(lines) else ""
     match = _DEFINITION.match(line)

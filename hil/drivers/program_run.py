@@ -18,7 +18,7 @@ from emulator.registers.i2c import I2CSTR
 from hil.drivers.budget import RUN, TimeBudget, computed
 from hil.drivers.cut_messages import TRIAL, CutTrial, cut_messages
 from hil.drivers.face_scale import FaceScales
-from hil.drivers.periods import RoutinePeriods, wrong_periods
+from hil.drivers.periods import RoutinePeriods, wrong_periods, wrong_timers
 from hil.drivers.places import anchored, of_unused_part
 from hil.drivers.roles import Roles
 from hil.drivers.sources import ArrivalWatch
@@ -238,7 +238,7 @@ def _run(
     told = (
         *wrong_periods(build.modules, routines.periods()), *scales.wrong(),
         *misread_counts(build.modules, image.board.kernel.clocks.tick_period_us, image.board),
-        *wrong_rates(build.modules, image.board),
+        *wrong_rates(build.modules, image.board), *wrong_timers(build.modules, image.board),
     )  # fmt: skip
     for wrong in told:
         image.board.findings.report_at(wrong.place, wrong.rule, wrong.message, object=wrong.object, how="dynamic")

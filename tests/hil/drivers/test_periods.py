@@ -70,6 +70,63 @@ def test_a_period_that_is_wrong_by_a_power_of_ten_is_told(tmp_path: Path, given:
     assert told(tmp_path, **given) == [given.get("use", USE)]
 
 
+TIMER = """#include "F28x_Project.h"
+#define SAMPLE_HZ 5000U
+#define TICK_MS 1.0f
+#define FRAMES_HZ 5000U
+volatile Uint16 Runs = 0;
+interrupt void Sample(void) {{ Runs++; }}
+static void Set(volatile struct CPUTIMER_REGS *timer, Uint32 cycles) {{ timer->PRD.all = cycles; }}
+static void Begin(Uint32 hz, Uint16 divider)
+{{
+    Uint32 cycles = 200000000UL / hz;
+    Set(&CpuTimer1Regs, {value});
+    CpuTimer1Regs.TPR.bit.TDDR = divider;
+    CpuTimer1Regs.TCR.all = 0x4020;
+}}
+static void Each(float ms) {{ ConfigCpuTimer(&CpuTimer1, 200, {us}); CpuTimer1Regs.TCR.bit.TSS = 0; }}
+void main(void)
+{{
+    InitSysCtrl();
+    DINT;
+    InitPieCtrl();
+    IER = 0;
+    IFR = 0;
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.TIMER1_INT = &Sample;
+    EDIS;
+    InitCpuTimers();
+    {call}
+    IER |= M_INT13;
+    EINT;
+    for (;;) {{ }}
+}}
+"""
+
+
+@pytest.mark.parametrize(("call", "value", "us", "told_it"), [
+    ("Begin(SAMPLE_HZ, 1);", "cycles - 1", "", True),
+    ("Begin(SAMPLE_HZ, 0);", "2 * cycles - 1", "", True),
+    ("Each(TICK_MS);", "cycles", "ms * 1500.0f", True),
+    ("Begin(SAMPLE_HZ, 0);", "cycles - 1", "", False),
+    ("Each(TICK_MS);", "cycles", "ms * 1000.0f", False),
+    ("Begin(SAMPLE_HZ, 0);", "cycles / 4 - 1", "", False),  # a faster one can be divided
+    ("Begin(2 * SAMPLE_HZ, 7);", "cycles - 1", "", False),
+    ("Begin(FRAMES_HZ, 1);", "cycles - 1", "", False),  # not said to be its rate
+    ("Begin(SAMPLE_HZ, 0);", "cycles * (Runs + 2)", "", False),  # it depends on more
+])  # fmt: skip
+def test_a_timer_that_is_slower_than_the_constant_it_is_set_by_is_told(
+    tmp_path: Path, call: str, value: str, us: str, told_it: bool
+) -> None:  # fmt: skip
+    file = tmp_path / "a.c"
+    text = TIMER.format(call=call, value=value, us=us or "1000.0f")
+    file.write_text(text, encoding="utf-8")
+    found = check_files(DriverFiles([file], calls=1, board=load("bare"), seconds=0.005)).findings
+    lines = [text.splitlines()[f.place.line - 1].strip() for f in found if f.rule == "period-by-name" and f.place]
+    assert lines == [call] * told_it
+
+
 @pytest.mark.parametrize("given", [
     {"define": "CONTROL_S 0.0001f"},
     {"define": "LOOP_US 100L", "use": "Sum += way * LOOP_US;"},
