@@ -7,7 +7,7 @@ A run in which a face changes shows it.  An object that changes with the face, b
 ten, is told; so is one that is wrong by a factor that programs forget: edges for turns, minutes for seconds, degrees
 for radians.  After one step the values before and behind it must agree too; after two steps of different height the
 steps alone say it, as a tare may have moved the zero.  If the face never changes, an object must have come to its
-value from another one.
+value from another one, by a statement that scales: a set point of 250 degrees is no measurement of 25.
 
 Numbers of a part whose names state a unit (`rpm`, `mbar`) count as faces.  It speaks only if no object follows the face
 in the right scale.  If two faces have one quantity, only steps show which of them an object follows.
@@ -130,8 +130,9 @@ class FaceScales:
         wanted = face.unit.ratio(each.unit)
         said = f"{each.path} is in {each.unit.name} by its {each.by}: its factor to {face.name} ({face.unit.name})"
         slip = _slip(wrong, relation.certain, self._seen[-1][1][m] or 0.0, each.unit.quantity)
-        if slip:
-            place = conversion_of(self._modules, each.path, SCALE) or each.place
+        place = conversion_of(self._modules, each.path, SCALE)
+        if slip and (relation.certain or place is not None):
+            place = place or each.place
             message = f"{said} is {wanted * slip:.4g}, and not {wanted:g}"
             return UnitMismatch(place, message, each.path, "scale-by-face")
         if relation.certain and relation.proportional and isclose(wrong, -1.0, rel_tol=_EXACT):

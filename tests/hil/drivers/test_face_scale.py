@@ -152,6 +152,8 @@ def test_a_face_that_never_changes_is_compared_with_what_came_to_its_value(tmp_p
     assert told(tmp_path, TENTHS, steps=()) == []
     # A limit that was there from the start, and what only comes near.
     assert told(tmp_path, "limit_dc = 450;", steps=(), first=4.5) == []
+    # A set point that comes later: nothing scales it, so it is no measurement.
+    assert told(tmp_path, "limit_dc = 450; if (zero == 9) temp_c = 450; else zero++;", steps=(), first=45.0) == []
     assert told(tmp_path, "temperature = (int16)(raw * 158L / 4095);", steps=()) == []
 
 
