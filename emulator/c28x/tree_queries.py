@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields
 from itertools import chain
 from typing import Any, Final, get_args, get_type_hints
@@ -290,6 +290,26 @@ def blocks(s: Stmt) -> list[list[Stmt]]:
 
 #: The kinds of statements for which `blocks` lists any: most statements have none, and every pass asks.
 _WITH_BLOCKS: Final = (If, While, For, Switch)
+
+
+def all_blocks(body: list[Stmt]) -> Iterator[list[Stmt]]:
+    """A block, and all that are in it."""
+    yield body
+    for s in body:
+        for inner in blocks(s):
+            yield from all_blocks(inner)
+
+
+def below(paths: Iterable[str], own: Mapping[str, Function]) -> list[Function]:
+    """Functions by their paths, and all of `own` that they call, directly or not."""
+    found: dict[str, Function] = {}
+    waiting = list(paths)
+    while waiting:
+        path = waiting.pop()
+        if path in own and path not in found:
+            found[path] = own[path]
+            waiting += own[path].calls
+    return list(found.values())
 
 
 def different(values: Iterable[Any]) -> list[Any]:

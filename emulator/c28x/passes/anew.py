@@ -6,7 +6,6 @@ may be tested against the end of its array.  A number of passes is neither.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Final
 
 from emulator.c28x.arithmetic import COMPARE
@@ -14,6 +13,7 @@ from emulator.c28x.ctypes import IntType
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.tree import Assign, Binary, Compare, Const, Expr, Function, If, Index, Load, LValue, Stmt, Variable
 from emulator.c28x.tree_queries import (
+    all_blocks,
     bare,
     blocks,
     parts,
@@ -32,7 +32,7 @@ _STEPS: Final = ("+", "-")
 def check_begun_anew(function: Function, report: StaticReport) -> None:
     """Report comparisons of counters that are set and counted right before them."""
     subscripts = {v for p in within(function.body) if isinstance(p, Index) for v in variables(parts(p))}
-    for block in _all_blocks(function.body):
+    for block in all_blocks(function.body):
         known: dict[Variable, _Known] = {}
         for s in block:
             if isinstance(s, If) and isinstance(s.test, Compare):
@@ -46,11 +46,6 @@ def check_begun_anew(function: Function, report: StaticReport) -> None:
                 for variable in subscripts:
                     known.pop(variable, None)
 
-
-def _all_blocks(body: list[Stmt]) -> Iterator[list[Stmt]]:
-    yield body
-    for s in statements(body):
-        yield from blocks(s)
 
 
 def _target(s: Stmt) -> Variable | None:

@@ -33,7 +33,7 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import assigned, bare, blocks, last_loop, own_nodes, parts, statements
+from emulator.c28x.tree_queries import assigned, bare, below, blocks, last_loop, own_nodes, parts, statements
 
 
 def check_drained(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
@@ -43,11 +43,11 @@ def check_drained(modules: Iterable[Module], reports: dict[Module, StaticReport]
     main = next((function for function in owners if function.name == "main" and function.body), None)
     if main is None or last_loop(main) is None:
         return
-    inside = _below((f.path for f in owners if f.interrupt), own)
+    inside = below((f.path for f in owners if f.interrupt), own)
     filled = [ring for function in inside for ring in _filled(function)]
     if not filled:
         return
-    outside = [f for f in _below([main.path], own) if f not in inside]
+    outside = [f for f in below([main.path], own) if f not in inside]
     flags = {v for f in inside for s in statements(f.body) if (v := _set(s, others=False)) is not None}
     for ring, index in filled:
         if any(_compares(f, index) for f in outside):
@@ -69,17 +69,6 @@ def check_drained(modules: Iterable[Module], reports: dict[Module, StaticReport]
                         function, s.where, "one-for-many", message, object=name.path, declaration=name
                     )  # fmt: skip
 
-
-def _below(paths: Iterable[str], own: dict[str, Function]) -> list[Function]:
-    """Functions and all that they call, directly or not."""
-    found: dict[str, Function] = {}
-    waiting = list(paths)
-    while waiting:
-        path = waiting.pop()
-        if path in own and path not in found:
-            found[path] = own[path]
-            waiting += own[path].calls
-    return list(found.values())
 
 
 def _stepped(s: Stmt) -> Variable | None:

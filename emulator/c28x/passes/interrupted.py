@@ -31,7 +31,17 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import bare, blocks, last_loop, leaves, own_nodes, parts, register_text, statements
+from emulator.c28x.tree_queries import (
+    bare,
+    below,
+    blocks,
+    last_loop,
+    leaves,
+    own_nodes,
+    parts,
+    register_text,
+    statements,
+)
 
 #: An object: the variable or the structure that holds it, and the offset in words.
 Place = tuple[Variable | StructType, int]
@@ -90,13 +100,6 @@ def test_of(s: Stmt) -> Expr | None:
             return test
     return None
 
-
-def all_blocks(body: list[Stmt]) -> Iterator[list[Stmt]]:
-    """A block and all that are in it."""
-    yield body
-    for s in body:
-        for inner in blocks(s):
-            yield from all_blocks(inner)
 
 
 def switched(s: Stmt, off: bool) -> bool:
@@ -254,15 +257,3 @@ def sides_of(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> 
     called = below([p.function.path for s in statements(loop.body) for p in own_nodes(s) if isinstance(p, Call)], own)
     bodies = {main: loop.body, **{function: function.body for function in called if function.path not in inside}}
     return Sides(owners, own, bodies, routines)
-
-
-def below(paths: Iterable[str], own: dict[str, Function]) -> list[Function]:
-    """Functions and all that they call, directly or not."""
-    found: dict[str, Function] = {}
-    waiting = list(paths)
-    while waiting:
-        path = waiting.pop()
-        if path in own and path not in found:
-            found[path] = own[path]
-            waiting += own[path].calls
-    return list(found.values())

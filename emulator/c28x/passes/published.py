@@ -14,10 +14,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from emulator.c28x.passes.interrupted import Place, Sides, all_blocks, mentions, off_at, place_of, scalar_of, written
+from emulator.c28x.passes.interrupted import Place, Sides, mentions, off_at, place_of, scalar_of, written
 from emulator.c28x.passes.state_values import constant_of
 from emulator.c28x.tree import Assign, Binary, Compare, Declare, Expr, Function, Index, Load, LValue, Stmt, Variable
-from emulator.c28x.tree_queries import bare, own_nodes, parts, source_text, statements
+from emulator.c28x.tree_queries import all_blocks, bare, own_nodes, parts, source_text, statements
 
 
 def check_published(sides: Sides) -> None:

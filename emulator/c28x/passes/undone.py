@@ -35,7 +35,7 @@ from emulator.c28x.tree import (
     Stmt,
     Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import blocks, own_nodes, source_text, statements
+from emulator.c28x.tree_queries import all_blocks, blocks, own_nodes, source_text, statements
 
 #: Functions that set a pin: the pin and the level.
 _PIN: Final = re.compile(r"GPIO_[wW]ritePin$")
@@ -66,7 +66,7 @@ def check_undone(modules: Iterable[Module], reports: dict[Module, StaticReport])
     own = {function.path: function for module in modules for function in module.functions}
     callers: dict[str, list[list[Stmt]]] = {}
     for function in own.values():
-        for block in _all_blocks(function.body):
+        for block in all_blocks(function.body):
             for s in block:
                 for p in own_nodes(s):
                     if isinstance(p, Call):
@@ -76,7 +76,7 @@ def check_undone(modules: Iterable[Module], reports: dict[Module, StaticReport])
             continue
         for function in module.functions:
             told: set[int] = set()
-            for block in _all_blocks(function.body):
+            for block in all_blocks(function.body):
                 for act, between, end in _undone_later(block):
                     ways = list(_returns(between, act, own))
                     left = [s for s, undone in ways if not undone]
@@ -92,12 +92,6 @@ def check_undone(modules: Iterable[Module], reports: dict[Module, StaticReport])
                             message = f"{act.text} is not undone on this way; line {end.line} does it at the end"
                             reports[module].report(function, s.where, "not-undone", message, object=act.text)
 
-
-def _all_blocks(body: list[Stmt]) -> Iterator[list[Stmt]]:
-    yield body
-    for s in body:
-        for inner in blocks(s):
-            yield from _all_blocks(inner)
 
 
 def _act(s: Stmt) -> _Act | None:

@@ -19,11 +19,11 @@ from emulator.c28x.ctypes import IntType
 from emulator.c28x.findings import Findings
 from emulator.c28x.symbols import Module, library_headers
 from emulator.c28x.tree import Assign, Call, Expr, Function, LValue, RegisterLoad, RegisterRef, Stmt
-from emulator.c28x.tree_queries import assigned, bare, own_nodes, statements, variables, within
+from emulator.c28x.tree_queries import assigned, bare, below, own_nodes, statements, variables, within
 from emulator.sysbios.watch.kept_off import Word, ring_indices
 from emulator.sysbios.watch.statements import StatementLocator
 from emulator.sysbios.watch.threads import Routine, ThreadWatch, excluded
-from emulator.sysbios.watch.ways import Ways, below, interrupt_routines, reached_freely
+from emulator.sysbios.watch.ways import Ways, interrupt_routines, reached_freely
 
 #: The registers of an interface that a message is written to.
 WRITTEN: Final = ("MSK", "ARB", "MCTL", "DATA", "DATB", "CMD")
@@ -187,7 +187,7 @@ def _by_number(part: Call | RegisterLoad, own: dict[str, Function]) -> bool:
     """Whether a call reads something at an address that is computed: it may be a register."""
     return isinstance(part, Call) and any(
         isinstance(inner, LValue) and isinstance(inner.root, Expr) and isinstance(bare(inner.root).ctype, IntType)
-        for function in below(part.function.path, own) for inner in within(function.body)
+        for function in below([part.function.path], own) for inner in within(function.body)
     )  # fmt: skip
 
 
@@ -206,7 +206,7 @@ def _tells(part: Call | RegisterLoad, own: dict[str, Function], telling: set[str
     if isinstance(part, RegisterLoad):
         register = part.register
         return not (isinstance(register, RegisterRef) and register.register in ("CAN_IF1CMD", "CAN_IF2CMD"))
-    for function in below(part.function.path, own):
+    for function in below([part.function.path], own):
         for inner in within(function.body):
             if isinstance(inner, RegisterLoad) and _tells(inner, own, telling):
                 return True

@@ -31,12 +31,12 @@ from emulator.c28x.tree import (
     Variable,
     Where,
 )
-from emulator.c28x.tree_queries import bare, own_nodes, statements
+from emulator.c28x.tree_queries import all_blocks, bare, below, own_nodes, statements
 from emulator.sysbios.watch.accesses import SharedCell
-from emulator.sysbios.watch.pairs import all_blocks, decided_by
+from emulator.sysbios.watch.pairs import decided_by
 from emulator.sysbios.watch.statements import StatementLocator
 from emulator.sysbios.watch.threads import Routine, ThreadWatch
-from emulator.sysbios.watch.ways import below, interrupt_routines
+from emulator.sysbios.watch.ways import interrupt_routines
 
 #: File, line and column of a statement.
 _At = tuple[str, int, int]
@@ -95,8 +95,8 @@ class LetIn:
             return
         name = routine.what.name
         if name not in self._deciding:
-            functions = below(next(path for path, f in self._own.items() if f.name == name and f.interrupt), self._own)
-            self._deciding[name] = {path for function in functions for path in decided_by(function)}
+            path = next(path for path, f in self._own.items() if f.name == name and f.interrupt)
+            self._deciding[name] = {each for function in below([path], self._own) for each in decided_by(function)}
         seen: dict[tuple[str, int], SharedCell] = {
             (cell.flag.path, cell.flag.word): cell for cell in routine.seen if cell.flag is not None
         }
@@ -145,7 +145,7 @@ class LetIn:
             for statement in behind for part in own_nodes(statement) if isinstance(part, Call)
         }  # fmt: skip
         for path in called:
-            behind += [inner for function in below(path, self._own) for inner in statements(function.body)]
+            behind += [inner for function in below([path], self._own) for inner in statements(function.body)]
         written = (_written_bits(statement) for statement in behind)
         return any(bits is not None and bits[0] == by.register and bits[1] & by.mask for bits in written)
 

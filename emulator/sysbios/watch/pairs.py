@@ -40,8 +40,10 @@ from emulator.c28x.tree import (
     While,
 )
 from emulator.c28x.tree_queries import (
+    all_blocks,
     assigned_variables,
     bare,
+    below,
     blocks,
     leaves,
     own_nodes,
@@ -50,7 +52,7 @@ from emulator.c28x.tree_queries import (
     within,
 )
 from emulator.sysbios.watch.kept_off import Word, object_path, rereads, written_objects
-from emulator.sysbios.watch.ways import Ways, below, free_ways, interrupt_routines
+from emulator.sysbios.watch.ways import Ways, free_ways, interrupt_routines
 
 #: Operators that combine the values of both operands.
 _COMBINE: Final = ("+", "-", "*", "/", "%")
@@ -283,7 +285,7 @@ def handed_over(modules: Iterable[Module]) -> dict[str, set[HandOver]]:
                     continue
                 behind = block[number + 1 :]
                 for called in {part.function.path for part in within(behind) if isinstance(part, Call)}:
-                    behind = [*behind, *(statement for other in below(called, own) for statement in other.body)]
+                    behind = [*behind, *(statement for other in below([called], own) for statement in other.body)]
                 late = (written_objects if key[1] else _read)(behind)
                 for routine_name, used in awaited[key].items():
                     for path in used & late:
@@ -329,13 +331,6 @@ def _flag(statement: Stmt) -> tuple[str, bool] | None:
             return (root.declaration.path, constant.value != 0) if isinstance(constant, Const) else None
     return None
 
-
-def all_blocks(body: list[Stmt]) -> Iterator[list[Stmt]]:
-    """A block, and all those in it."""
-    yield body
-    for statement in body:
-        for block in blocks(statement):
-            yield from all_blocks(block)
 
 
 def _read(body: Iterable[Stmt]) -> set[str]:

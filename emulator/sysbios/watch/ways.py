@@ -26,26 +26,15 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import assigned, blocks, own_nodes, parts, roots, statements
+from emulator.c28x.tree_queries import assigned, below, blocks, own_nodes, parts, roots, statements
 
 
 def interrupt_routines(own: dict[str, Function]) -> Iterator[tuple[Function, list[Function]]]:
     """The interrupt routines, each with itself and the functions that it calls, directly or not."""
     for routine in own.values():
         if routine.interrupt:
-            yield routine, below(routine.path, own)
+            yield routine, below([routine.path], own)
 
-
-def below(path: str, own: dict[str, Function]) -> list[Function]:
-    """A function and all that it calls, directly or not."""
-    seen: dict[str, Function] = {}
-    waiting = [path]
-    while waiting:
-        path = waiting.pop()
-        if path in own and path not in seen:
-            seen[path] = own[path]
-            waiting += own[path].calls
-    return list(seen.values())
 
 
 def always_told(_part: Call | RegisterLoad) -> bool:
@@ -63,7 +52,7 @@ def free_ways(
     call may depend on what a routine has done.
     """
     ways = _all_ways(functions, telling, told)
-    decided = {called.path for way in ways for path in way.decided for called in below(path, own)}
+    decided = {called.path for way in ways for path in way.decided for called in below([path], own)}
     return [way for way in ways if way.function.path not in decided]
 
 
