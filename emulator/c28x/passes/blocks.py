@@ -1,7 +1,8 @@
 """Static check of library calls: do the block lengths and argument types fit the function?
 
 It examines only the call: a length beyond the end of a member, the size of a pointer instead of the size of its target,
-a float for a function of integers.  A block that is a whole object is checked at run time, when it is copied.
+a float for a function of integers, a text that is longer than the array even if each number has one digit.  A block that
+is a whole object is checked at run time, when it is copied.
 """
 
 from __future__ import annotations
@@ -10,7 +11,8 @@ from collections.abc import Callable
 from typing import Final
 
 from emulator.c28x.ctypes import ArrayType, FloatType, IntType, PointerType
-from emulator.c28x.tree import AddressOf, Call, Const, Convert, Expr, LValue, Variable
+from emulator.c28x.passes.formats import format_of, shortest
+from emulator.c28x.tree import AddressOf, Call, Const, Convert, Expr, LValue, String, Variable
 from emulator.c28x.tree_queries import bare, calls, source_text
 
 #: Function -> how many of its arguments are blocks; its last argument is their length in words.
@@ -18,6 +20,8 @@ _BLOCKS: Final = {"memset": 1, "memcpy": 2, "memmove": 2, "memcmp": 2}
 #: Function -> the indices of its text and of the largest number of words that it takes.
 _TEXTS: Final = {"strncpy": (0, 2), "strncat": (0, 2), "strncmp": (0, 2), "snprintf": (0, 1)}
 _COPIES: Final = ("memcpy", "memmove", "strcpy", "strncpy")
+#: Functions that write a text of any length into their first argument.
+_WRITERS: Final = ("sprintf", "System_sprintf", "strcpy")
 _MAGNITUDES: Final = ("abs", "labs", "llabs")
 
 
@@ -38,6 +42,9 @@ def check_blocks(e: Call, report: Callable[[str, str, str], None]) -> None:
         text = source_text(arguments[0])
         report("self-assignment", f"{name} copies {text} to itself", text)
         return
+    if name in _WRITERS:
+        _check_text(e, report)
+        return
     if name in _TEXTS:
         block, most = (bare(arguments[i]) for i in _TEXTS[name])
         if isinstance(most, Const) and most.text == "sizeof pointer":
@@ -57,6 +64,21 @@ def check_blocks(e: Call, report: Callable[[str, str, str], None]) -> None:
         if left is not None and length.value > left:
             text = source_text(block)
             message = f"{name} takes {length.value} words at {text}, a member with {left} words from there"
+            report("memcpy-outside", message, text)
+
+
+def _check_text(e: Call, report: Callable[[str, str, str], None]) -> None:
+    """Report a text that is certainly longer than the array that takes it."""
+    form = format_of(e)
+    if form is not None:
+        least = shortest(form) + 1
+    elif e.function.name == "strcpy" and isinstance(source := bare(e.arguments[1]), String):
+        least = len(source.text) + 1
+    else:
+        return
+    match bare(e.arguments[0]):
+        case AddressOf(lvalue=LValue(ctype=ArrayType(words=words), text=text)) if least > words:
+            message = f"{e.function.name} writes at least {least} words into {text}, an array of {words} words"
             report("memcpy-outside", message, text)
 
 

@@ -1,7 +1,8 @@
 """Static check of formats: the arguments that the format of a `sprintf` call reads, compared with those it gets.
 
 It checks only a format that is a literal in the call.  A wrong width or sign gets no message from the compiler.  A
-surplus argument is valid C, but useless.
+surplus argument is valid C, but useless.  A conversion that C does not have (`100 %\r`) is a percent sign that is not
+written twice.
 """
 
 from __future__ import annotations
@@ -28,13 +29,15 @@ def check_format(e: Call, double: FloatType, report: Callable[[str, str, str], N
 
     `double` is the type of that name.
     """
-    place = _FORMATS.get(e.function.name)
-    if place is None or not e.function.ctype.variadic or place >= len(e.arguments):
+    form = format_of(e)
+    if form is None:
         return
-    form = bare(e.arguments[place])
-    if not isinstance(form, String):
+    unknown = _unknown(form)
+    if unknown is not None:
+        shown = repr(unknown)[1:-1]
+        report("printf-format", f"{e.function.name} does not know {shown}: %% prints a percent sign", form)
         return
-    wanted = _conversions(form.text, double)
+    wanted = _conversions(form, double)
     if wanted is None:
         return
     for (conversion, what, fits), given in zip(wanted, e.extra, strict=False):
@@ -44,10 +47,41 @@ def check_format(e: Call, double: FloatType, report: Callable[[str, str, str], N
             return  # the later arguments are shifted
     if len(wanted) > len(e.extra):
         conversion = wanted[len(e.extra)][0]
-        report("varargs-missing", f"nothing is passed for {conversion} of {form.text!r}", form.text)
+        report("varargs-missing", f"nothing is passed for {conversion} of {form!r}", form)
     elif len(wanted) < len(e.extra):
         text = source_text(e.extra[len(wanted)])
-        report("varargs-surplus", f"{text} is passed, and {form.text!r} does not print it", text)
+        report("varargs-surplus", f"{text} is passed, and {form!r} does not print it", text)
+
+
+def format_of(e: Call) -> str | None:
+    """The format of a call, if it is a literal; None for any other call."""
+    place = _FORMATS.get(e.function.name)
+    if place is None or not e.function.ctype.variadic or place >= len(e.arguments):
+        return None
+    form = bare(e.arguments[place])
+    return form.text if isinstance(form, String) else None
+
+
+def shortest(text: str) -> int:
+    """The characters that a format prints at least, without the NUL."""
+    return len(_SPECIFICATION.sub("", text)) + sum(_least(one) for one in _SPECIFICATION.finditer(text))
+
+
+def _least(one: re.Match[str]) -> int:
+    """The characters that a conversion prints at least."""
+    kind, width, precision = one["kind"], one["width"], one["precision"]
+    least = int(width) if width and width != "*" else 0
+    if kind in "diuxXo" and precision and precision != "*":
+        return max(least, int(precision))
+    return max(least, 0 if kind == "s" or (kind in "diuxXo" and precision is not None) else 1)
+
+
+def _unknown(text: str) -> str | None:
+    """A conversion of a format that no C has: its kind is not a letter; None: there is none."""
+    for one in _SPECIFICATION.finditer(text):
+        if one["kind"] != "%" and not one["kind"].isalpha():
+            return one[0]
+    return "%" if _SPECIFICATION.sub("", text).endswith("%") else None
 
 
 def _int(ctype: CType) -> bool:

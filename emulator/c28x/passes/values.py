@@ -290,7 +290,10 @@ class ValueChecks(ConstantChecks):
     # Expressions
 
     def constant_wrap(self, e: Expr) -> None:
-        """Check an unsigned sum or product of two constants.  A cast to its own type states that a wrap is intended."""
+        """Check a sum, difference or product of two constants.
+
+        A cast of an unsigned one to its own type states that a wrap is intended.
+        """
         match e:
             case Convert(ctype=ctype, operand=Binary(ctype=same) as meant, explicit=True) if ctype == same:
                 self.meant.add(id(meant))
@@ -300,6 +303,12 @@ class ValueChecks(ConstantChecks):
                     text, wrapped = source_text(e), ctype.wrap(value)
                     message = f"{text} is {value}, which {ctype.bits} unsigned bits do not hold: it becomes {wrapped}"
                     self.report_here("unsigned-wrap", message, text, value)
+            case Binary(ctype=IntType(signed=True) as ctype, left=Const(value=int(a)), right=Const(value=int(b))):
+                value = {"+": a + b, "-": a - b, "*": a * b}.get(e.op, 0)
+                if not ctype.low <= value <= ctype.high:
+                    text, wrapped = source_text(e), ctype.wrap(value)
+                    message = f"{text} is {value}, which does not fit a {ctype.bits}-bit {ctype}: it becomes {wrapped}"
+                    self.report_here("overflow", message, text, value)
 
     def expression(self, e: Expr) -> None:
         self.constant_wrap(e)
