@@ -858,7 +858,15 @@ class Connections:
         for n in range(1, EQEP_COUNT + 1):
             name = f"EQep{n}Regs"
             read = self._source.reads.get((name, "QPOSLAT"))
-            if read and self._value(f"{name}.QEPCTL", "UTE") and self._stuck(f"{name}.QEPCTL", "QCLM", bool):
+            told = any(finding.object == f"{name}.QEPCTL.UTE" for finding in self._chip.findings)
+            if read and not told and self._value(f"{name}.QEPCTL", "QPEN") and self._stuck(
+                f"{name}.QEPCTL", "UTE", bool
+            ):  # fmt: skip
+                missing = MissingLink(
+                    f"{name}.QEPCTL.UTE = 0: the unit timer that latches it does not run", f"{name}.QEPCTL", "UTE"
+                )
+                self._report(read[-1], f"{name}.QPOSLAT is read and never loaded", missing, f"{name}.QPOSLAT")
+            elif read and self._value(f"{name}.QEPCTL", "UTE") and self._stuck(f"{name}.QEPCTL", "QCLM", bool):
                 why = f"{name}.QEPCTL.QCLM = 0: the unit timer latches nothing, reading QPOSCNT does"
                 if (name, "QPOSCNT") not in self._source.reads:
                     missing = MissingLink(why, f"{name}.QEPCTL", "QCLM")
@@ -1374,8 +1382,10 @@ class Connections:
                     "the counter never reaches a compare value, so the output never changes there", missing,
                     f"{name}.{compare}",
                 )  # fmt: skip
-            elif used and (beyond := self._chip.epwm[n].above.get(compare)):
-                self._check_beyond_period(f"{name}.{compare}", compare, beyond)
+            elif used:
+                for beyond in self._chip.epwm[n].above.get(compare, ()):
+                    if self._check_beyond_period(f"{name}.{compare}", compare, beyond):
+                        break
 
     def _compares_for_nobody(self) -> None:
         """Computed values of a compare that switches nothing.
@@ -1471,7 +1481,7 @@ class Connections:
             return ""
         return f"{action} only {AQ_LEVELS[kind]} output {x}"
 
-    def _check_beyond_period(self, register: str, compare: str, beyond: CompareBeyondPeriod) -> None:
+    def _check_beyond_period(self, register: str, compare: str, beyond: CompareBeyondPeriod) -> bool:
         """Report a compare value above the period if it was computed.  A constant is taken to be meant."""
         findings = self._chip.findings
         at, calls, task = beyond.cause
@@ -1485,6 +1495,7 @@ class Connections:
                 f"{register} = {beyond.value}: TBPRD is {beyond.period}, so the output does not change at it",
                 object=register, how="dynamic", value=beyond.value, call_path=path[at_call:], task=task,
             )  # fmt: skip
+        return at_call is not None
 
 
 def _split(register: str) -> tuple[str, str]:

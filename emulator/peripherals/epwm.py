@@ -20,7 +20,7 @@ Sources: TRM ePWM (type 4); HDR F2837xS_epwm.h.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 from emulator.clock import Clock, ClockEvent
@@ -298,8 +298,8 @@ class EPwm:
         return any(output.control.active and not output.wire.missing for output in self._outputs.both)
 
     @property
-    def above(self) -> Mapping[str, CompareBeyondPeriod]:
-        """Compare register -> its first value above the period."""
+    def above(self) -> Mapping[str, Sequence[CompareBeyondPeriod]]:
+        """Compare register -> the first value above the period of each statement."""
         return self._checks.above
 
     @property

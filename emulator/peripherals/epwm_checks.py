@@ -36,9 +36,9 @@ class EPwmChecks:
     def __init__(self, clock: Clock, cpu: Cpu, regs: EPwmRegs) -> None:
         self._clock, self._cpu, self._regs = clock, cpu, regs
         self._first: int | None = None
-        #: Compare register -> the first value above the period plus 1, with its statement and the period.  A value
+        #: Compare register -> the first value above the period plus 1 of each statement, and the period.  A value
         #: counts only if it stood until the next one was written and the period did not change meanwhile.
-        self.above: dict[str, CompareBeyondPeriod] = {}
+        self.above: dict[str, list[CompareBeyondPeriod]] = {}
         self._above: dict[str, CompareBeyondPeriod] = {}
         #: Compare register -> the greatest value above half of the period, and that period.
         self.above_half: dict[str, tuple[int, int]] = {}
@@ -51,10 +51,12 @@ class EPwmChecks:
     def compared(self, compare: str, value: int, period: int) -> None:
         """A compare value was written; `period` is the larger one of TBPRD and its shadow."""
         if self._above and (stood := self._above.pop(compare, None)):
-            self.above.setdefault(compare, stood)
+            self.above.setdefault(compare, []).append(stood)
         if 2 * value > period > 0 and value > self.above_half.get(compare, (0, 0))[0]:
             self.above_half[compare] = value, period
-        if value > period + 1 and period and compare not in self.above and (cause := self._cpu.findings.mark()):
+        if not value > period + 1 > 1 or (cause := self._cpu.findings.mark()) is None:
+            return
+        if all(seen.cause[0] != cause[0] for seen in self.above.get(compare, ())):
             self._above[compare] = CompareBeyondPeriod(value, period, cause)
 
     def period_written(self) -> None:

@@ -21,12 +21,15 @@ An `int` has 16 bits here: -32768 to 32767. A sum of a hundred 12-bit samples, a
 the negative of -32768 does not fit. The hardware wraps (overflow mode is off). The compiler may assume that an
 overflow never happens. On a PC `int` has 32 bits, so neither the test nor the sanitizer sees anything.
 
+A sum or a product of two constants (`1800 * 1000`) is reported before the program runs.
+
 A bit that is shifted into the sign bit (`1 << 15`, as in every mask for bit 15) loses nothing. It is reported only if
 the result is widened.
 
 **Fix:** compute in `long` (cast an *operand*, not the result), or divide before you add.
 """,
         "ISO C 6.5 p5; CC table 6-1; CPU 2.3 (OVM)",
+        how="dynamic/static",
     ),
     _rule(
         "widened-late",
@@ -330,11 +333,12 @@ A shift gives another result than on a PC.
 
 The shift count must be at least 0 and smaller than the width of the type. `1 << 20` shifts a 16-bit `int`, and C does
 not define the result; on a PC it is 1048576. The emulator gives 0. The shift instructions of the chip use only the
-lowest bits of the count.
+lowest bits of the count. A constant count is reported before the program runs.
 
 **Fix:** shift an `unsigned long`: `1UL << n`; test the count.
 """,
         "ISO C 6.5.7 p3",
+        how="dynamic/static",
     ),
     _rule(
         "nan",

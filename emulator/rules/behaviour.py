@@ -172,7 +172,8 @@ sums and comparisons of two units. A constant factor converts: `x_ms * 1000` is 
 wrong direction, or the reverse of the right factor, is reported. Any other factor may mean something else, and is not.
 A product with 180/pi (57.3) is in degrees: it is reported where it, or an object that takes only such products, goes to
 `sinf` or to a value in radians.
-Values of two quantities are reported only if no sensor makes one of the other without a factor.
+Values of two quantities are reported only if no sensor makes one of the other without a factor. An object that is
+printed as it is, in front of another unit (`sprintf(line, "%u mV", current_mA)`), is reported in any case.
 
 A comment that speaks of a scale (`// in tenths`, `// counts per mV`), an amount in a name (`RATE_6400_HZ`), and an
 object that the program converts where it is (`t_us /= 1000`) make the unit unknown.

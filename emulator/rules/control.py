@@ -77,8 +77,8 @@ The first time all is well. The second time, the count goes on where it was, or 
 
 * A state ends when a count passes a limit, and the program can enter the state again. Nothing sets the count to 0: it
   is the time since the start, and the state ends at once.
-* A text is ended where a count says (`line[length] = 0`), and used. Nothing sets the count to 0: the next text is
-  appended to it.
+* A text is ended where a count says (`line[length] = 0`), and used. Nothing sets the count to 0, or only a line that is
+  too long does: the next text is appended to it.
 * A flag says that a buffer was too small, and all that a test of it else leads to is refused. The index of the buffer
   begins again, the flag is never taken back: one long message, and no other is heard.
 * Another count is set back after some time without a sign of life (`if (quiet < LIMIT) quiet++; else length = 0;`).

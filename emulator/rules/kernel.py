@@ -578,7 +578,7 @@ and `long` have the size of a register, the same line works.
         how="dynamic/static",
     ),
     _rule(
-        "printf-format", Severity.ERROR, "The format has a conversion that System_printf does not support.", """
+        "printf-format", Severity.ERROR, "The format has a conversion that the function does not support.", """
 The text contains a letter instead of a number, and all later numbers are wrong.
 
 `System_printf` does not know `%X`, `%e`, `%g`, `%+d` and `%#x`. It prints the letter and takes no argument, so all
@@ -586,8 +586,13 @@ later conversions get the wrong arguments. For `%f` it takes the argument, but p
 enabled in the configuration. `sprintf` of `stdio.h` supports all of these; `%n`, `%a` and `ll` are not supported
 there.
 
-**Fix:** `%x` (it prints small letters); scale a float to an integer, or enable `%f` (`System.extendedFormats`).
-""", "XDCtools, xdc/runtime/System.xdc",
+A percent sign in front of something that is no letter (`"%d %\\r"`) is no conversion of any function. It is reported
+before the program runs.
+
+**Fix:** `%x` (it prints small letters); scale a float to an integer, or enable `%f` (`System.extendedFormats`); `%%`
+for a percent sign.
+""", "XDCtools, xdc/runtime/System.xdc; ISO C 7.19.6.1",
+        how="dynamic/static",
     ),
     _rule(
         "printf-outbuf", Severity.ERROR, "A conversion is wider than the buffer of System_printf.", """

@@ -146,7 +146,8 @@ def unit_of_name(name: str) -> PhysicalUnit | None:
     """The unit that the end of an identifier states; None: none, or one that is not certain."""
     words: list[str] = []
     for part in name.split("_"):
-        words += [part] if part.lower() in _ENDS or part in ("kHz", "MHz", "mHz") else _HUMPS.findall(part)
+        whole = part.lower() in _ENDS or part in ("kHz", "MHz", "mHz", "mA", "mC", "dC")
+        words += [part] if whole else _HUMPS.findall(part)
     small = [word.lower() for word in words]
     if "per" in small or not small:
         return None

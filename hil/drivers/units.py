@@ -28,6 +28,7 @@ from typing import Final
 
 from emulator.c28x.ctypes import ArrayType, CType, FloatType, IntType, PointerType, StructType
 from emulator.c28x.declarations import UserDeclaration, declarations
+from emulator.c28x.passes.formats import printed
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
@@ -56,7 +57,7 @@ from emulator.chip import Chip
 from hil.drivers.clock_names import clock_by_name, factors
 from hil.drivers.hardware_counts import HardwareCounts, tick_seconds
 from hil.drivers.stated_units import Measured, comment_beside, macro_name, members, misnamed, of_definition, stated
-from hil.drivers.unit_names import PhysicalUnit, UnitRemark, unit_of_text, words_of
+from hil.drivers.unit_names import PhysicalUnit, UnitRemark, remark, unit_of_text, words_of
 
 #: Operators whose operands must have the same unit; the result has this unit too.
 _KEEPS: Final = ("+", "-")
@@ -95,6 +96,8 @@ _ALMOST: Final = 0.05
 _NO_PART: Final = 3
 #: The last name in the text of an lvalue, without subscripts.
 _LAST: Final = re.compile(r"(\w+)\W*$")
+#: What stands behind a conversion: the name of a unit, and what follows up to the next conversion.
+_UNIT_BEHIND: Final = re.compile(r" ?(?P<unit>[^\s%,;:.()\[\]]+)(?P<rest>[^%]*)")
 _SUBSCRIPT: Final = re.compile(r"\[[^\[\]]*\]")
 
 
@@ -293,9 +296,28 @@ class _Units:
             case Call(function=callee, arguments=[value]) if callee.extern and callee.name in _OF_ANGLES:
                 self._check_target(value, Measured(RADIANS), where, report, f"the angle of {callee.name}")
             case Call(function=callee, arguments=arguments):
+                self._check_printed(e, where, report)
                 for number, value in enumerate(arguments):
                     wanted, name = self._of_parameter(callee, number)
                     self._check_target(value, wanted, where, report, f"parameter {name} of {callee.name}")
+
+    def _check_printed(self, e: Call, where: Where, report: Report) -> None:
+        """Check the objects that a format prints in front of the name of a unit, as they are: `%u mV`.
+
+        Digits behind a point are a part of a number.
+        """
+        for value, before, behind in printed(e):
+            follows = _UNIT_BEHIND.match(behind)
+            given = self._value(value)
+            if follows is None or given is None or not isinstance(bare(value), Load) or before.endswith("."):
+                continue
+            said = remark(f"{follows['unit']}; {follows['rest']}")
+            if said.unit is None or said.unclear or given.factor != 1.0 or given.named:
+                continue
+            known = all(unit.quantity and unit.scale for unit in (said.unit, given.unit))
+            if known and not isclose(given.unit.ratio(said.unit), 1.0, rel_tol=_ALMOST):
+                text = source_text(value)
+                report(where, f"{text} is in {given}, and is printed as {said.unit.name}", text, "unit-by-name")
 
     def _check_clock(self, e: Binary, where: Where, report: Report) -> None:
         """Check a product or a quotient of counts with a constant whose name says how fast the counter counts."""

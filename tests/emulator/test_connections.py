@@ -679,6 +679,28 @@ def test_a_compare_value_that_is_computed_beyond_the_period(tmp_path: Path, stat
     assert [f.place.line for f in found if f.place] == ([] if silent else [text.splitlines().index(statement) + 1])
 
 
+def test_a_constant_beyond_the_period_does_not_hide_a_computed_one(tmp_path: Path) -> None:
+    statement = "EPwm2Regs.CMPA.bit.CMPA = 20100 + (Count & 1);"
+    tick = "interrupt void tick(void) { Count++; "
+    constant = "EPwm2Regs.CMPA.bit.CMPA = 20050; "
+    text = RIGHT.replace(tick, f"{tick}{constant}\n{statement}\n")
+    found = told(tmp_path, text, "compare-above-period", seconds=0.02)
+    assert [f.place.line for f in found if f.place] == [text.splitlines().index(statement) + 1]
+
+
+@pytest.mark.parametrize("runs", [True, False])
+def test_a_latch_that_is_read_behind_the_flag_of_a_unit_that_never_ends(tmp_path: Path, runs: bool) -> None:
+    text = RIGHT.replace("Count = 0; Put", "if (EQep1Regs.QFLG.bit.UTO) Count = EQep1Regs.QPOSLAT; Put")
+    text = text.replace("    EQep1Regs.QEINT.bit.UTO = 1;\n", "").replace(
+        "    PieCtrlRegs.PIEIER5.bit.INTx1 = 1;\n", ""
+    )
+    text = text.replace("    EQep1Regs.QUPRD", "    EQep1Regs.QEPCTL.bit.QCLM = 1;\n    EQep1Regs.QUPRD")
+    if not runs:
+        text = text.replace("EQep1Regs.QEPCTL.bit.UTE = 1;", "")
+    found = [f for f in told(tmp_path, text) if "QPOSLAT" in f.message]
+    assert ["QEPCTL.UTE = 0" in f.message for f in found] == [True] * (not runs)
+
+
 @pytest.mark.parametrize(("line", "setting", "why"), [
     (1, "SpiaRegs.SPIFFTX.all = 0xE040; SpiaRegs.SPIFFRX.all = 0x6061;", ""),
     (1, "SpiaRegs.SPIFFTX.all = 0xE040; SpiaRegs.SPIFFRX.all = 0x6041;", "SPIFFRX.RXFFIENA = 0"),

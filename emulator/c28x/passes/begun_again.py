@@ -91,16 +91,31 @@ class _Program:
         #: Those that are only counted up, and those that are only set to one value which they did not have.
         self.counts = {v for v in plain if all((step_of(s, v) or 0) > 0 for s in self.writes[v])}
         self.flags = {v for v in plain if self._only_set(v)}
-        self.counts -= self._read_otherwise() if self.counts else set()
+        #: Those that may be places in a text: they are counted up, and set back at most where they have passed a limit.
+        self.places = self.counts | self._back_at_limits(plain)
+        self.places -= self._read_otherwise(self.places) if self.places else set()
+        self.counts &= self.places
         self.states = StateValues(functions)
 
     def _only_set(self, v: Variable) -> bool:
         values = {constant_of(s.value) if isinstance(s, Assign) else None for s in self.writes[v]}
         return len(values) == 1 and None not in values and values != {start_of(v)}
 
-    def _read_otherwise(self) -> set[Variable]:
+    def _back_at_limits(self, plain: list[Variable]) -> set[Variable]:
+        """The objects that are counted up, and that other statements set back only where they have passed a limit."""
+        late: dict[Variable, set[int]] = {}
+        for function in self.functions:
+            for s in statements(function.body):
+                for count, branch in _passed(s) if isinstance(s, If) else ():
+                    late.setdefault(count, set()).update(map(id, statements(branch)))
+        return {
+            v for v in plain if v in late and any((step_of(s, v) or 0) > 0 for s in self.writes[v])
+            and all((step_of(s, v) or 0) > 0 or (_begins(s) and id(s) in late[v]) for s in self.writes[v])
+        }  # fmt: skip
+
+    def _read_otherwise(self, counts: set[Variable]) -> set[Variable]:
         """The counts that anything reads but their steps, comparisons with constants, and subscripts: as clocks are."""
-        by_declaration = {v.declaration: v for v in self.counts}
+        by_declaration = {v.declaration: v for v in counts}
         found: set[Variable] = set()
         for function in self.functions:
             for s in statements(function.body):
@@ -126,7 +141,7 @@ class _Program:
             for s in statements(function.body):
                 if isinstance(s, Switch) and (state := named(s.subject)) is not None and self.counts:
                     self._times(function, s, state)
-                for block in blocks(s):
+                for block in blocks(s) if self.places else ():
                     self._text_end(function, block)
                 if isinstance(s, If) and self.flags:
                     self._too_small(s)
@@ -206,11 +221,16 @@ class _Program:
                     count = named(index.expr)
                 case _:
                     continue
-            if count not in self.counts or count is None or constant_of(value) != 0:
+            if count not in self.places or count is None or constant_of(value) != 0:
                 continue
             if any(step_of(other, count) is not None for other in block):
                 continue  # a text that grows, and is ended anew behind each character
-            used = any(text in _roots_of(p) for later in block[number + 1:] for p in within([later]) if _passes(p))
+            called = _reached({f.path: f.calls for f in self.functions}, _called(statements(block)))
+            behind = [each for path in called if path in self.own for each in self.own[path].body]
+            if any(assigned(other) is count for other in [*statements(block), *statements(behind)]):
+                continue
+            used = any(text in _roots_of(p) for later in block[number + 1 :] for p in within([later]) if _passes(p))
+            used = used or (count not in self.counts and any(text in _roots_of(p) for p in within(behind)))
             marks = any(
                 isinstance(other, Assign) and constant_of(other.value) not in (None, 0) and assigned(other) is not None
                 for other in block

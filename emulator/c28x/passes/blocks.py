@@ -1,8 +1,8 @@
 """Static check of library calls: do the block lengths and argument types fit the function?
 
 It examines only the call: a length beyond the end of a member, the size of a pointer instead of the size of its target,
-a float for a function of integers, a text that is longer than the array even if each number has one digit.  A block that
-is a whole object is checked at run time, when it is copied.
+a float for a function of integers, a text that is longer than the array even if each number has one digit.  A block
+that is a whole object is checked at run time, when it is copied.
 """
 
 from __future__ import annotations

@@ -8,11 +8,11 @@ written twice.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Final
 
 from emulator.c28x.ctypes import CType, Double64, FloatType, FunctionType, HandleType, IntType, PointerType
-from emulator.c28x.tree import Call, String
+from emulator.c28x.tree import Call, Expr, String
 from emulator.c28x.tree_queries import bare, source_text
 
 #: Function -> the index of the format among its parameters.
@@ -60,6 +60,18 @@ def format_of(e: Call) -> str | None:
         return None
     form = bare(e.arguments[place])
     return form.text if isinstance(form, String) else None
+
+
+def printed(e: Call) -> Iterator[tuple[Expr, str, str]]:
+    """The arguments that the format of a call prints, each with the texts before and behind its conversion."""
+    text = format_of(e) or ""
+    given = iter(e.extra)
+    for one in _SPECIFICATION.finditer(text):
+        if one["kind"] == "%":
+            continue
+        taken = [next(given, None) for _ in range(1 + [one["width"], one["precision"]].count("*"))]
+        if taken[-1] is not None:
+            yield taken[-1], text[: one.start()], text[one.end() :]
 
 
 def shortest(text: str) -> int:

@@ -310,8 +310,16 @@ class ValueChecks(ConstantChecks):
                     message = f"{text} is {value}, which does not fit a {ctype.bits}-bit {ctype}: it becomes {wrapped}"
                     self.report_here("overflow", message, text, value)
 
+    def constant_shift(self, e: Expr) -> None:
+        """Check a shift by a constant."""
+        match e:
+            case Binary(op="<<" | ">>", ctype=IntType(bits=bits), right=Const(value=int(n))) if not 0 <= n < bits:
+                text = source_text(e)
+                self.report_here("shift-range", f"{text} shifts a {bits}-bit value by {n}", text, n)
+
     def expression(self, e: Expr) -> None:
         self.constant_wrap(e)
+        self.constant_shift(e)
         match e:
             case Logic():
                 self.logic(e)

@@ -19,6 +19,7 @@ from hil.drivers.unit_names import remark, unit_of_name, unit_of_text
     ("timeout_s", "s"), ("config_s", ""), ("temperatureDc", "decidegree Celsius"), ("BUS_DC", ""),
     ("motorCurrent_A", "A"), ("PORT_A", ""), ("heading_rad", "rad"),
     ("wheel_rad", ""), ("chargeMa", "mA"), ("PHASE_MA", "mA"), ("ma", ""),
+    ("current_mA", "mA"), ("temp_dC", "decidegree Celsius"), ("pack_mA", ""),
     # No units: other words, rates, amounts, mega or milli.
     ("items", ""), ("params", ""), ("VRMS", ""), ("motorRPMs", ""), ("max_min", ""), ("filterDegree", ""),
     ("powerMeter", ""), ("RAMP_RPM_PER_MS", ""), ("RATE_6400_HZ", ""),
@@ -159,6 +160,31 @@ def test_a_value_in_another_unit_is_told(tmp_path: Path, body: str, message: str
 ])  # fmt: skip
 def test_a_converted_value_is_not_told(tmp_path: Path, body: str) -> None:
     assert told(tmp_path, f"{HEAD}void f(void)\n{{\n    {body}\n}}\n", "unit-by-name") == []
+
+
+PRINTED = """#include <stdio.h>
+char line[80];
+unsigned pack_mV, current_mA, wait_ms, speed_mm_s, limit_mA; int temp_degC; unsigned long time_us;
+void f(void)
+{
+    sprintf(line, %s);
+}
+"""
+
+
+@pytest.mark.parametrize(("printed", "messages"), [
+    ('"U=%u mV I=%u mA", current_mA, pack_mV',
+     ["current_mA is in mA by its name, and is printed as mV", "pack_mV is in mV by its name, and is printed as mA"]),
+    ('"%*u us", 3, wait_ms', ["wait_ms is in ms by its name, and is printed as us"]),
+    ('"U=%u mV I=%umA", pack_mV, current_mA', []),
+    # Converted, or a part of a number; a rate, a word, a scale.
+    ('"%u.%03u V, %lu ms", pack_mV / 1000, pack_mV % 1000, time_us / 1000', []),
+    ('"%u.%u ms %u mV/s", wait_ms, pack_mV, wait_ms', []),
+    ('"%u mm/s, %u in the line, %u A", speed_mm_s, wait_ms, pack_mV', []),
+    ('"%u mV (times 10)", current_mA', []),
+])  # fmt: skip
+def test_what_is_printed_in_front_of_a_unit(tmp_path: Path, printed: str, messages: list[str]) -> None:
+    assert told(tmp_path, PRINTED % printed, "unit-by-name") == messages
 
 
 CALLED = """#include <stdint.h>

@@ -317,8 +317,8 @@ class CStatementReader:
         """Whether an assignment as a condition was meant as a comparison.
 
         An assignment of a constant always was.  One of another value was if it is in an `if`, has no parentheses of its
-        own, and a branch copies the target back (`if (now = seen) seen = now;`) or none uses it.  A local that gets the
-        result of a function may be used later: it was not.
+        own, and a branch copies the target back (`if (now = seen) seen = now;`) or none uses it.  An `else` that reads
+        it does not use it: it is 0 there.  A local that gets the result of a function may be used later: it was not.
         """
         effects, value = self.b.collect_effects(lambda: self.expressions.value(node.rvalue))
         if not effects and build.constant_value(value) is not None:
@@ -330,7 +330,8 @@ class CStatementReader:
             return False
         if any(_copies_back(node, branch) for branch in branches):
             return True
-        return not any(_contains_text(written(node.lvalue), branch) for branch in branches)
+        text = written(node.lvalue)
+        return not (_contains_text(text, branches[0]) or any(_assigns(text, branch) for branch in branches[1:]))
 
     # Loops
 
@@ -639,6 +640,18 @@ def _copies_back(assigned: c_ast.Assignment, branch: c_ast.Node | None) -> bool:
         to, what = written(branch.lvalue), written(branch.rvalue)
         return (to, what) == (written(assigned.rvalue), written(assigned.lvalue))
     return any(_copies_back(assigned, child) for _, child in branch.children())
+
+
+def _assigns(text: str, node: c_ast.Node | None) -> bool:
+    """Whether a statement changes an object with this text, or takes its address."""
+    match node:
+        case None:
+            return False
+        case c_ast.Assignment() if written(node.lvalue) == text:
+            return True
+        case c_ast.UnaryOp(op="++" | "--" | "p++" | "p--" | "&") if written(node.expr) == text:
+            return True
+    return any(_assigns(text, child) for _, child in node.children())
 
 
 def _contains_text(text: str, node: c_ast.Node | None) -> bool:

@@ -811,4 +811,40 @@ def Next(i: uint16) -> uint16:
 """,
         ("Next", (3,)),
     ),
+    static_pair(
+        "overflow",
+        "a product of constants in a case that never comes",
+        """
+LIMIT_S = 1800
+def Late(ms: uint32, state: uint16) -> int16:
+    if state == 7:
+        return ms > LIMIT_S * 1000  # <-
+    return 0
+""",
+        """
+LIMIT_S = 1800
+def Late(ms: uint32, state: uint16) -> int16:
+    if state == 7:
+        return ms > uint32(LIMIT_S) * 1000
+    return 0
+""",
+        ("Late", (5, 1)),
+    ),
+    static_pair(
+        "shift-range",
+        "octets are joined in 16 bits, in a branch that never comes",
+        """
+def Joined(high: uint16, low: uint16, whole: int16) -> uint32:
+    if whole:
+        return high << 16 | low  # <-
+    return low
+""",
+        """
+def Joined(high: uint16, low: uint16, whole: int16) -> uint32:
+    if whole:
+        return uint32(high) << 16 | low
+    return low
+""",
+        ("Joined", (1, 2, 0)),
+    ),
 )

@@ -124,6 +124,8 @@ def text(again: str = LENGTH + MARK, *, test: str = REFUSE, end: str = END, turn
 @pytest.mark.parametrize(("program", "line"), [
     (text(MARK), END),
     (text(MARK, test="Obey(order);"), END),
+    # Only a line that is too long sets it back.
+    (text(MARK, test="Obey(order);").replace("else tooLong = 1;", "else length = 0;"), END),
     (text(LENGTH), REFUSE),
     (text(LENGTH, test="if (!tooLong && length > 0) Obey(order);"), "if (!tooLong && length > 0) Obey(order);"),
     (text(LENGTH, test="if (tooLong == 1) Bad++; else Obey(order);"), "if (tooLong == 1) Bad++; else Obey(order);"),
@@ -137,6 +139,9 @@ def test_a_text_and_a_mark_that_are_never_begun_again_are_told(program: str, lin
     text(),
     text(MARK, turn="if (Done) length = 0;"),
     text(LENGTH, turn="if (Done) tooLong = 0;"),
+    text(test="Obey(order);").replace("else tooLong = 1;", "else length = 0;"),
+    text("", test="Obey(order);").replace("if (c == 10)", "if (c == 35) length = 0; else if (c == 10)"),
+    text("", test="Obey(order);").replace("Good += text[0];", "Good += text[0]; length = 0;"),
     # One text only: a mark says that it is there.
     text(MARK, end="order[length] = 0; Done = 1;"),
     # A text that grows: it is ended behind each character.

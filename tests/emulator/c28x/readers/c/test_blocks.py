@@ -54,6 +54,8 @@ def told(statement: str) -> list[str]:
         "k = sizeof p / sizeof(unsigned int);",  # the words of the pointer itself
         "strncpy(text, name, sizeof text); strncmp(name, text, 2);",
         "for (k = 0; k < 4; k++) { whole[k] = 0; } unused = unused;",
+        'sprintf(text, "%d V %s", k, name); strcpy(text, "1234567"); strcpy(text + 1, "123456");',
+        'sprintf(text, "%.0d%s%.0s", k, name, name); sprintf(name, "longer than %d", k);',
     ],
 )
 def test_what_fits_is_told_nothing(statement: str) -> None:
@@ -82,7 +84,10 @@ def test_what_fits_is_told_nothing(statement: str) -> None:
         ("for (k = 0; k < sizeof array / sizeof array[0]; k++) array[k] = 0;", "sizeof-pointer"),
         ("k = sizeof pointers / sizeof *pointers;", "sizeof-pointer"),
         ("strncpy(name, text, sizeof name);", "sizeof-pointer"),
-        ("snprintf(name, sizeof name, \"on\");", "sizeof-pointer"),
+        ('snprintf(name, sizeof name, "on");', "sizeof-pointer"),
+        ('sprintf(text, "%d volt %d", k, k);', "memcpy-outside"),  # 8 characters at least, and the NUL
+        ('sprintf(text, "%8u", k);', "memcpy-outside"),
+        ('strcpy(text, "12345678");', "memcpy-outside"),
     ],
 )
 def test_what_does_not_fit_is_told(statement: str, rule: str) -> None:

@@ -68,6 +68,9 @@ def test_what_fits_is_told_nothing(call: str) -> None:
         ('sprintf(line, "%s")', "varargs-missing"),
         ('sprintf(line, "%d", i, i)', "varargs-surplus"),
         ('sprintf(line, "nothing", i)', "varargs-surplus"),
+        ('sprintf(line, "%d %\\r\\n", i)', "printf-format"),
+        ('sprintf(line, "%d %", i)', "printf-format"),
+        ('sprintf(line, "%d%)", i)', "printf-format"),
     ],
 )
 def test_what_does_not_fit_is_told_once(call: str, rule: str) -> None:

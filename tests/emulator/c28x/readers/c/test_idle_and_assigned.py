@@ -49,6 +49,7 @@ def test_a_statement_that_acts_or_is_said_to_be_idle_is_not_told(statement: str)
         "if (a = b) { b = a; k = a; }",
         "if (total = next()) k = 1;",
         "if (k == 1) b = 1; else if (mode = OFF) b = 2;",
+        "if (a = b) k++; else k = a;",  # which is 0 there
     ],
 )
 def test_a_condition_that_assigns_is_told(statement: str) -> None:
@@ -68,6 +69,8 @@ def test_a_condition_that_assigns_is_told(statement: str) -> None:
         "while ((a = next()) != 0) k++;",
         "while (list = list->next) k += list->n;",
         "if (a += b) k = 1;",
+        "if (a = b) k++; else a = 1;",
+        "if (a = b) k++; else a++;",
     ],
 )
 def test_an_assignment_whose_value_is_wanted_is_not_told(statement: str) -> None:

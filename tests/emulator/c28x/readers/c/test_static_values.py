@@ -232,3 +232,26 @@ def test_a_test_that_the_failed_one_before_leaves_open_is_not_constant(first: st
 def test_an_unsigned_object_held_against_a_negative_constant(test: str, told: bool) -> None:
     text = f"int f(int t, unsigned int u, unsigned long w)\n{{\n    if ({test}) return 1;\n    return 0;\n}}\n"
     assert (("sign-compare", 3) in findings_of(text)) == told
+
+
+@pytest.mark.parametrize(
+    ("value", "rules"),
+    [
+        ("1800 * 1000", ["overflow"]),
+        ("30000 + 5000", ["overflow"]),
+        ("-20000 - 20000", ["overflow"]),
+        ("100000L * 50000", ["overflow"]),
+        ("1800 * 10", []),
+        ("1800L * 1000", []),
+        ("-32767 - 1", []),
+        ("u << 24", ["shift-range"]),
+        ("u << 24 | 1", ["shift-range"]),
+        ("u >> 16", ["shift-range"]),
+        ("(unsigned long)u << 24", []),
+        ("u << 15", []),
+        ("1 << 15", []),
+    ],
+)
+def test_what_constants_lose_is_told_though_it_never_runs(value: str, rules: list[str]) -> None:
+    text = f"unsigned long f(unsigned int u)\n{{\n    if (u != u)\n        return {value};\n    return 0;\n}}\n"
+    assert [rule for rule, line in findings_of(text) if line == 4 and rule in ("overflow", "shift-range")] == rules
