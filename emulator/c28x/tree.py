@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from emulator.c28x.ctypes import CType, FunctionType
@@ -88,10 +89,14 @@ class Declaration:
         """The place of the declaration."""
         return Where(self.file, self.line, self.column)
 
-    @property
+    @cached_property
     def path(self) -> str:
         """`module.function.name`, or `module.name` at file scope."""
         return ".".join(part for part in (self.module, self.function, self.name) if part)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The fields without cached properties: equal declarations are pickled as equal bytes."""
+        return {each.name: getattr(self, each.name) for each in dataclasses.fields(self)}
 
     def __str__(self) -> str:
         where = f"{self.file.rsplit('/', 1)[-1]}:{self.line}"

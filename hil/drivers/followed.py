@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, Final, NamedTuple
 
 from emulator.c28x.ctypes import FloatType, IntType, PointerType
@@ -104,6 +105,8 @@ class FollowedStatement:
     acts: bool
     #: It changes no ages, and no state is tested.
     idle: bool
+    #: What it does to ages.
+    effect: Callable[[FollowedCall], None]
 
 
 @dataclass(eq=False, slots=True)
@@ -166,11 +169,15 @@ class ValueFollower:
         self._words: dict[str, set[int]] = {}
         #: Who runs -> the calls that it is in, the innermost last.
         self._stacks: dict[str, list[FollowedCall]] = {}
+        #: Who ran when the last statement began, and its calls.
         self._who = ""
+        self._stack: list[FollowedCall] = []
         #: The interrupt that runs: its name, by that of its routine.
         self.interrupts: dict[str, str] = {}
         #: Local -> what is assigned to it.
         self._assigned: dict[Variable, list[Expr]] = {}
+        #: Identity of an expression -> the expression, and the parts of it that have ages.
+        self._aged: dict[int, tuple[Expr, tuple[Expr, ...]]] = {}
         self._read = _read_objects(self._functions.values())
         for function in self._functions.values():
             self._learn(function, function.body, (), ())
@@ -186,8 +193,10 @@ class ValueFollower:
                     idle = False
             if isinstance(s, Return) and s.value is not None and not isinstance(bare(s.value), Const):
                 idle = False
+            limits = _limits(s, around)
             self.known[id(s)] = FollowedStatement(
-                f, around, loops, calls, tuple(self._choices(s, nodes)), _limits(s, around), self._acts(s), idle
+                f, around, loops, calls, tuple(self._choices(s, nodes)), limits, self._acts(s), idle,
+                _nothing if limits else self._effect(s),
             )  # fmt: skip
             match s:
                 case Assign(target=LValue(root=Variable() as root), value=value) | Declare(
@@ -228,8 +237,8 @@ class ValueFollower:
             return
         who, calls = self._position.who, self._position.calls
         if who != self._who:
-            self._leave_interrupt(who, calls)
-        stack = self._stacks.setdefault(who, [])
+            self._switch(who, calls)
+        stack = self._stack
         call = stack[-1] if stack else None
         if call is None or call.calls is not calls:
             call = self._enter(stack, who, calls, s)
@@ -241,10 +250,10 @@ class ValueFollower:
             call.pending = True
             call.results = {}
         elif not known.idle:
-            self._do(s, call)
+            known.effect(call)
 
-    def _leave_interrupt(self, who: str, calls: Calls | None) -> None:
-        """An interrupt routine that is over has ended its last statement."""
+    def _switch(self, who: str, calls: Calls | None) -> None:
+        """Another thread runs.  An interrupt routine that is over has ended its last statement."""
         over = self._stacks.get(self._who)
         if over and over[0].calls is not None and self._who.startswith(("Isr:", "Hwi:", "Swi:")):
             first = over[0].calls
@@ -253,7 +262,7 @@ class ValueFollower:
                 step = step[1]
             if step is None:
                 self._unwind(over, 0)
-        self._who = who
+        self._who, self._stack = who, self._stacks.setdefault(who, [])
 
     def _unwind(self, stack: list[FollowedCall], depth: int) -> None:
         while len(stack) > depth:
@@ -301,38 +310,51 @@ class ValueFollower:
     def _end(self, call: FollowedCall) -> None:
         call.pending = False
         assert call.statement is not None
-        self._do(call.statement, call)
+        self.known[id(call.statement)].effect(call)
 
     # Statements -----------------------------------------------------------------------------------------------------
 
-    def _do(self, s: Stmt, call: FollowedCall) -> None:
+    def _effect(self, s: Stmt) -> Callable[[FollowedCall], None]:
         match s:
             case Assign(target=LValue() as target, value=value):
-                if not self.known[id(s)].limits:
-                    self._set(target, value, call)
+                return partial(self._set, target, value, _only_time(target, value))
             case Declare(variable=variable, value=Expr() as value):
-                self._set(LValue(variable.ctype, variable), value, call)
+                target = LValue(variable.ctype, variable)
+                return partial(self._set, target, value, _only_time(target, value))
             case Declare(variable=variable):
-                self._forget(variable.declaration.path)
+                return partial(self._forget, variable.declaration.path)
             case CopyStruct(target=target, source=source):
-                to, of = self.word(target, call), self.word(source, call)
-                if to is not None and of is not None:
-                    self._copy(to, of, target.ctype.words)
-            case Return(value=Expr() as value) if call.caller is not None:
-                results = call.caller.results
-                results[call.function.path] = newest(results.get(call.function.path, NO_AGES), self.ages(value, call))
-            case If(test=test) | While(test=test):
-                call.tests[id(s)] = self.ages(test, call)
-            case Switch(subject=subject):
-                call.tests[id(s)] = self.ages(subject, call)
+                return partial(self._copy_struct, target, source)
+            case Return(value=Expr() as value):
+                return partial(self._return, value)
+            case If(test=test) | While(test=test) | Switch(subject=test):
+                return partial(self._test, s, test)
             case For(variable=LValue(root=Variable() as root)):
-                call.locals[root] = call.own[root] = NO_AGES
+                return partial(self._count, root)
             case Evaluate(value=Call(function=Function(extern=True, name=name), arguments=arguments, extra=extra)):
-                self._library(name, [*arguments, *extra], call)
+                if name in _COPIES or name == "memset" or TEXTS.match(name):
+                    return partial(self._library, name, [*arguments, *extra])
+        return _nothing
 
-    def _set(self, target: LValue, value: Expr, call: FollowedCall) -> None:
+    def _copy_struct(self, target: LValue, source: LValue, call: FollowedCall) -> None:
+        to, of = self.word(target, call), self.word(source, call)
+        if to is not None and of is not None:
+            self._copy(to, of, target.ctype.words)
+
+    def _return(self, value: Expr, call: FollowedCall) -> None:
+        if call.caller is not None:
+            results = call.caller.results
+            results[call.function.path] = newest(results.get(call.function.path, NO_AGES), self.ages(value, call))
+
+    def _test(self, s: Stmt, test: Expr, call: FollowedCall) -> None:
+        call.tests[id(s)] = self.ages(test, call)
+
+    def _count(self, variable: Variable, call: FollowedCall) -> None:
+        call.locals[variable] = call.own[variable] = NO_AGES
+
+    def _set(self, target: LValue, value: Expr, only_time: bool, call: FollowedCall) -> None:
         ages = self.ages(value, call)
-        if self._only_time(target, value):
+        if only_time:
             ages = newest(ages, {TIME: self._clock.now})
         root = target.root
         if isinstance(root, Variable) and root.plain:
@@ -360,7 +382,7 @@ class ValueFollower:
             for n in range(words):
                 self.set(MemoryWord(message.obj.declaration.path, message.offset + n), ages)
 
-    def _forget(self, path: str) -> None:
+    def _forget(self, path: str, _call: FollowedCall) -> None:
         for word in self._words.pop(path, ()):
             del self.memory[MemoryWord(path, word)]
 
@@ -399,28 +421,20 @@ class ValueFollower:
         obj = self._objects.get(word.path)
         return max(0, (obj.words if obj is not None else _LOCAL_WORDS) - word.word)
 
-    def _only_time(self, target: LValue, value: Expr) -> bool:
-        """Whether a value is made of the old one and constants: a counter, a value that decays."""
-        value = bare(value)
-        if not isinstance(value, Binary):
-            return False
-        of_itself = False
-        for p in parts(value):
-            if isinstance(p, Load):
-                if p.lvalue != target:
-                    return False
-                of_itself = True
-            elif isinstance(p, RegisterLoad | Call | CallPointer):
-                return False
-        return of_itself
-
     # Ages -----------------------------------------------------------------------------------------------------------
 
-    def ages(self, e: Any, call: FollowedCall, *, own: bool = False) -> Ages:
+    def ages(self, e: Expr, call: FollowedCall, *, own: bool = False) -> Ages:
         """The ages of an expression.  `own`: without what came through parameters."""
+        known = self._aged.get(id(e))
+        if known is None:
+            known = self._aged[id(e)] = e, tuple(_aged(e))
+        found = NO_AGES
+        for part in known[1]:
+            found = newest(found, self._ages_of_part(part, call, own))
+        return found
+
+    def _ages_of_part(self, e: Expr, call: FollowedCall, own: bool) -> Ages:
         match e:
-            case Const() | AddressOf():
-                return NO_AGES
             case Load(lvalue=LValue(root=Variable() as root)) if root.plain:
                 return (call.own if own else call.locals).get(root, NO_AGES)
             case Load(lvalue=lvalue):
@@ -444,13 +458,7 @@ class ValueFollower:
                     if pointed is not None:
                         found = newest(found, self._any_of(pointed.path))
                 return found
-            case CallPointer():
-                return NO_AGES
-        found = NO_AGES
-        for child in children(e):
-            if isinstance(child, Expr):
-                found = newest(found, self.ages(child, call, own=own))
-        return found
+        return NO_AGES
 
     def all_ages(self, used: Iterable[Expr], call: FollowedCall, *, own: bool = False) -> Ages:
         """The ages of several expressions together."""
@@ -525,7 +533,7 @@ class ValueFollower:
         if not isinstance(s, Assign) or not self._acts(s):
             return False
         return isinstance(bare(s.value), Const) or (
-            isinstance(s.target, LValue) and self._only_time(s.target, s.value)
+            isinstance(s.target, LValue) and _only_time(s.target, s.value)
         )
 
     def of_register(self, cell: Cell) -> Ages:
@@ -725,6 +733,39 @@ def _limits(s: Stmt, around: tuple[Stmt, ...]) -> bool:
                 if isinstance(a, Load) and a.lvalue == s.target and _same(b, limit):
                     return True
     return False
+
+
+def _aged(e: Expr) -> Iterator[Expr]:
+    """The parts of an expression that have ages: what it loads, calls and chooses."""
+    match e:
+        case Load() | RegisterLoad() | Conditional() | Call():
+            yield e
+        case AddressOf() | CallPointer():
+            pass
+        case _:
+            for child in children(e):
+                if isinstance(child, Expr):
+                    yield from _aged(child)
+
+
+def _only_time(target: LValue, value: Expr) -> bool:
+    """Whether a value is made of the old one and constants: a counter, a value that decays."""
+    value = bare(value)
+    if not isinstance(value, Binary):
+        return False
+    of_itself = False
+    for p in parts(value):
+        if isinstance(p, Load):
+            if p.lvalue != target:
+                return False
+            of_itself = True
+        elif isinstance(p, RegisterLoad | Call | CallPointer):
+            return False
+    return of_itself
+
+
+def _nothing(_call: FollowedCall) -> None:
+    """The effect of a statement that changes no ages."""
 
 
 def _same(a: Expr, b: Expr) -> bool:

@@ -1150,8 +1150,12 @@ class PythonWriter:
         return f"_fp + {variable.frame_offset} + {words}"
 
     def is_watched(self, variable: Variable) -> bool:
-        """Whether the watcher hears of accesses: to an object of the file, or to a local with a pointer to it."""
-        return self.watch and (variable.kind == "global" or (variable.in_memory and variable.escapes))
+        """Whether the watcher hears of accesses: to an object of the file, or to a local with a pointer to it.
+
+        Who follows the statements replays them, and needs no watcher.
+        """
+        told = self.watch and not self.follow
+        return told and (variable.kind == "global" or (variable.in_memory and variable.escapes))
 
     def touch(self, variable: Variable, words: str, *, write: bool) -> str:
         """The call that tells the watcher; its value is None."""

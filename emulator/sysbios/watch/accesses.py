@@ -73,7 +73,7 @@ class SharedCell:
     """A scalar, or another part that only one thread may use at a time."""
 
     __slots__ = (
-        "accesses", "changed", "flag", "handed", "handed_at", "hands_over", "last", "owner", "reader",
+        "accesses", "calm", "changed", "flag", "handed", "handed_at", "hands_over", "last", "owner", "reader",
         "reader_statement", "writers", "writes",
     )  # fmt: skip
 
@@ -87,6 +87,8 @@ class SharedCell:
         #: The latest of `accesses`, and the writes among them.
         self.last: LatestAccess | None = None
         self.writes: list[LatestAccess] = []
+        #: Whether `last` is a read that conflicts with no write, and would not if it came again.
+        self.calm = False
         self.writers: set[Thread] = set()
         #: Thread -> the statement by which it last read and wrote the cell in one step, per protection.
         self.changed: dict[Thread, dict[Protection, StatementNumber]] = {}

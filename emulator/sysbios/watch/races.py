@@ -188,7 +188,14 @@ class Races:
         position = self._position
         statement = position.at or position.innermost()
         protection = self._threads.protection()
+        last = cell.last
+        if cell.calm and not write and last is not None and last.thread is thread and last.protection is protection:
+            cell.keep(thread, False, protection, statement, self._clock.now)
+            cell.reader_statement = statement
+            return
         conflicts, by_time = cell.conflicts(thread, protection), NONE
+        # While the kernel runs, threads change their levels and hold gates.
+        cell.calm = not write and not conflicts and not self._threads.kernel.active
         if write and self._threads.routines:
             self._joint(shared, offset)
             unfinished = cell.unfinished(thread, protection)

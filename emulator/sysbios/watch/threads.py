@@ -72,6 +72,10 @@ class _Gated:
         self._sources = sources
         self._stops = stops
 
+    def registers(self) -> list[Cell]:
+        """The registers that its enables are in."""
+        return [self._line, *(register for register, _ in (*self._sources, *self._stops))]
+
     def held_off(self) -> int:
         """Its bit while it cannot come through, else 0."""
         for register, mask in self._stops:
@@ -82,6 +86,16 @@ class _Gated:
                 if register.value & mask:
                     return 0
         return self._bit
+
+
+class _Enabling:
+    """A register with enables of handlers, and its word when it was looked at last."""
+
+    __slots__ = ("register", "seen")
+
+    def __init__(self, register: Cell) -> None:
+        self.register = register
+        self.seen = register.value
 
 
 class Routine(NamedTuple):
@@ -199,6 +213,9 @@ class ThreadWatch:
         self.enables: dict[int, Enables] = {}
         self._gated: list[_Gated] = []
         self._handlers = 0
+        #: Those of `_gated` that are held off, their bits: as long as none of these registers changes.
+        self._off = 0
+        self._enabling: list[_Enabling] = []
         #: Returns PIEIER and the bit of a PIE interrupt.
         self.line: Callable[[int], Enable] | None = None
         #: Interrupt -> the registers by which a program starts the operations that end in it.
@@ -398,13 +415,15 @@ class ThreadWatch:
             elif level < SWI_LEVEL and kernel.tasks.locked:
                 ceiling = SWI_LEVEL - 1
         lines = ALL_LINES if cpu.intm else ~cpu.ier & ALL_LINES
-        # Interrupts with a handler that are disabled one by one, by the kernel's call or at the peripheral.
-        off = self._disabled
         if len(kernel.hwis.table) != self._handlers:
             self._update_handlers()
-        for gated in self._gated:
-            off |= gated.held_off()
-        gates = self.gates(thread)
+        for enabling in self._enabling:
+            if enabling.register.value != enabling.seen:
+                self._look_at_enables()
+                break
+        # Interrupts with a handler that are disabled one by one, by the kernel's call or at the peripheral.
+        off = self._disabled | self._off
+        gates = self.gates(thread) if thread.entered else _NO_GATES
         last = thread.protection
         if last.lines == lines and last.ceiling == ceiling and last.gates == gates and last.disabled == off:
             return last  # the usual case
@@ -415,6 +434,18 @@ class ThreadWatch:
         handlers = [*self.kernel.hwis.table, *self.routines]
         self._handlers = len(self.kernel.hwis.table)
         self._gated = [_Gated(self.bit(number), *self.enables[number]) for number in handlers if number in self.enables]
+        self._look_at_enables()
+
+    def _look_at_enables(self) -> None:
+        """Find out which interrupts with a handler are held off at the peripheral.
+
+        Peripherals and the DMA change registers too, so no write tells of it: `protection` compares the words.
+        """
+        self._off = 0
+        for gated in self._gated:
+            self._off |= gated.held_off()
+        registers = dict.fromkeys(cell for gated in self._gated for cell in gated.registers())
+        self._enabling = [_Enabling(register) for register in registers]
 
     @staticmethod
     def gates(thread: Thread) -> frozenset[Gate]:
