@@ -161,6 +161,19 @@ class SysCtrl:
             )  # fmt: skip
 
     @property
+    def sysclk_shares(self) -> frozenset[float]:
+        """The frequencies that SYSCLK can have on the user's board, as shares of the 200 MHz that it has here.
+
+        They are more than one if the program makes it from a crystal, and if both crystals of TI's boards are allowed:
+        10 MHz (LaunchPads) and 20 MHz (controlCARDs).
+        """
+        clkcfg = self._clkcfg.registers
+        if clkcfg["CLKSRCCTL1"].value & 3 != _XTAL or not clkcfg["SYSPLLCTL1"].value & SYSPLLCTL1.PLLCLKEN.mask:
+            return frozenset({1.0})
+        factor = _quarters(clkcfg["SYSPLLMULT"]) / 4 / (2 * (clkcfg["SYSCLKDIVSEL"].value & 0x3F) or 1)
+        return frozenset({1.0} | {hz * factor / SYSCLK_HZ for hz in _CRYSTALS_HZ if 0 < hz * factor < SYSCLK_HZ})
+
+    @property
     def timer2_cycles(self) -> int:
         """SYSCLK cycles between two counts of CPU timer 2's input.  CHOICE: whole ones."""
         control = self._cpusys.registers["TMR2CLKCTL"].value

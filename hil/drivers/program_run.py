@@ -11,15 +11,16 @@ from emulator.c28x.compiled_program import Compiled
 from emulator.c28x.findings import Finding
 from emulator.c28x.sites import Place
 from emulator.c28x.tree import Function
-from emulator.chip import I2C_PIE
+from emulator.chip import I2C_PIE, INPUT_TRIPINS, SPI_PIE
 from emulator.clock import SYSCLK_HZ, seconds
 from emulator.devices.lv_maxsonar_ring import SonarRing
 from emulator.registers.i2c import I2CSTR
+from emulator.registers.spi import SPICCR, SPICTL
 from hil.drivers.budget import RUN, TimeBudget, computed
 from hil.drivers.cut_messages import TRIAL, CutTrial, cut_messages
 from hil.drivers.face_scale import FaceScales
 from hil.drivers.periods import RoutinePeriods, wrong_periods, wrong_timers
-from hil.drivers.places import anchored, of_unused_part
+from hil.drivers.places import anchored, mentions_gyro, of_open_trip, of_unused_part
 from hil.drivers.roles import Roles
 from hil.drivers.sources import ArrivalWatch
 from hil.drivers.stale import AgeWatch, watched
@@ -235,9 +236,10 @@ def _run(
     for hung in image.board.findings.of("endless-poll"):
         if hung.task == "main" and hung.place is not None and not waits_for_others(hung, roles):
             image.board.watchdog.report_hung_main(hung.time_cycles - image.linked.runtime.poll_limit, hung.place)
+    known = len(image.board.sysctrl.sysclk_shares) == 1
     told = (
-        *wrong_periods(build.modules, routines.periods()), *scales.wrong(),
-        *misread_counts(build.modules, image.board.kernel.clocks.tick_period_us, image.board),
+        *(wrong_periods(build.modules, routines.periods()) if known else ()), *scales.wrong(),
+        *(misread_counts(build.modules, image.board.kernel.clocks.tick_period_us, image.board) if known else ()),
         *wrong_rates(build.modules, image.board), *wrong_timers(build.modules, image.board),
     )  # fmt: skip
     for wrong in told:
@@ -249,11 +251,14 @@ def _run(
     alone = roles.main is None
     starts = [ring.start for ring in image.board.find(SonarRing).values()]
     selects = [select for bus in image.board.spi_bus.values() for select in bus.selects]
+    gyro = mentions_gyro(sorted(build.files))
+    chosen = [image.board.register("InputXbarRegs", f"INPUT{n}SELECT").value for n in INPUT_TRIPINS]
+    trips = [image.board.pins[pin] for pin in chosen if pin < len(image.board.pins)]
     rated = tuple(
         replace(finding, how="generated")
         if alone
         or (waits_for_others(finding, roles, ended_parties) and not waits_for_tasks(finding, roles))
-        or (not board_named and of_unused_part(finding, starts, selects))
+        or (not board_named and (of_unused_part(finding, starts, selects, gyro=gyro) or of_open_trip(finding, trips)))
         else finding
         for finding in found
     )  # fmt: skip
@@ -283,7 +288,17 @@ def _ended_parties(image: Image) -> EndedParties:
     blocks = [f"I2c{letter.lower()}Regs" for letter in I2C_PIE]
     refused = [block for block in blocks if board.register(block, "I2CSTR").value & I2CSTR.NACK.mask]
     refused += [f"Can{letter.lower()}Regs" for letter, can in board.can.items() if can.unheard]
-    return EndedParties(board.connections.silent if board.connections is not None else (), refused)
+    return EndedParties(board.connections.silent if board.connections is not None else (), refused, _spi_slaves(image))
+
+
+def _spi_slaves(image: Image) -> list[str]:
+    """The register blocks of the SPI modules that are slaves and out of reset: the master is outside of the chip."""
+    blocks = [f"Spi{letter.lower()}Regs" for letter in SPI_PIE]
+    return [
+        block for block in blocks
+        if image.board.register(block, "SPICCR").value & SPICCR.SPISWRESET.mask
+        and not image.board.register(block, "SPICTL").value & SPICTL.MASTER_SLAVE.mask
+    ]  # fmt: skip
 
 
 def _bare(

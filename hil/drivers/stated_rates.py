@@ -7,6 +7,8 @@ A comment beside the statement that sets a period, or beside a definition that i
 of a constant in it.  The rate that counts is the one behind the last `=`.  It is told if it is none of those that the
 hardware has then: that of the counter, of its interrupts and triggers, of a pin that toggles.
 
+The clock of a program that makes it from a crystal can be slower on its board; then both rates are right.
+
 TI's driverlib is told the frequency of a clock (`SCI_setConfig(base, lspclkHz, baud, ...)`): that is checked too.
 """
 
@@ -14,7 +16,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isclose
 from typing import Final
 
@@ -95,9 +97,14 @@ class _Rates:
     #: What the register of the period holds.
     period: int = 0
 
+    @property
+    def all(self) -> tuple[float, ...]:
+        """Its own, and the others."""
+        return (self.own, *self.others)
+
     def has(self, rate: float) -> bool:
         """Whether it is one of them."""
-        return any(isclose(rate, each, rel_tol=_EQUAL) for each in (self.own, *self.others))
+        return any(isclose(rate, each, rel_tol=_EQUAL) for each in self.all)
 
 
 def wrong_rates(modules: Iterable[Module], chip: Chip) -> Iterator[UnitMismatch]:
@@ -108,9 +115,10 @@ def wrong_rates(modules: Iterable[Module], chip: Chip) -> Iterator[UnitMismatch]
     for each in settings:
         alone = sum(other.counter == each.counter and other.counted == each.counted for other in settings) == 1
         rates = _rates(chip, each.counter) if alone else None
+        slower = chip.sysctrl.sysclk_shares
         if rates is None or not _holds(each, rates):
             continue
-        stated = _stated(each, rates)
+        stated = _stated(each, replace(rates, others=frozenset(r * x for r in rates.all for x in slower)))
         if stated is not None and any(isclose(stated[1] / rates.own, slip, rel_tol=_EQUAL) for slip in _SLIPS):
             text, rate = stated
             message = f"{text} states {_hz(rate)}, and {each.counter} counts its period {_hz(rates.own)}"
@@ -287,13 +295,15 @@ def _leaves(e: Expr) -> Iterator[Expr]:
 
 def _wrong_clocks(functions: Iterable[Function], chip: Chip) -> Iterator[UnitMismatch]:
     """The calls of driverlib that are told another frequency of LSPCLK than it has."""
-    real = chip.sysctrl.lspclk_hz
+    real, slower = chip.sysctrl.lspclk_hz, chip.sysctrl.sysclk_shares
     for function in functions:
         for s in statements(function.body):
             for p in own_nodes(s):
                 if isinstance(p, Call) and p.function.name in _TOLD_LSPCLK and len(p.arguments) > 1:
                     told = bare(p.arguments[1])
-                    if isinstance(told, Const) and told.value > 0 and not isclose(told.value, real, rel_tol=_EQUAL):
+                    if isinstance(told, Const) and told.value > 0 and not any(
+                        isclose(told.value, real * x, rel_tol=_EQUAL) for x in slower
+                    ):  # fmt: skip
                         message = (
                             f"{p.function.name} is told that LSPCLK has {_hz(told.value)}, and it has {_hz(real)}: the "
                             f"bit rate is {real / told.value:.4g} times the wanted one"

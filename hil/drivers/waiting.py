@@ -56,13 +56,15 @@ _OF_SENT: Final = re.compile(r"CAN_TXRQ\w*|CAN_ES\.TxOk|CAN_IF\dMCTL\.TxRqst")
 
 @dataclass(frozen=True, slots=True)
 class EndedParties:
-    """The parties that can end no wait any more, in a run that is over."""
+    """The parties that can end no wait any more, in a run that is over, and those outside that can."""
 
     #: Names of interrupt routines that never run again.
     silent: Collection[str] = ()
     #: Register blocks of I2C modules whose part did not acknowledge, which wait for the program, and of CAN controllers
     #: whose frames nobody acknowledges.
     refused: Collection[str] = ()
+    #: Register blocks of SPI modules that are slaves, which wait for a master outside of the chip.
+    slaves: Collection[str] = ()
 
 
 NONE_ENDED: Final = EndedParties()
@@ -99,7 +101,7 @@ def loop_waits(place: Place, roles: Roles, *, main: bool = False, ended: EndedPa
     for function in roles.functions:
         for loop in _loops_at(function, place):
             looked_at = list(_read_by_loop(loop, by_path))
-            if any(_outside(node, ended.refused) for node in looked_at):
+            if any(_outside(node, ended.refused, ended.slaves) for node in looked_at):
                 return True
             variables = {v for v in looked_at if isinstance(v, Variable) and v.kind == "global"}
             if any(variables & roles.writes[other.path] for other in meanwhile if main or other is not function):
@@ -227,7 +229,9 @@ def reads_outside(function: Function, by_path: dict[str, Function]) -> bool:
     return any(_outside(node) for other in reached(function, by_path) for node in _registers(within(other.body)))
 
 
-def _outside(node: Any, refused: Collection[str] = ()) -> bool:
+def _outside(node: Any, refused: Collection[str] = (), slaves: Collection[str] = ()) -> bool:
+    if isinstance(node, RegisterRef) and node.block in slaves:
+        return True
     if not isinstance(node, RegisterRef | RegisterAt) or _OUTSIDE.match(_name(node)) is None:
         return False
     if not isinstance(node, RegisterRef) or node.block not in refused:

@@ -40,7 +40,7 @@ Kinds of guards:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import replace
 from typing import Any, Final
 
@@ -862,6 +862,7 @@ def steps(loop: While) -> set[int]:
     """The statements of a loop that step an unsigned object of its test: one compared by order or with a constant.
 
     A test whether an unsigned number is below 0 never ends the loop: it is reported as a constant condition instead.
+    A step down that wraps ends a loop with an upper limit (`i < n`), as it shall.
     """
     tested = [loop.test, *(s.test for s in loop.body if isinstance(s, If) and s.then and isinstance(s.then[0], Break))]
     tested += [s.value for s in loop.step if isinstance(s, Assign)]
@@ -881,9 +882,32 @@ def steps(loop: While) -> set[int]:
         match s:
             case Assign(target=LValue(ctype=IntType(signed=False)) as target, value=Binary(op="+" | "-", left=left)):
                 stepped = bare(left)
+                down = isinstance(s.value, Binary) and s.value.op == "-"
+                if down and any(_limits(test, target) for test in _conjuncts(loop.test)):
+                    continue
                 if target in objects and isinstance(stepped, Load) and stepped.lvalue == target:
                     found.add(id(s))
     return found
+
+
+def _conjuncts(test: Expr) -> Iterator[Expr]:
+    """The conditions that must all be true for `test` to be true."""
+    match bare(test):
+        case Logic(op="and", operands=operands):
+            for each in operands:
+                yield from _conjuncts(each)
+        case one:
+            yield one
+
+
+def _limits(test: Expr, target: LValue) -> bool:
+    """Whether a condition is false for a large number at `target`: `i < 600`."""
+    match test:
+        case Compare(op="<" | "<=", left=small) | Compare(op=">" | ">=", right=small):
+            match bare(small):
+                case Load(lvalue=lvalue):
+                    return lvalue == target
+    return False
 
 
 def zero(e: Expr) -> bool:
