@@ -137,7 +137,8 @@ Flash1CtrlRegs = at(0x5FC00, flash.FlashCtrlRegs)
 Flash1EccRegs = at(0x5FF00, flash.FlashEccRegs)
 FlashPumpSemaphoreRegs = at(0x50024, flash.FlashPumpSemaphoreRegs)
 
-# Blocks that the chip has and the emulator does not model
+# Blocks that the chip has and the emulator does not model.  IpcRegs: parts with two CPUs, whose programs for CPU1 run
+# here too (HDR F2837xD_ipc.h).
 
 AccessProtectionRegs: unmodelled
 Cla1Regs: unmodelled
@@ -161,6 +162,7 @@ Emif1ConfigRegs: unmodelled
 Emif1Regs: unmodelled
 Emif2ConfigRegs: unmodelled
 Emif2Regs: unmodelled
+IpcRegs: unmodelled
 McbspaRegs: unmodelled
 McbspbRegs: unmodelled
 MemCfgRegs: unmodelled
@@ -187,6 +189,6 @@ UNMODELLED_AT: Final = {
     "Sdfm2Regs": (0x5E80, 0x5EFF), "McbspaRegs": (0x6000, 0x603F), "McbspbRegs": (0x6040, 0x607F),
     "UppRegs": (0x6200, 0x62FF), "the message RAM of the uPP": (0x6C00, 0x6FFF), "NmiIntruptRegs": (0x7060, 0x706F),
     "SyncSocRegs": (0x7940, 0x794F), "UsbaRegs": (0x40000, 0x40FFF), "Emif1Regs": (0x47000, 0x477FF),
-    "Emif2Regs": (0x47800, 0x47FFF), "memory at the EMIF2": (0x2000, 0x2FFF),
+    "Emif2Regs": (0x47800, 0x47FFF), "IpcRegs": (0x50000, 0x50023), "memory at the EMIF2": (0x2000, 0x2FFF),
     "memory at the EMIF1": (0x100000, 0x3DFFFF),
 }

@@ -23,6 +23,13 @@ def _single(function: Callable[..., float]) -> Callable[..., float]:
     return single
 
 
+def _estimate(value: float) -> float:
+    """A number with the accuracy of the FPU's estimates, which is 8 bits.  CHOICE: it is rounded to 9 bits."""
+    fraction, exponent = math.frexp(value)
+    return math.ldexp(round(fraction * 512), exponent - 9)
+
+
+#: EINVF32 and EISQRTF32 (SPRUHS1, FPU): a program improves their estimates by Newton's steps.
 #: The trigonometric unit (SPRUHS1, TMU): angles of `pu` are in turns.  CHOICE: the correctly rounded value; the unit's
 #: value differs from it in the last bits.
 FLOATS: Final[dict[str, Callable[..., Any]]] = {
@@ -31,6 +38,8 @@ FLOATS: Final[dict[str, Callable[..., Any]]] = {
         ("__sin", math.sin), ("__cos", math.cos), ("__atan", math.atan), ("__atan2", math.atan2),
         ("__sinpuf32", lambda x: math.sin(math.tau * x)), ("__cospuf32", lambda x: math.cos(math.tau * x)),
         ("__atanpuf32", lambda x: math.atan(x) / math.tau), ("__sqrt", math.sqrt), ("__divf32", divide_ieee),
+        ("__einvf32", lambda x: _estimate(1 / x) if x else math.copysign(math.inf, x)),
+        ("__eisqrtf32", lambda x: _estimate(1 / math.sqrt(x)) if x else math.inf),
         ("__fmax", max), ("__fmin", min), ("__fracf32", lambda x: math.modf(x)[0]),
     )
 }  # fmt: skip

@@ -282,6 +282,7 @@ class Linked:
             "_c_modulo_ints": runtime.modulo_ints, "_c_shift": runtime.shift,
             "_c_endless": runtime.endless, "_c_loop_limit": runtime.loop_limit,
             "_c_poll": runtime.poll, "_c_idle": runtime.idle, "_c_NEVER": NEVER, "_c_poll_limit": runtime.poll_limit,
+            "_c_unmodelled_wait": runtime.unmodelled_wait,
             "_c_stack_check": runtime.stack_check, "_c_outward": _to_extern,
             "_c_spill": self._spill, "__builtins__": builtins.__dict__,
         }  # fmt: skip

@@ -48,6 +48,8 @@ from emulator.seed import parse_seed
 
 #: The time limit of a loop that only computes.  Such a loop takes milliseconds; the limit catches those that never end.
 LOOP_LIMIT_S: Final = 0.2
+#: CHOICE: hardware answers within microseconds.  What another processor answers, the emulator cannot know.
+_UNMODELLED_WAIT_S: Final = 1e-3
 #: How many awaited stamps are remembered for one comparison.
 _STAMPS: Final = 64
 #: A longer time between two captures is reported at the third use.  One may come from an edge that was missed.
@@ -242,6 +244,10 @@ class Runtime:
         #: How long a loop may compute without a call, in cycles.
         self.loop_limit = int(LOOP_LIMIT_S * 1_000_000 * CYCLES_PER_US)
         self.poll_limit = int(poll_limit_s * 1_000_000 * CYCLES_PER_US)
+        #: How long a wait for a register that is not modelled may last until `blames_unmodelled` is called, in cycles.
+        self.unmodelled_wait = int(_UNMODELLED_WAIT_S * 1_000_000 * CYCLES_PER_US)
+        #: The sites of such waits that nothing ended.
+        self._in_vain: set[int] = set()
         self.watcher: Watcher | None = None
         self.sites = RuntimeSites(self)
         #: Tests, by the path of an object: the value of a never-written object; values of cells outside of an array.
@@ -1323,7 +1329,11 @@ class Runtime:
         site = self.sites[number]
         clock = self.clock
         if self._blames_unmodelled(site.name):
-            return clock.now + self.poll_limit
+            self._in_vain.add(number)
+            return clock.now + self.unmodelled_wait
+        if number in self._in_vain and clock.now > until:
+            self._in_vain.remove(number)
+            return clock.now + self.poll_limit  # something else may end it
         if clock.now <= until:
             message = f"{site.name} is polled, but no event is left that could change it: the loop never ends"
             self.hit(site, "endless-poll", message)

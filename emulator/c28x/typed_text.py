@@ -62,7 +62,7 @@ _VECTORS: Final = "_r_PieVectTable_"
 #: The types of what the linker binds, by name and by the end of a register's name.
 _TYPES: Final = {
     "_c_clock": "Clock", "_c_position": "Position", "_c_runtime": "Runtime", "_cpu": "Cpu", "_c_poll_limit": "int",
-    "_c_loop_limit": "int",
+    "_c_loop_limit": "int", "_c_unmodelled_wait": "int",
 }  # fmt: skip
 #: Names of the language -> the methods of `Runtime` that the linker binds to them.
 _METHODS: Final = {f"_c_{name}": name for name, value in vars(Runtime).items() if callable(value) and name[0] != "_"}

@@ -43,13 +43,15 @@ class CPUSYSLOCK1(Register, bits=32, eallow=True):
 class PCLKCR0(Register, bits=32, eallow=True):
     """Clock gates.  TRM CPU_SYS_REGS; HDR PCLKCR0_BITS."""
     # CHOICE: reset 0x38 (timers running), unconfirmed.
-    TBCLKSYNC = F(18, RW, 0, "time base of all ePWM modules runs")
-    HRPWM     = F(16, RW, 0, "HRPWM clock")
-    CPUTIMER2 = F( 5, RW, 1, "CPU timer 2 clock")
-    CPUTIMER1 = F( 4, RW, 1, "CPU timer 1 clock")
-    CPUTIMER0 = F( 3, RW, 1, "CPU timer 0 clock")
-    DMA       = F( 2, RW, 0, "DMA clock")
-    CLA1      = F( 0, RW, 0, "CLA clock")
+    # GTBCLKSYNC: parts with two CPUs (HDR F2837xD PCLKCR0_BITS)
+    GTBCLKSYNC = F(19, RW, 0, "time bases of both CPUs run", modelled=False)
+    TBCLKSYNC  = F(18, RW, 0, "time base of all ePWM modules runs")
+    HRPWM      = F(16, RW, 0, "HRPWM clock")
+    CPUTIMER2  = F( 5, RW, 1, "CPU timer 2 clock")
+    CPUTIMER1  = F( 4, RW, 1, "CPU timer 1 clock")
+    CPUTIMER0  = F( 3, RW, 1, "CPU timer 0 clock")
+    DMA        = F( 2, RW, 0, "DMA clock")
+    CLA1       = F( 0, RW, 0, "CLA clock")
 
 
 class PCLKCR1(Register, bits=32, eallow=True):
@@ -699,8 +701,110 @@ class SOFTPRES14(Register, bits=32, eallow=True):
     CMPSS1 = F(0, RW, 0, "reset CMPSS1")
 
 
+class CPUSEL0(Register, bits=32, eallow=True):
+    """Owners of peripherals on parts with two CPUs.  TRM DEV_CFG_REGS; HDR F2837xD CPUSEL0_BITS."""
+    EPWM12 = F(11, RW, 0, "EPWM12 belongs to CPU2", modelled=False)
+    EPWM11 = F(10, RW, 0, "EPWM11 belongs to CPU2", modelled=False)
+    EPWM10 = F(9, RW, 0, "EPWM10 belongs to CPU2", modelled=False)
+    EPWM9  = F(8, RW, 0, "EPWM9 belongs to CPU2", modelled=False)
+    EPWM8  = F(7, RW, 0, "EPWM8 belongs to CPU2", modelled=False)
+    EPWM7  = F(6, RW, 0, "EPWM7 belongs to CPU2", modelled=False)
+    EPWM6  = F(5, RW, 0, "EPWM6 belongs to CPU2", modelled=False)
+    EPWM5  = F(4, RW, 0, "EPWM5 belongs to CPU2", modelled=False)
+    EPWM4  = F(3, RW, 0, "EPWM4 belongs to CPU2", modelled=False)
+    EPWM3  = F(2, RW, 0, "EPWM3 belongs to CPU2", modelled=False)
+    EPWM2  = F(1, RW, 0, "EPWM2 belongs to CPU2", modelled=False)
+    EPWM1  = F(0, RW, 0, "EPWM1 belongs to CPU2", modelled=False)
+
+
+class CPUSEL1(Register, bits=32, eallow=True):
+    """Owners of peripherals on parts with two CPUs.  TRM DEV_CFG_REGS; HDR F2837xD CPUSEL1_BITS."""
+    ECAP6 = F(5, RW, 0, "ECAP6 belongs to CPU2", modelled=False)
+    ECAP5 = F(4, RW, 0, "ECAP5 belongs to CPU2", modelled=False)
+    ECAP4 = F(3, RW, 0, "ECAP4 belongs to CPU2", modelled=False)
+    ECAP3 = F(2, RW, 0, "ECAP3 belongs to CPU2", modelled=False)
+    ECAP2 = F(1, RW, 0, "ECAP2 belongs to CPU2", modelled=False)
+    ECAP1 = F(0, RW, 0, "ECAP1 belongs to CPU2", modelled=False)
+
+
+class CPUSEL2(Register, bits=32, eallow=True):
+    """Owners of peripherals on parts with two CPUs.  TRM DEV_CFG_REGS; HDR F2837xD CPUSEL2_BITS."""
+    EQEP3 = F(2, RW, 0, "EQEP3 belongs to CPU2", modelled=False)
+    EQEP2 = F(1, RW, 0, "EQEP2 belongs to CPU2", modelled=False)
+    EQEP1 = F(0, RW, 0, "EQEP1 belongs to CPU2", modelled=False)
+
+
+class CPUSEL4(Register, bits=32, eallow=True):
+    """Owners of peripherals on parts with two CPUs.  TRM DEV_CFG_REGS; HDR F2837xD CPUSEL4_BITS."""
+    SD2 = F(1, RW, 0, "SD2 belongs to CPU2", modelled=False)
+    SD1 = F(0, RW, 0, "SD1 belongs to CPU2", modelled=False)
+
+
+class CPUSEL5(Register, bits=32, eallow=True):
+    """Owners of peripherals on parts with two CPUs.  TRM DEV_CFG_REGS; HDR F2837xD CPUSEL5_BITS."""
+    SCI_D = F(3, RW, 0, "SCI_D belongs to CPU2", modelled=False)
+    SCI_C = F(2, RW, 0, "SCI_C belongs to CPU2", modelled=False)
+    SCI_B = F(1, RW, 0, "SCI_B belongs to CPU2", modelled=False)
+    SCI_A = F(0, RW, 0, "SCI_A belongs to CPU2", modelled=False)
+
+
+class CPUSEL6(Register, bits=32, eallow=True):
+    """Owners of peripherals on parts with two CPUs.  TRM DEV_CFG_REGS; HDR F2837xD CPUSEL6_BITS."""
+    SPI_C = F(2, RW, 0, "SPI_C belongs to CPU2", modelled=False)
+    SPI_B = F(1, RW, 0, "SPI_B belongs to CPU2", modelled=False)
+    SPI_A = F(0, RW, 0, "SPI_A belongs to CPU2", modelled=False)
+
+
+class CPUSEL7(Register, bits=32, eallow=True):
+    """Owners of peripherals on parts with two CPUs.  TRM DEV_CFG_REGS; HDR F2837xD CPUSEL7_BITS."""
+    I2C_B = F(1, RW, 0, "I2C_B belongs to CPU2", modelled=False)
+    I2C_A = F(0, RW, 0, "I2C_A belongs to CPU2", modelled=False)
+
+
+class CPUSEL8(Register, bits=32, eallow=True):
+    """Owners of peripherals on parts with two CPUs.  TRM DEV_CFG_REGS; HDR F2837xD CPUSEL8_BITS."""
+    CAN_B = F(1, RW, 0, "CAN_B belongs to CPU2", modelled=False)
+    CAN_A = F(0, RW, 0, "CAN_A belongs to CPU2", modelled=False)
+
+
+class CPUSEL9(Register, bits=32, eallow=True):
+    """Owners of peripherals on parts with two CPUs.  TRM DEV_CFG_REGS; HDR F2837xD CPUSEL9_BITS."""
+    McBSP_B = F(1, RW, 0, "McBSP_B belongs to CPU2", modelled=False)
+    McBSP_A = F(0, RW, 0, "McBSP_A belongs to CPU2", modelled=False)
+
+
+class CPUSEL11(Register, bits=32, eallow=True):
+    """Owners of peripherals on parts with two CPUs.  TRM DEV_CFG_REGS; HDR F2837xD CPUSEL11_BITS."""
+    ADC_D = F(3, RW, 0, "ADC_D belongs to CPU2", modelled=False)
+    ADC_C = F(2, RW, 0, "ADC_C belongs to CPU2", modelled=False)
+    ADC_B = F(1, RW, 0, "ADC_B belongs to CPU2", modelled=False)
+    ADC_A = F(0, RW, 0, "ADC_A belongs to CPU2", modelled=False)
+
+
+class CPUSEL12(Register, bits=32, eallow=True):
+    """Owners of peripherals on parts with two CPUs.  TRM DEV_CFG_REGS; HDR F2837xD CPUSEL12_BITS."""
+    CMPSS8 = F(7, RW, 0, "CMPSS8 belongs to CPU2", modelled=False)
+    CMPSS7 = F(6, RW, 0, "CMPSS7 belongs to CPU2", modelled=False)
+    CMPSS6 = F(5, RW, 0, "CMPSS6 belongs to CPU2", modelled=False)
+    CMPSS5 = F(4, RW, 0, "CMPSS5 belongs to CPU2", modelled=False)
+    CMPSS4 = F(3, RW, 0, "CMPSS4 belongs to CPU2", modelled=False)
+    CMPSS3 = F(2, RW, 0, "CMPSS3 belongs to CPU2", modelled=False)
+    CMPSS2 = F(1, RW, 0, "CMPSS2 belongs to CPU2", modelled=False)
+    CMPSS1 = F(0, RW, 0, "CMPSS1 belongs to CPU2", modelled=False)
+
+
+class CPUSEL14(Register, bits=32, eallow=True):
+    """Owners of peripherals on parts with two CPUs.  TRM DEV_CFG_REGS; HDR F2837xD CPUSEL14_BITS."""
+    DAC_C = F(18, RW, 0, "DAC_C belongs to CPU2", modelled=False)
+    DAC_B = F(17, RW, 0, "DAC_B belongs to CPU2", modelled=False)
+    DAC_A = F(16, RW, 0, "DAC_A belongs to CPU2", modelled=False)
+
+
 class DevCfgRegs(Block, struct="DEV_CFG_REGS"):
-    """Device configuration: what part this is, and software resets.  HDR struct DEV_CFG_REGS."""
+    """Device configuration: what part this is, and software resets.  HDR struct DEV_CFG_REGS.
+
+    CPUSELx exist on parts with two CPUs only (F2837xD), whose programs for CPU1 run here too.
+    """
     PARTIDL    = At(0x08, PARTIDL)
     PARTIDH    = At(0x0A, PARTIDH)
     # CHOICE: revision C, the last one that TI's sources ask for.
@@ -739,6 +843,18 @@ class DevCfgRegs(Block, struct="DEV_CFG_REGS"):
     SOFTPRES13 = At(0x9C, SOFTPRES13)
     SOFTPRES14 = At(0x9E, SOFTPRES14)
     SOFTPRES16 = At(0xA2, SOFTPRES16)
+    CPUSEL0    = At(0xD6, CPUSEL0)
+    CPUSEL1    = At(0xD8, CPUSEL1)
+    CPUSEL2    = At(0xDA, CPUSEL2)
+    CPUSEL4    = At(0xDE, CPUSEL4)
+    CPUSEL5    = At(0xE0, CPUSEL5)
+    CPUSEL6    = At(0xE2, CPUSEL6)
+    CPUSEL7    = At(0xE4, CPUSEL7)
+    CPUSEL8    = At(0xE6, CPUSEL8)
+    CPUSEL9    = At(0xE8, CPUSEL9)
+    CPUSEL11   = At(0xEC, CPUSEL11)
+    CPUSEL12   = At(0xEE, CPUSEL12)
+    CPUSEL14   = At(0xF2, CPUSEL14)
     SYSDBGCTL  = At(0x12C, SYSDBGCTL)
 
 

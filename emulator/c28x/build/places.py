@@ -243,6 +243,8 @@ def _register(base: RegisterPath, name: str, where: Where, text: str) -> Place:
             made = Field(field, f.lo, f.width, f.mask, f.lane)
             return _made(base, entry, made, bit_field(f.width), where)
     wanted = f"{shown}.{way[0]}" + ("" if plain else ".all or .bit.FIELD")
+    if way[1:2] == ("half",):
+        wanted += " (.half is of the headers for older parts)"
     raise SourceError.at(where, f"'{text}': C writes {wanted}")
 
 

@@ -89,6 +89,7 @@ from emulator.c28x.tree_queries import (
     executes,
     leaves,
     observable,
+    parts,
     passing,
     polls,
     renewed,
@@ -630,7 +631,11 @@ class PythonWriter:
             self.put("while True:")
             self.put(f"    if _k.poll({cycles}) == _c_NEVER: _c_idle({number})")
             return
-        self.put("_since = _k.now + _c_poll_limit")
+        unmodelled = any(
+            isinstance(p, RegisterLoad) and isinstance(p.register, RegisterRef) and p.register.unmodelled
+            for p in parts(s.test)
+        )
+        self.put(f"_since = _k.now + _c_{'unmodelled_wait' if unmodelled else 'poll_limit'}")
         self.put(f"while {test}:")
         self.put(f"    if _k.poll({cycles}) > _since: _since = _c_poll({number}, _since)")
         self.cost = s.cycles

@@ -7,6 +7,7 @@ headers, so TI's own source files can be compiled with the user's.  Source: HDR.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import lru_cache
 from typing import Final
@@ -31,6 +32,11 @@ _TYPES: Final = (
     ("int", "int16"), ("long", "int32"), ("long long", "int64"), ("unsigned int", "Uint16"),
     ("unsigned long", "Uint32"), ("unsigned long long", "Uint64"), ("float", "float32"), ("long double", "float64"),
     ("unsigned int", "uint16"), ("unsigned long", "uint32"),
+)  # fmt: skip
+#: Macros that make the name of a header from parts (HDR F28x_Project.h, F2837xS_Cla_typedefs.h).
+_NAME_MACROS: Final = (
+    "#define XSTRINGIZE(s) STRINGIZE(s)", "#define STRINGIZE(s) #s",
+    "#define XCONCAT(x, y) CONCAT(x, y)", "#define CONCAT(x, y) x##y",
 )  # fmt: skip
 #: The CPU interrupts of the kernel that do not come from the PIE.
 _LINES: Final = (("M_DLOG", "0x4000"), ("M_RTOS", "0x8000"))
@@ -59,12 +65,13 @@ _ROM: Final = (
 _DUAL: Final = {"ADC_RESOLUTION_": "ADC_BITRESOLUTION_", "CAN_": ""}
 #: Symbols of the linker command file (HDR F2837xS_GlobalPrototypes.h) -> their addresses.  CHOICE: the code that
 #: start-up code copies from flash to RAM has length 0, because code has no memory here.
-LINKED: Final = {
+_LINKED: Final = {
     "RamfuncsLoadStart": 0x86000, "RamfuncsLoadEnd": 0x86000, "RamfuncsLoadSize": 0,
     "RamfuncsRunStart": 0x8000, "RamfuncsRunEnd": 0x8000, "RamfuncsRunSize": 0,
 }  # fmt: skip
-#: The same symbols, declared in C.
-LINKER_SYMBOLS: Final = f"unsigned int {', '.join(LINKED)};\n"
+#: What a project calls such symbols of its own command file (`secureRamFuncs_loadstart`, `Cla1funcsRunStart`): its
+#: operators are LOAD_START, LOAD_END, LOAD_SIZE, RUN_START, ... (SPRU513, "Address and Dimension Operators").
+_LINKER_SYMBOL: Final = re.compile(r"\w*(?P<place>load|run)_?(?P<what>start|end|size)", re.IGNORECASE)
 #: Functions declared with TI's timer structure, not as `emulator.device_h` declares them: see `CPU_TIMERS`.
 _TIMER_FUNCTIONS: Final = ("InitCpuTimers", "ConfigCpuTimer")
 _TIMERS: Final = ("CpuTimer0", "CpuTimer1", "CpuTimer2")
@@ -110,6 +117,20 @@ void ConfigCpuTimer(struct CPUTIMER_VARS *Timer, float Freq, float Period)
 """
 #: The names that `CPU_TIMERS` defines.
 CPU_TIMER_NAMES: Final = frozenset((*_TIMERS, *_TIMER_FUNCTIONS))
+#: The tasks of the CLA, by the names that TI's examples give them.  Their code is in files for the CLA, which is not
+#: modelled.  The CPU only takes their addresses (TRM 7.3, "CLA Interrupt Vectors").
+CLA_TASKS: Final = tuple(f"Cla1Task{n}" for n in range(1, 9))
+#: The definition of a task of the CLA, in C.  It is compiled with a program that names one without a definition.
+CLA_TASK: Final = "__interrupt void {name}(void) {{}}\n"
+
+
+def linker_address(name: str) -> int | None:
+    """The address of the object `name` if the linker defines it: its name says so."""
+    called = _LINKER_SYMBOL.fullmatch(name)
+    if called is None:
+        return None
+    what = "Size" if called["what"].lower() == "size" else "Start"
+    return _LINKED[f"Ramfuncs{called['place'].title()}{what}"]
 
 
 def device_header() -> str:
@@ -136,11 +157,7 @@ def device_header() -> str:
 
 def project_header() -> str:
     """`F28x_Project.h`: the device header, and the headers of TI's examples."""
-    macros = (
-        "#define XSTRINGIZE(s) STRINGIZE(s)", "#define STRINGIZE(s) #s",
-        "#define XCONCAT(x, y) CONCAT(x, y)", "#define CONCAT(x, y) x##y",
-    )  # fmt: skip
-    return guarded("F28x_Project.h", [*macros, *_include("F2837xS_device.h", "F2837xS_Examples.h")])
+    return guarded("F28x_Project.h", [*_NAME_MACROS, *_include("F2837xS_device.h", "F2837xS_Examples.h")])
 
 
 def examples_header() -> str:
@@ -152,7 +169,8 @@ def examples_header() -> str:
     lines += ["#define SYSTEM_PLL ((Uint16)0)", "#define AUX_PLL ((Uint16)1)", "#define AUXCLKIN 4"]
     lines += ["#define CPU_RATE 5.00L", *(f"#define CPU_FRQ_{f}MHZ {int(f == 200)}" for f in (200, 150, 120))]
     lines += _include(
-        "F2837xS_GlobalPrototypes.h", "F2837xS_cputimervars.h", "F2837xS_EPwm_defines.h", "F2837xS_Adc_defines.h",
+        "F2837xS_GlobalPrototypes.h", "F2837xS_cputimervars.h", "F2837xS_Cla_defines.h",
+        "F2837xS_EPwm_defines.h", "F2837xS_Adc_defines.h",
         "F2837xS_Can_defines.h", "F2837xS_Dma_defines.h", "F2837xS_Gpio_defines.h", "F2837xS_I2c_defines.h",
         "F2837xS_Pie_defines.h", "F2837xS_SysCtrl_defines.h",
     )  # fmt: skip
@@ -170,7 +188,7 @@ def global_prototypes() -> str:
     lines = [*_include("F2837xS_device.h"), *prototypes(here), "#define KickDog ServiceDog"]
     for result, parameters, names in _ELSEWHERE:
         lines += [f"extern {result} {name}({parameters});" for name in names.split()]
-    lines += [f"extern Uint16 {name};" for name in LINKED]
+    lines += [f"extern Uint16 {name};" for name in _LINKED]
     return guarded("F2837xS_GlobalPrototypes.h", lines)
 
 
@@ -215,6 +233,22 @@ def define_header(file: str, *prefixes: str) -> str:
             lines += defines(renamed) if instead else []
         lines += ["#endif"]
     return guarded(file, lines)
+
+
+def cla_header(file: str) -> str:
+    """`F2837xS_Cla_defines.h`: constants of the CLA, and the macros that start a task from C."""
+    lines = [*_include("F2837xS_device.h"), *defines({n: s for n, s in _constants().items() if n.startswith("CLA_")})]
+    for n, task in enumerate(CLA_TASKS, 1):
+        force = f'__asm(" IACK #0x{1 << n - 1:04X}")'
+        wait = f'__asm(" RPT #3 || NOP"); while (Cla1Regs.MIRUN.bit.INT{n} == 1);'
+        start = task.replace("Task", "ForceTask")
+        lines += [f"#define {start}() {force}", f"#define {start}andWait() {force}; {wait}"]
+    return guarded(file, lines)
+
+
+def cla_types_header(file: str) -> str:
+    """`F2837xS_Cla_typedefs.h`: the types of files for the CLA; the CPU's files have them from the device header."""
+    return guarded(file, [*_NAME_MACROS, *_include("F2837xS_device.h")])
 
 
 def i2c_header() -> str:

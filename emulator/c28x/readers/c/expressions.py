@@ -73,6 +73,7 @@ INTERRUPTS: Final = {
 FLOATS: Final = {
     name: _intrinsic(name, FLOAT, *(FLOAT,) * count)
     for name, count in (
+        ("__einvf32", 1), ("__eisqrtf32", 1),
         ("__sin", 1), ("__cos", 1), ("__atan", 1), ("__atan2", 2), ("__sinpuf32", 1), ("__cospuf32", 1),
         ("__atanpuf32", 1), ("__sqrt", 1), ("__divf32", 2), ("__fmax", 2), ("__fmin", 2), ("__fracf32", 1),
     )
@@ -87,8 +88,10 @@ _IDLE_CYCLES: Final = _intrinsic("__idle_cycles", VOID, UINT)
 #: `IDLE`: waits for an interrupt.
 _IDLE: Final = _intrinsic("__idle", VOID)
 _MODES: Final = re.compile(r"(SETC|CLRC) ((?:INTM|DBGM)(?: ?, ?(?:INTM|DBGM))?)", re.IGNORECASE)
-_REPEATED: Final = re.compile(r"RPT #\(?(0x[0-9a-f]+|0|[1-9]\d*)\)? ?\|\| ?NOP", re.IGNORECASE)
+_REPEATED: Final = re.compile(r"RPT ?#\(?(0x[0-9a-f]+|0|[1-9]\d*)\)? ?\|\| ?NOP", re.IGNORECASE)
 _MAX_REPEATED: Final = 255
+#: `IACK` starts tasks of the CLA, as a write to MIFRC does (TRM 7.3.3, "Software Trigger").
+_IACK: Final = re.compile(r"IACK ?#(0x[0-9a-f]+|\d+)", re.IGNORECASE)
 #: Save and restore of registers that C does not see, around a call of code that changes them.
 _KEPT: Final = re.compile(
     r"(PUSH|POP) (ACC|P|XT|DP|XAR[0-7]|AR[0-7](:AR[0-7])?|RPC|RB)"
@@ -458,11 +461,19 @@ class CExpressionReader:
             build.evaluate(self.b, build.call(self.b, _IDLE, [], where))
         elif _KEPT.fullmatch(text) is not None:
             pass
+        elif (started := _IACK.fullmatch(text)) is not None:
+            tasks = Const(ULONG, int(started[1], 0) & 0xFFFF, where=where)
+            cla = headers.unmodelled_block("Cla1Regs")
+            assert cla is not None
+            block = build.unmodelled_block(cla, where)
+            force = build.member(self.b, block, "MIFRC", where, text="Cla1Regs.MIFRC", base_text="Cla1Regs")
+            whole = build.member(self.b, force, "all", where, text="Cla1Regs.MIFRC.all", base_text="Cla1Regs.MIFRC")
+            build.assign(self.b, whole, tasks, where)
         elif text.upper() in headers.ASSEMBLER:
             self.core(headers.ASSEMBLER[text.upper()], where)
         else:
             known = ", ".join(headers.ASSEMBLER)
-            message = f'asm("{text}") is not modelled: known are {known}, IDLE, RPT #n || NOP'
+            message = f'asm("{text}") is not modelled: known are {known}, IDLE, IACK #n, RPT #n || NOP'
             raise SourceError.at(where, f"{message}; {_instead(text)}, or leave it out with #if and -D")
 
     def core(self, name: str, where: Where) -> None:

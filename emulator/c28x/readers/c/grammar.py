@@ -277,6 +277,8 @@ class Grammar(CParser):  # type: ignore[misc]
             return found.token.error("a range with ... is an extension of gcc: write each value")
         if before is None:
             return self._wrong(f"expected {what}")
+        if found is not None and before.value == "extern" and found.value == '"C"':
+            return found.token.error('extern "C" is C++: only C is read; put it within #ifdef __cplusplus')
         inside = len(self._scope_stack) > 2
         if found is not None and what == "';'" and found.type == "LBRACE" and before.type == "RPAREN" and inside:
             return found.token.error("a function within a function is an extension of gcc: move it out")

@@ -23,16 +23,22 @@ from types import MappingProxyType
 from typing import Final
 
 from emulator.c28x.readers.c import device_headers, iqmath_header, kernel_headers, library_headers
-from emulator.c28x.readers.c.device_headers import ASSEMBLER, CPU_TIMER_NAMES, CPU_TIMERS, LINKED, LINKER_SYMBOLS
+from emulator.c28x.readers.c.device_headers import (
+    ASSEMBLER,
+    CLA_TASK,
+    CLA_TASKS,
+    CPU_TIMER_NAMES,
+    CPU_TIMERS,
+    linker_address,
+)
 from emulator.c28x.readers.c.kernel_headers import handles, structures
 from emulator.c28x.readers.c.register_types import block_text, block_types, instances, register_type, tag, unmodelled
 from emulator.c28x.symbols import Unmodelled
 
 __all__ = [
-    "ASSEMBLER", "CPU_TIMERS", "CPU_TIMER_NAMES", "LINKED", "block_text", "block_types", "definitions", "handles",
-    "hint",
-    "instances", "names", "of_c_itself", "of_the_device", "register_type", "structures", "tag", "text",
-    "unmodelled_block",
+    "ASSEMBLER", "CPU_TIMERS", "CPU_TIMER_NAMES", "block_text", "block_types", "definitions", "handles",
+    "hint", "instances", "linker_address", "names", "of_c_itself", "of_the_device", "register_type", "structures",
+    "tag", "text", "unmodelled_block",
 ]  # fmt: skip
 
 _DEVICE: Final = "F2837xS_"
@@ -77,6 +83,8 @@ _MAKERS: Final[Mapping[str, Callable[[], str]]] = MappingProxyType({
         _defines("Pie", "PIEACK_"),
         _defines("SysCtrl", "LPM_", "IPC_PUMP_KEY"),
     )),
+    f"{_DEVICE}Cla_defines.h": partial(device_headers.cla_header, f"{_DEVICE}Cla_defines.h"),
+    f"{_DEVICE}Cla_typedefs.h": partial(device_headers.cla_types_header, f"{_DEVICE}Cla_typedefs.h"),
     f"{_DEVICE}I2c_defines.h": device_headers.i2c_header,
     **{f"{_DEVICE}{block}.h": _device for block in _BLOCKS},
     kernel_headers.STANDARD: kernel_headers.standard_header,
@@ -130,7 +138,9 @@ def definitions(name: str) -> tuple[str, str] | None:
     """
     if name in CPU_TIMER_NAMES:
         return f"{_DEVICE}CpuTimers", CPU_TIMERS
-    return ("linker", LINKER_SYMBOLS) if name in LINKED else None
+    if name in CLA_TASKS:
+        return name, CLA_TASK.format(name=name)
+    return None
 
 
 def unmodelled_block(name: str) -> Unmodelled | None:

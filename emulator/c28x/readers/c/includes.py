@@ -22,6 +22,8 @@ _FLAGS = os.O_RDONLY
 for _name in ("O_NONBLOCK", "O_NOFOLLOW", "O_BINARY", "O_CLOEXEC"):
     _FLAGS |= getattr(os, _name, 0)
 _DRIVE = re.compile(r"[A-Za-z]:")
+#: Names of headers of the device.
+_OF_DEVICE = re.compile(r"f28x_project\.h$|f2837x[sd]_")
 
 
 @lru_cache(maxsize=64)
@@ -90,6 +92,9 @@ class IncludePath:
         beside = quoted and folder is not None and self._standard(name.lower()) and self._lies_in(folder, name)
         if not beside and (text := self._builtin(name.lower())) is not None:
             return _header_of_emulator(name, text)
+        last = name.lower().rpartition("/")[2]
+        if _OF_DEVICE.match(last) and (text := self._builtin(last)) is not None:
+            return _header_of_emulator(last, text)  # with the way to it, as projects with a copy of TI's headers write
         absolute = name.startswith("/") or _DRIVE.match(name) is not None
         if absolute:
             places = [""]
@@ -115,7 +120,8 @@ class IncludePath:
             return _header_of_emulator(name, text)
         if outside:
             raise Refused(f"{name} leaves the include path: name its folder with -I FOLDER")
-        raise Refused(f"there is no header {name}: name its folder with -I FOLDER")
+        made = " (SysConfig makes it: name the folder syscfg of a build)" if name.lower() == "board.h" else ""
+        raise Refused(f"there is no header {name}: name its folder with -I FOLDER{made}")
 
     def _lies_in(self, folder: str, name: str) -> bool:
         """Whether the file `name` exists in `folder` or below it, within the allowed folders.  Raises Refused."""

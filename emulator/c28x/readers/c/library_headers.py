@@ -50,7 +50,7 @@ _UNMODELLED: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
     ),
     "stdarg.h": (),
     "stdlib.h": (
-        "void exit(int status)", "double strtod(const char *text, char **end)",
+        "void exit(int status)",
         "long long strtoll(const char *text, char **end, int base)",
         "unsigned long long strtoull(const char *text, char **end, int base)",
     ),
@@ -161,7 +161,7 @@ def _stdlib(name: str) -> Iterator[str]:
     yield "static inline void abort(void) { for (;;) ; }"
     yield from _functions(name)
     yield from ("#ifdef __TI_EABI__", "#define atof(text) strtold(text, (char **)0)", "#define strtod strtold")
-    yield "#endif"
+    yield from ("#else", "#define strtod strtof", "#endif")
 
 
 def _time(name: str) -> Iterator[str]:

@@ -67,6 +67,12 @@ static inline long strtol(const char *text, char **end, int base)
     return minus ? -(long)value : (long)value;
 }
 """,
+        "strtof": """
+static inline float strtof(const char *text, char **end)
+{
+    return (float)strtold((char *)text, end);
+}
+""",
         "strtoul": """
 static inline unsigned long strtoul(const char *text, char **end, int base)
 {

@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -129,6 +130,7 @@ class CFiles:
             except RecursionError:
                 raise SourceError(file, 1, "a declaration nests too deeply to be translated") from None
         _mark_interrupts(module, unit)
+        _fill_shared(module, unit)
         return module
 
     def find(self, name: str) -> Function | None:
@@ -195,16 +197,19 @@ class CFiles:
         defined = {name for file in self.files.values() for name in file.reader.linkage.defined}
         undefined_names = {name for file in self.files.values() for name in file.undefined_names()} - defined
         added = dict(filter(None, map(headers.definitions, sorted(undefined_names))))
-        modules = [self.read(name, f"<{name}.c>", text) for name, text in added.items()]
-        for variable in (variable for module in modules for variable in module.variables):
-            variable.address = headers.LINKED.get(variable.declaration.name)
-        return modules
+        return [self.read(name, f"<{name}.c>", text) for name, text in added.items()]
 
     def _resolve(
         self, file: CFile, name: str, where: Where, defined: dict[str, CFile], python: Sequence[Module], *, used: bool
     ) -> None:  # fmt: skip
         mine = file.module.symbols[name]
         found: Symbol | None
+        address = headers.linker_address(name)
+        if isinstance(mine, Variable) and name not in defined and used and address is not None:
+            # The linker defines it.  It has no type: each file declares one, and only uses the address.
+            mine.address = address
+            file.module.variables.append(mine)
+            return
         if name in defined:
             found = defined[name].module.symbols[name]
         else:
@@ -269,6 +274,8 @@ def _inline(first: CFile, second: CFile, name: str) -> bool:
     return True
 
 
+#: In the name of a section: another processor writes there.
+_SHARED: Final = re.compile(r"cla|cpu2|cputocpu|getbuffer|msgram", re.IGNORECASE)
 _NO_TYPE: Final = re.compile(r"'(\w+)' is not a type")
 
 
@@ -286,6 +293,22 @@ def _mark_interrupts(module: Module, unit: Unit) -> None:
         function = module.symbols.get(arguments.partition(")")[0].partition(",")[0].strip())
         if word.strip() == "INTERRUPT" and isinstance(function, Function):
             function.interrupt = True
+
+
+def _fill_shared(module: Module, unit: Unit) -> None:
+    """Objects in memory that the CLA or the second CPU writes are 0 at first: this file need not write them.
+
+    Such memory is known by the name of its section, as TI's command files have it: `Cla1ToCpuMsgRAM`, `CLADataLS0`,
+    `GETBUFFER`, `CPU2TOCPU1RAM`.
+    """
+    from emulator.c28x.readers.c.declarations import zeros
+
+    for pragma in unit.pragmas:
+        word, _, arguments = pragma.text.partition("(")
+        name, _, section = arguments.partition(",")
+        shared = module.symbols.get(name.strip()) if word.strip() == "DATA_SECTION" else None
+        if isinstance(shared, Variable) and shared in module.variables and _SHARED.search(section):
+            module.initialisers.setdefault(shared, partial(zeros, shared.ctype, pragma.where))
 
 
 def _remark_preprocessing(module: Module, unit: Unit) -> None:

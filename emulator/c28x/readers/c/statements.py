@@ -542,7 +542,7 @@ class CStatementReader:
             return
         if result == VOID:
             value = self.expressions.value(node.expr)
-            if value.ctype != VOID:
+            if value.ctype != VOID and b.function.name != "main":  # nobody takes what main returns
                 raise SourceError.at(where, f"{b.function.name} returns void: it has no value to return")
             build.evaluate(b, value)
             b.emit(Return(where, None))

@@ -212,6 +212,17 @@ def test_the_functions_of_math_h_have_the_width_of_their_type() -> None:
     assert (shop.call("read"), shop.call("digits")) == (f32(0.1), 615)
 
 
+def test_strtof_and_strtod_of_COFF_are_floats() -> None:
+    text = """#include <stdlib.h>
+float f(void)
+{
+    char *end;
+    return strtof("2.5x", &end) + strtod("1.25", 0) + (*end == 'x') + sizeof(strtod("1", 0));
+}
+"""
+    assert CWorkshop(text).call("f") == 6.75
+
+
 def test_strtold_says_where_a_number_ends() -> None:
     text = """#include <stdlib.h>
     long double value;

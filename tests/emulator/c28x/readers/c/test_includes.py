@@ -81,6 +81,13 @@ def test_a_computed_name_is_expanded(tmp_path: Path) -> None:
     assert out(tmp_path / "a.c") == "b"
 
 
+def test_a_way_to_a_copy_of_a_device_header_leads_to_ours(tmp_path: Path) -> None:
+    text = '#include "../base/F28x_Project.h"\n#include "inc\\f2837xs_device.h"\n#include "inc/b.h"\n'
+    write(tmp_path, a_c=text, inc__b_h="b")
+    ours = {"f28x_project.h": "project", "f2837xs_device.h": "device", "b.h": "no"}.get
+    assert out(tmp_path / "a.c", builtin=ours) == "project device b"
+
+
 def test_once_is_once(tmp_path: Path) -> None:
     write(tmp_path, a_c='#include "b.h"\n#include "B.H"\n#include "o.h"\n#include "O.h"', b_h="#pragma once\nb")
     assert out(tmp_path / "a.c", builtin={"o.h": "#pragma once\no"}.get) == "b o"

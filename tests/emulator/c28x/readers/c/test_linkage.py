@@ -41,6 +41,30 @@ long f(void)
     assert list(shop.findings) == []
 
 
+@pytest.mark.parametrize("names", ["secureRamFuncs_loadstart secureRamFuncs_runstart secureRamFuncs_loadsize",
+                                   "hwiLoadStart hwiRunStart hwiLoadSize"])  # fmt: skip
+@pytest.mark.parametrize("ctype", ["unsigned int", "unsigned long"])
+def test_a_project_has_its_own_names_and_types_for_what_the_linker_defines(names: str, ctype: str) -> None:
+    load, run, size = names.split()
+    text = f"""#include <string.h>
+extern {ctype} {load}, {run}, {size};
+static {ctype} *to = &{run};
+long f(void)
+{{
+    memcpy(to, &{load}, (size_t)&{size});
+    return (long)&{run};
+}}
+"""
+    shop = CWorkshop(text)
+    assert shop.call("f") == 0x8000
+    assert list(shop.findings) == []
+
+
+def test_a_function_is_no_symbol_of_the_linker() -> None:
+    with pytest.raises(LinkError, match="motor_run_start is declared, and no file defines it"):
+        CWorkshop("void motor_run_start(void);\nvoid f(void) { motor_run_start(); }\n")
+
+
 def test_a_library_is_asked_in_one_order_in_every_process() -> None:
     """It reads the module of each name then, and modules have their objects in the order they are read."""
     names = [f"part_{letter}" for letter in "hcafgebd"]
@@ -127,7 +151,7 @@ def test_an_instruction_does_not_call_the_function_of_its_name(name: str) -> Non
 
 def test_rpt_takes_a_cycle_more_than_it_says() -> None:
     # SPRU430, RPT: the next instruction runs N + 1 times, and NOP takes a cycle.
-    text = 'void f(void) { asm(" RPT #99 || NOP"); }\nvoid g(void) { asm(" RPT #199 || NOP"); }\n'
+    text = 'void f(void) { asm(" RPT#99||NOP"); }\nvoid g(void) { asm(" RPT #199 || NOP"); }\n'
     shop = CWorkshop(text)
     passed = []
     for name in "fg":

@@ -7,6 +7,9 @@
 // quotient() == 0.25: 1 / 4
 // fraction() == -0.75: what is left of -2.75, with its sign
 // greater() == 2.0: of -3 and 2
+// reciprocal() == 0.25: an estimate of 8 bits is exact for a power of two
+// near() == 1: 1 / 3 to 8 bits, and not exactly
+// of_root() == 0.5: 1 over the root of 4
 float quarter(void)
 {
     return __sinpuf32(0.25f);
@@ -34,4 +37,17 @@ float fraction(void)
 float greater(void)
 {
     return __fmax(-3.0f, 2.0f);
+}
+float reciprocal(void)
+{
+    return __einvf32(4.0f);
+}
+int near(void)
+{
+    float error = __einvf32(3.0f) * 3.0f - 1.0f;
+    return error != 0.0f && error < 0.004f && error > -0.004f;
+}
+float of_root(void)
+{
+    return __eisqrtf32(4.0f);
 }
