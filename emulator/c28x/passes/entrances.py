@@ -17,7 +17,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
-from emulator.c28x.ctypes import IntType, PointerType, StructType
+from emulator.c28x.ctypes import IntType, StructType
+from emulator.c28x.passes.interrupted import Place, place_of
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.state_values import constant_of
 from emulator.c28x.symbols import Module
@@ -53,8 +54,6 @@ from emulator.c28x.tree_queries import (
 #: So many other entrances must agree.
 _AGREE: Final = 2
 
-#: A scalar: the variable or the structure that holds it, and the offset in words.
-_Place = tuple[Variable | StructType, int]
 #: What a statement does, so that two can be compared: an object or register with a constant, or a call.
 _Deed = tuple[Any, ...]
 
@@ -64,7 +63,7 @@ class _Entrance:
     """A statement that gives a constant to a state, in a block of a function."""
 
     function: Function
-    state: _Place
+    state: Place
     value: int
     s: Assign
     #: The blocks around it, the innermost last.
@@ -95,9 +94,9 @@ class _EntranceCheck:
         self._later = self._run_later(main)
         #: Function -> the blocks around each call of it, with the caller.
         self._callers: dict[str, list[tuple[Function, tuple[list[Stmt], ...]]]] = {}
-        self._handled: dict[tuple[_Place, int], list[list[Stmt]]] = {}
+        self._handled: dict[tuple[Place, int], list[list[Stmt]]] = {}
         #: State -> the `default` of a switch over it, with the values that have a case.
-        self._others: dict[_Place, list[tuple[set[int], list[Stmt]]]] = {}
+        self._others: dict[Place, list[tuple[set[int], list[Stmt]]]] = {}
         entrances: list[_Entrance] = []
         loop = last_loop(main)
         for function in functions:
@@ -190,9 +189,9 @@ class _EntranceCheck:
 
     # Its time
 
-    def _times(self, entrance: _Entrance) -> Iterator[tuple[_Place, str]]:
+    def _times(self, entrance: _Entrance) -> Iterator[tuple[Place, str]]:
         """The counts and stamps that a state compares, with their text."""
-        found: dict[_Place, str] = {}
+        found: dict[Place, str] = {}
         for s in self._in_state(entrance):
             if isinstance(s, If):
                 found.update(_compared_times(s))
@@ -202,11 +201,11 @@ class _EntranceCheck:
             if place != entrance.state and (place in counted or place in stamps):
                 yield place, text
 
-    def _begins(self, entrance: _Entrance, time: _Place) -> bool:
+    def _begins(self, entrance: _Entrance, time: Place) -> bool:
         """Whether the block of an entrance sets a time."""
         return any(_written(s) == time and _counted(s) is None for s in entrance.block)
 
-    def _is_begun(self, entrance: _Entrance, time: _Place) -> bool:
+    def _is_begun(self, entrance: _Entrance, time: Place) -> bool:
         """Whether a time is set on the way, in the state, or anywhere but at entrances."""
         at_entrances = {id(s) for each in self._entrances if each.state == entrance.state for s in each.block}
         for function in self._functions:
@@ -271,32 +270,24 @@ def _lvalue(s: Assign) -> LValue:
     return s.target
 
 
-def _place(lvalue: LValue) -> _Place | None:
-    """The integer at file scope, or the member of a structure, that an lvalue names."""
-    root = lvalue.root
-    if lvalue.indices and not isinstance(lvalue.ctype, IntType):
-        return None
-    if isinstance(root, Variable):
-        if isinstance(root.ctype, StructType):
-            return root.ctype, lvalue.words
-        return (root, lvalue.words) if root.kind == "global" and not lvalue.indices else None
-    if isinstance(root.ctype, PointerType) and isinstance(root.ctype.target, StructType):
-        return root.ctype.target, lvalue.words
-    return None
+def _place(lvalue: LValue) -> Place | None:
+    """As `place_of`, but no element of an array at file scope: each has a state or a time of its own."""
+    array = isinstance(lvalue.root, Variable) and not isinstance(lvalue.root.ctype, StructType)
+    return None if lvalue.indices and (array or not isinstance(lvalue.ctype, IntType)) else place_of(lvalue)
 
 
-def _scalar(e: Expr) -> _Place | None:
+def _scalar(e: Expr) -> Place | None:
     match bare(e):
         case Load(ctype=IntType(), lvalue=lvalue):
             return _place(lvalue)
     return None
 
 
-def _written(s: Stmt) -> _Place | None:
+def _written(s: Stmt) -> Place | None:
     return _place(s.target) if isinstance(s, Assign) and isinstance(s.target, LValue) else None
 
 
-def _counted(s: Stmt) -> _Place | None:
+def _counted(s: Stmt) -> Place | None:
     """The integer to which a statement adds a constant."""
     place = _written(s)
     if place is not None and isinstance(s, Assign):
@@ -310,7 +301,7 @@ def _counted(s: Stmt) -> _Place | None:
     return None
 
 
-def _stamped(s: Stmt, clocks: set[_Place]) -> _Place | None:
+def _stamped(s: Stmt, clocks: set[Place]) -> Place | None:
     """The integer to which a statement gives the value of a count, or of a copy of one."""
     place = _written(s)
     if place is None or not isinstance(s, Assign):
@@ -323,9 +314,9 @@ def _stamped(s: Stmt, clocks: set[_Place]) -> _Place | None:
     return None
 
 
-def _compared_times(s: If) -> dict[_Place, str]:
+def _compared_times(s: If) -> dict[Place, str]:
     """The integers that a test compares by order, each alone or subtracted from another one."""
-    found: dict[_Place, str] = {}
+    found: dict[Place, str] = {}
     for p in parts(s.test):
         if isinstance(p, Compare) and p.op not in ("==", "!="):
             for side in (bare(p.left), bare(p.right)):
