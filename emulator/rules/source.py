@@ -157,7 +157,8 @@ One half of something is there, and the other half has been forgotten or removed
 * A member says by its name that the others of its structure are valid (`limit.valid = 1`, `fresh`, `online`). It is set
   beside data that come again and again, tested elsewhere, and never taken back: when the sender falls silent, the last
   data hold for ever. Not reported if the age of the data is known by anything else: a stamp, a count, what is set back.
-* A `static` integer is counted and set back, and nothing reads it: the test of it is missing.
+* A `static` integer is counted and set back, or only set back beside others that are counted, and nothing reads it: the
+  count or the test of it is missing.
 * A `static` integer is counted up when something happens now and then (`if (late) fails++`), is held against a limit,
   and nothing begins it again: once it has passed the limit, however far apart the events were, the test never changes.
   Not meant: a delay after the start, which counts always, each time another count is full, up to its own limit, or in

@@ -115,7 +115,7 @@ _AMBIGUOUS: Final = {
     "a": ("A", ("current", "curr", "iout")),
     "m": ("m", ("distance", "dist", "length", "height", "depth")),
     "w": ("W", ("power",)),
-    "c": ("degree Celsius", ("temp",)),
+    "c": ("degree Celsius", ("temp", "hot", "cold", "warm")),
     "dc": ("decidegree Celsius", ("temp",)),
     "mc": ("millidegree Celsius", ("temp",)),
     "ma": ("mA", ("i", "current", "curr", "iout", "imax", "load", "amp", "charge", "limit", "phase", "motor")),

@@ -3,7 +3,8 @@
 The check needs a whole program (one with a `main`), because it must see all statements.
 
 * A `static` integer that begins with 0 is tested or computed with, and no statement writes it.
-* A `static` integer is counted and set back, and nothing but its own count reads it.
+* A `static` integer is counted and set back, or only set back beside others that are counted, and nothing but its own
+  count reads it.
 * A `static` integer is counted up on some condition, held against a limit, and nothing begins it again.
 * A state has a case, or is asked for, and no statement gives it to its object.
 
@@ -44,6 +45,7 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
     addressed,
+    all_blocks,
     assigned,
     bare,
     blocks,
@@ -88,7 +90,9 @@ def check_one_sided(modules: Iterable[Module], reports: dict[Module, StaticRepor
                 if variable not in writes and start_of(variable) == 0:
                     _never_written(variable, module.functions, report)
                 elif _begins_again(writes.get(variable, []), variable):
-                    _never_read(variable, functions, report)
+                    _never_read(variable, functions, report, "counted and set back")
+                elif _only_set_back(writes.get(variable, []), variable) and _beside(variable, counts, functions):
+                    _never_read(variable, functions, report, "only set back")
                 elif variable in writes and all(_goes_up(s, variable) for s in writes[variable]):
                     _only_up(variable, counts, functions, values, owners)
             if variable in writes and variable.constants and variable in asked:
@@ -144,8 +148,22 @@ def _mentions(e: Any, variable: Variable) -> bool:
     return any(isinstance(p, LValue) and p.root is variable for p in parts(e))
 
 
-def _never_read(variable: Variable, functions: list[Function], report: StaticReport) -> None:
-    """Report an object that only its own count reads."""
+def _only_set_back(writes: list[Stmt], variable: Variable) -> bool:
+    """Whether statements only give an object the constant with which it begins."""
+    return bool(writes) and all(isinstance(s, Assign) and constant_of(s.value) == start_of(variable) for s in writes)
+
+
+def _beside(variable: Variable, counts: set[Variable], functions: list[Function]) -> bool:
+    """Whether an object is set back beside others that are counted."""
+    for block in (block for function in functions for block in all_blocks(function.body)):
+        back = {assigned(s) for s in block if isinstance(s, Assign) and constant_of(s.value) is not None}
+        if variable in back and back & counts:
+            return True
+    return False
+
+
+def _never_read(variable: Variable, functions: list[Function], report: StaticReport, how: str) -> None:
+    """Report an object that only its own count reads; `how` it is written."""
     first: tuple[Function, Stmt] | None = None
     for function in functions:
         for s in statements(function.body):
@@ -161,7 +179,7 @@ def _never_read(variable: Variable, functions: list[Function], report: StaticRep
                     return
     if first is not None:
         name = variable.declaration
-        message = f"{name.name} is counted and set back, and nothing reads it: the test of it may be missing"
+        message = f"{name.name} is {how}, and nothing reads it: what it is for may be missing"
         report.report(first[0], first[1].where, "one-sided", message, object=name.path, declaration=name)
 
 
@@ -304,4 +322,7 @@ def _is_static(v: Variable) -> bool:
         lines = Path(declaration.file).read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:  # a text that is in no file
         return False
-    return 0 < declaration.line <= len(lines) and _STATIC.search(lines[declaration.line - 1]) is not None
+    if not 0 < declaration.line <= len(lines):
+        return False
+    line = lines[declaration.line - 1]
+    return line.startswith("_") if Path(declaration.file).suffix == ".py" else _STATIC.search(line) is not None

@@ -24,6 +24,7 @@ def told(folder: Path, text: str, name: str = "pump.c") -> list[tuple[str, int]]
     "#define LEVEL_MIN 40", "# define LEVEL_LOW_MV (40L)", "#define REPLY_TIMEOUT_MS 0x28",
     "#define OVERCURRENT_MA 3.5f", "#define SETTLING_US 150", "#define COLD_TENTHS (-50)",
     "#define TRAVEL_LIMIT ((long)-8000)   // steps", "#define LEVEL_MIN 40  // LEVEL_MIN is in mm",
+    "#define HOT_C 45",
 ])  # fmt: skip
 def test_a_limit_that_nothing_applies_is_told(tmp_path: Path, limit: str) -> None:
     ((name, line),) = told(tmp_path, f"{HEAD}{limit}\n{USES}")

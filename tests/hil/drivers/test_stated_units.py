@@ -19,7 +19,8 @@ from hil.drivers.unit_names import remark, unit_of_name, unit_of_text
     ("timeout_s", "s"), ("config_s", ""), ("temperatureDc", "decidegree Celsius"), ("BUS_DC", ""),
     ("motorCurrent_A", "A"), ("PORT_A", ""), ("heading_rad", "rad"),
     ("wheel_rad", ""), ("chargeMa", "mA"), ("PHASE_MA", "mA"), ("ma", ""),
-    ("current_mA", "mA"), ("temp_dC", "decidegree Celsius"), ("pack_mA", ""),
+    ("current_mA", "mA"), ("temp_dC", "decidegree Celsius"), ("pack_mA", ""), ("HOT_C", "degree Celsius"),
+    ("PHASE_C", ""),
     # No units: other words, rates, amounts, mega or milli.
     ("items", ""), ("params", ""), ("VRMS", ""), ("motorRPMs", ""), ("max_min", ""), ("filterDegree", ""),
     ("powerMeter", ""), ("RAMP_RPM_PER_MS", ""), ("RATE_6400_HZ", ""),

@@ -77,6 +77,34 @@ def test_an_object_that_somebody_else_may_write_is_silent(tmp_path: Path, given:
     assert told(tmp_path, **given) == []
 
 
+@pytest.mark.parametrize(("count", "times"), [
+    ("if (Raw > 9) { dry = 0; Seen = 0; } else Seen++;", 1),
+    ("if (Raw > 9) { dry = 0; Seen = 0; } else Seen += dry;", 0),
+    ("if (Raw > 9) { dry = 1; Seen = 0; } else Seen++;", 0),  # a debugger may look whether it was so
+    ("if (Raw > 9) dry = 0; else Seen++;", 0),
+])  # fmt: skip
+def test_an_object_that_is_only_set_back_beside_a_count_is_told(tmp_path: Path, count: str, times: int) -> None:
+    assert told(tmp_path, count=count) == [count] * times
+
+
+@pytest.mark.parametrize(("name", "lines"), [("_percent", [9]), ("percent", []), ("_percent_offset", [])])
+def test_an_object_of_a_file_in_python_that_nobody_writes_is_told(
+    tmp_path: Path, name: str, lines: list[int]
+) -> None:
+    file = tmp_path / "a.py"
+    file.write_text(f'''"""a.c"""
+from __future__ import annotations
+from emulator.c28x.language import *
+{name}: int16 = 0
+Out: int16 = 0
+def Drive(by: int16) -> void:
+    Out = by
+def main() -> void:
+    Drive({name} + 1)
+''', encoding="utf-8")
+    assert [f.place.line for f in Build([str(file)]).compiled.findings if f.rule == "one-sided"] == lines
+
+
 def used(folder: Path, use: str, *, name: str = "number", storage: str = "static", write: str = "") -> list[int]:
     """The lines at which a program that never tests an object is told `one-sided`."""
     lines = [
