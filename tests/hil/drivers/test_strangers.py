@@ -262,3 +262,30 @@ void main(void)
 }
 """
     assert counted(checked(tmp_path, text)) == []
+
+
+def timers(then: str) -> str:
+    """A program that switches the clocks of timers 1 and 2 off, and initialises the timers."""
+    return f"""{HEAD}volatile unsigned Turns = 0;
+void main(void)
+{{
+    {START}
+    DisablePeripheralClocks();
+    EALLOW;
+    CpuSysRegs.PCLKCR0.bit.CPUTIMER0 = 1;
+    EDIS;
+    InitCpuTimers();
+    ConfigCpuTimer(&CpuTimer0, 200, 1000);
+    {then}
+    for (;;) {{
+        Turns++;
+        DELAY_US(1000);
+    }}
+}}
+"""
+
+
+@pytest.mark.parametrize(("then", "told"), [("", False), ("ConfigCpuTimer(&CpuTimer1, 200, 1000);", True)])
+def test_timers_that_nobody_uses_need_no_clock(tmp_path: Path, then: str, told: bool) -> None:
+    rules = {rule for rule, _ in counted(checked(tmp_path, timers(then)))}
+    assert rules == ({"clock-gated"} if told else set())

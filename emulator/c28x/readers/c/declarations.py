@@ -185,7 +185,7 @@ class CDeclarationReader:
         if known is not None:
             if isinstance(ctype, Unsized) and isinstance(known.ctype, ArrayType):
                 ctype = known.ctype
-            if known.ctype != ctype and not _completes(known.ctype, ctype):
+            if known.ctype != ctype and not completes(known.ctype, ctype):
                 raise SourceError.at(where, f"{name} is declared as {ctype} here and as {known.ctype} before")
             if given is not None and known in self.module.initialisers:
                 raise SourceError.at(where, f"{name} is defined twice, each time with a value")
@@ -506,9 +506,12 @@ def signature(name: str, ctype: FunctionType) -> str:
     return f"{ctype.result} {name}({listed}{', ...' if ctype.variadic and listed else ''})"
 
 
-def _completes(known: CType, ctype: CType) -> bool:
+def completes(known: CType, ctype: CType) -> bool:
     """Whether a second declaration of an array only adds the length, or omits it."""
-    return isinstance(known, Unsized) and isinstance(ctype, ArrayType) and known.element == ctype.element
+    return (
+        isinstance(known, Unsized) and isinstance(ctype, ArrayType)
+        and (known.element == ctype.element or build.same_type(known.element, ctype.element))
+    )  # fmt: skip
 
 
 def _list(arguments: c_ast.ParamList | None) -> list[c_ast.Node]:

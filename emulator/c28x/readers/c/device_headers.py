@@ -78,6 +78,8 @@ _TIMERS: Final = ("CpuTimer0", "CpuTimer1", "CpuTimer2")
 
 #: The definitions for F2837xS_cputimervars.h, in C: the three timers of a program and their two functions.  They are
 #: compiled with a program that uses one of these names without a definition.
+#: CHOICE: unlike TI's, InitCpuTimers leaves timers 1 and 2 alone while their clocks are off: a program that only uses
+#: timer 0 is right, and one that uses them is told where it does.
 CPU_TIMERS: Final = """#include "F2837xS_cputimervars.h"
 
 struct CPUTIMER_VARS CpuTimer0, CpuTimer1, CpuTimer2;
@@ -96,8 +98,10 @@ static void stop(struct CPUTIMER_VARS *Timer, volatile struct CPUTIMER_REGS *Reg
 void InitCpuTimers(void)
 {
     stop(&CpuTimer0, &CpuTimer0Regs);
-    stop(&CpuTimer1, &CpuTimer1Regs);
-    stop(&CpuTimer2, &CpuTimer2Regs);
+    CpuTimer1.RegsAddr = &CpuTimer1Regs;
+    if (CpuSysRegs.PCLKCR0.bit.CPUTIMER1) stop(&CpuTimer1, &CpuTimer1Regs);
+    CpuTimer2.RegsAddr = &CpuTimer2Regs;
+    if (CpuSysRegs.PCLKCR0.bit.CPUTIMER2) stop(&CpuTimer2, &CpuTimer2Regs);
 }
 
 void ConfigCpuTimer(struct CPUTIMER_VARS *Timer, float Freq, float Period)

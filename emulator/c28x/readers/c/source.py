@@ -220,7 +220,10 @@ class CFiles:
             self._compare(file, mine, found, where)
             file.module.symbols[name] = found
         elif isinstance(mine, Variable) and isinstance(found, Variable):
-            if mine.ctype != found.ctype and not build.same_type(mine.ctype, found.ctype):
+            from emulator.c28x.readers.c.declarations import completes
+
+            same = mine.ctype == found.ctype or build.same_type(mine.ctype, found.ctype)
+            if not same and not completes(mine.ctype, found.ctype):
                 message = f"{name} is declared as {mine.ctype} here and defined as {found.ctype} at "
                 message += f"{found.declaration.file}:{found.declaration.line}"
                 file.module.remarks.append(Remark(where, rule="prototype-mismatch", message=message, name=name))

@@ -65,6 +65,14 @@ def test_a_function_is_no_symbol_of_the_linker() -> None:
         CWorkshop("void motor_run_start(void);\nvoid f(void) { motor_run_start(); }\n")
 
 
+@pytest.mark.parametrize(("declared", "told"), [("extern int lut[];", False), ("extern int lut[2];", True),
+                                                ("extern long lut[];", True)])  # fmt: skip
+def test_another_file_gives_an_array_its_length(declared: str, told: bool) -> None:
+    files = {"use.c": f"{declared}\nint f(void) {{ return lut[1]; }}\n", "lut.c": "int lut[3] = {1, 2, 3};\n"}
+    shop = CWorkshop(files, static=True)
+    assert ("prototype-mismatch" in [finding.rule for finding in shop.findings]) is told
+
+
 def test_a_library_is_asked_in_one_order_in_every_process() -> None:
     """It reads the module of each name then, and modules have their objects in the order they are read."""
     names = [f"part_{letter}" for letter in "hcafgebd"]
