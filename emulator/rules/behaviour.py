@@ -171,7 +171,8 @@ angles of the C library are in radians. The message names both units, and says w
 sums and comparisons of two units. A constant factor converts: `x_ms * 1000` is microseconds. A power of ten in the
 wrong direction, or the reverse of the right factor, is reported. Any other factor may mean something else, and is not.
 A product with 180/pi (57.3) is in degrees: it is reported where it, or an object that takes only such products, goes to
-`sinf` or to a value in radians.
+`sinf` or to a value in radians. A share of a value (`FULL_MV * permille / 100`) that goes to its own quantity is
+reported if its factor is ten times too large, for a share is no multiple; a smaller part of it can be meant.
 Values of two quantities are reported only if no sensor makes one of the other without a factor. An object that is
 printed as it is, in front of another unit (`sprintf(line, "%u mV", current_mA)`), is reported in any case.
 

@@ -128,7 +128,9 @@ _PARTS: Final = {
     "0.1": 10.0, "0.01": 100.0, "0.001": 1000.0, "1/10": 10.0, "1/100": 100.0, "1/1000": 1000.0,
 }  # fmt: skip
 #: Names that are a unit and nothing else.
-_ALONE: Final = frozenset(("ms", "us", "mv", "mm", "rpm", "hz", "khz", "degrees", "millivolts", "celsius"))
+_ALONE: Final = frozenset((
+    "ms", "us", "mv", "mm", "rpm", "hz", "khz", "degrees", "millivolts", "celsius", "percent", "permille", "promille",
+))  # fmt: skip
 #: An amount in a name: `RATE_6400_Hz` and `TIMEOUT_500MS` need not be numbers of this unit.
 _AMOUNT: Final = re.compile(r"(?:_|^)\d+_?[A-Za-z]+$|[a-z]\d+[A-Z][a-z]+$")
 _HUMPS: Final = re.compile(r"[A-Z]{2,}s(?![a-z])|[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")

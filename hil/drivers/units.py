@@ -13,6 +13,7 @@ sum of products with constants that add up to 1, as in a filter.  Other products
 A product with constants is in its unit or, if the constants convert it, in another: `x_ms * 1000` is in ms or in us.
 It is told if no scaling can have been meant, and the constant is a power of ten, or the reverse of what would convert.
 A product with 180/pi is in degrees, whatever its other factor is called; so is an object that takes only such values.
+A product of a value and a share in percent or permille has the unit of the value, with the factor that makes it one.
 
 CHOICE: values of two different quantities are told only if no sensor can have made one of the other without a factor:
 10 mV for a degree are tenths of a degree, and a sensor may give a microsecond for a millimetre.
@@ -90,6 +91,8 @@ _FOREIGN: Final = ({"length", "temperature"}, {"length", "angle"}, {"length", "p
                    {"angle", "power"}, {"angle", "energy"}, {"time", "frequency"})  # fmt: skip
 #: The weights of a mean add up to 1, but for the rounding of floats.
 _ROUNDING: Final = 1e-6
+#: The quantity of percent and permille.
+_RATIO: Final = "ratio"
 #: A factor converts if it differs no more than this from the exact one (1/1024 for 1/1000, 57.3 for 180/pi).
 _ALMOST: Final = 0.05
 #: A factor that is wrong by a power of ten from this one on cannot be meant as a part (a tenth, a percent).
@@ -366,6 +369,39 @@ class _Units:
             message = _mismatch(given, wanted, _text(given, value), target)
             if message:
                 report(where, message, target, _rule(given, wanted))
+        elif wanted is not None and (message := self._wrong_share(value, wanted, target)):
+            report(where, message, target, "unit-by-name")
+
+    def _wrong_share(self, e: Expr, wanted: Measured, target: str) -> str:
+        """The message about a share of a value (`FULL_MV * permille / 100`) that goes to a target; "": it may.
+
+        A multiple of the share is told, for a share is less than the whole, and so is one that is too small by 1000: a
+        smaller part can be meant.
+        """
+        given: list[Measured] = []
+        factor = 1.0
+        for value, divides in _product(e):
+            number = _plain(value)
+            if number is not None and not any(part.where.macro is not None for part in _with_sources(value)):
+                factor *= (1 / number if divides else number) if number else 0.0
+                continue
+            unit = self._value(value)
+            if unit is None or divides or unit.named or not unit.unit.quantity or not unit.unit.scale or unit.counter:
+                return ""
+            given.append(replace(unit, of=unit.of or source_text(value)))
+            factor *= unit.factor
+        given.sort(key=lambda unit: unit.unit.quantity == _RATIO)
+        if [unit.unit.quantity for unit in given] != [wanted.unit.quantity, _RATIO] or wanted.factor != 1.0:
+            return ""
+        whole, share = given
+        right = whole.unit.ratio(wanted.unit) * share.unit.scale
+        power = _power_of_ten(factor / right) if wanted.unit.quantity != _RATIO and right else None
+        if power is None or factor == 1.0 or -_NO_PART < power < 0:
+            return ""
+        return (
+            f"{target} is in {wanted}, and gets {whole.of} ({whole}) times {share.of} ({share}) times {factor:.4g}: "
+            f"the factor of such a share is {right:.4g}"
+        )
 
     def _value(self, e: Expr) -> Measured | None:
         """The unit of a value; None if it is not known."""
@@ -557,6 +593,16 @@ def _rule(one: Measured, other: Measured) -> str:
 def _text(given: Measured, value: Expr) -> str:
     """The text of a value: the name of a constant, if it is one."""
     return given.of if given.of and given.factor == 1.0 and isinstance(bare(value), Const) else source_text(value)
+
+
+def _product(e: Expr, divides: bool = False) -> Iterator[tuple[Expr, bool]]:
+    """The factors of a product or a quotient, each with whether it divides."""
+    match bare(e):
+        case Binary(op="*" | "/" as op, left=left, right=right):
+            yield from _product(left, divides)
+            yield from _product(right, divides != (op == "/"))
+        case factor:
+            yield factor, divides
 
 
 def _takes(words: list[str]) -> bool:

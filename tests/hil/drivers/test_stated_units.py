@@ -14,7 +14,7 @@ from hil.drivers.unit_names import remark, unit_of_name, unit_of_text
 @pytest.mark.parametrize(("name", "unit"), [
     ("tickMs", "ms"), ("SAMPLE_US", "us"), ("supply_mV", "mV"), ("vMin_mV", "mV"), ("TiltDegrees", "degree"),
     ("rawRpm", "rpm"), ("f_kHz", "kHz"), ("battMilliVolts", "mV"), ("tempTenthsDeg", "1/10 degree"),
-    ("angle_deg_x100", "1/100 degree"), ("setpointMilli", "thousandths of a unit"), ("mv", "mV"), ("adc_to_mV", "mV"),
+    ("angle_deg_x100", "1/100 degree"), ("setpointMilli", "thousandths of a unit"), ("mv", "mV"), ("adc_to_mV", "mV"), ("permille", "permille"),
     # Ends that mean other things too, with and without a word for the quantity.
     ("timeout_s", "s"), ("config_s", ""), ("temperatureDc", "decidegree Celsius"), ("BUS_DC", ""),
     ("motorCurrent_A", "A"), ("PORT_A", ""), ("heading_rad", "rad"),
@@ -81,7 +81,7 @@ uint32_t age_us;
 float tilt_deg, tilt_rad;
 float bow = 0, rudder = 0, drift_dps = 0;
 uint16_t rateKhz;
-int16_t voltage_mV, duty_percent;
+int16_t voltage_mV, duty_percent, permille;
 void delay_ms(uint16_t n) { tickMs = n; }
 void pause(int32_t loops) { stamp_us += loops; }
 uint32_t elapsed_us(void) { return stamp_us; }
@@ -129,6 +129,16 @@ MIXED = [
      "bow is in degree by its factor 180/pi, the angle of cos in radians of the C library"),
     ("float a = rudder / 0.0174533f; bow = sinf(a);",
      "a is in degree by its value's factor 180/pi, the angle of sin in radians of the C library"),
+    # A share of a value that is more than the value, or a thousandth of it.
+    ("voltage_mV = (int16_t)(LIMIT_MV * permille / 100);",
+     "voltage_mV is in mV by its name, and gets LIMIT_MV (mV by its name) times permille (permille by its name) times "
+     "0.01: the factor of such a share is 0.001"),
+    ("delay_ms(0.1f * duty_percent * tickMs);",
+     "parameter n of delay_ms is in ms by its function's name, and gets tickMs (ms by its name) times duty_percent "
+     "(percent by its name) times 0.1: the factor of such a share is 0.01"),
+    ("stamp_us = tickMs * duty_percent / 100;",
+     "stamp_us is in us by its name, and gets tickMs (ms by its name) times duty_percent (percent by its name) times "
+     "0.01: the factor of such a share is 10"),
 ]  # fmt: skip
 
 
@@ -158,6 +168,13 @@ def test_a_value_in_another_unit_is_told(tmp_path: Path, body: str, message: str
     "bow = rudder * 57.3f; rudder = cosf(bow * 0.0174533f) + sinf(bow / 57.3f); tilt_deg = bow;",
     "drift_dps = tilt_rad * 57.3f; gapMm = (int16_t)(rudder * 57.3f); pose.angle = (int16_t)(rudder * 57.3f);",
     "bow = rudder * 57.3f; bow = tilt_rad; rudder = cosf(bow);",
+    # Shares: right ones; a tenth of one; not scaled yet; of a divisor with a name; a gain; a value of no known unit.
+    "voltage_mV = (int16_t)((int32_t)LIMIT_MV * permille / 1000); delay_ms(tickMs * duty_percent / 100);",
+    "voltage_mV = (100 - duty_percent) * (int32_t)LIMIT_MV / 100; stamp_us = tickMs * 10UL * duty_percent;",
+    "voltage_mV = permille * (int32_t)LIMIT_MV / 10000; stamp_us = stamp_us * permille;",
+    "voltage_mV = LIMIT_MV * permille / SIDES; duty_percent = permille / 10; permille = 10 * duty_percent;",
+    "temp_c = voltage_mV * duty_percent / 10; gapMm = gapMm + (permille * gapMm >> 7);",
+    "bow = duty_percent * 30.0f; duty_percent = tickMs * 100UL / POLL_MS; permille = duty_percent * permille / 10;",
 ])  # fmt: skip
 def test_a_converted_value_is_not_told(tmp_path: Path, body: str) -> None:
     assert told(tmp_path, f"{HEAD}void f(void)\n{{\n    {body}\n}}\n", "unit-by-name") == []
