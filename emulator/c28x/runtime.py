@@ -64,6 +64,9 @@ _NEAR: Final = 1 << 20
 _BEFORE: Final = 3
 #: CHOICE: for so many passes the error of a regulator stays on one side of 0 only if it cannot get away.
 _ONE_SIDE: Final = 40
+#: It runs away if it is so many times what it was, and so many times the wanted value.
+_AWAY: Final = 1.5
+_BEYOND: Final = 1.2
 #: A float above this one has hardly a fraction.
 _WHOLE: Final = 1e6
 #: CHOICE: a float passed for an integer parameter that never reaches this value was not meant as an integer.
@@ -98,8 +101,8 @@ class RuntimeSite(Site):
     """One check of a running image: its site, its number, and what it has found so far."""
 
     __slots__ = (
-        "ahead", "empty_at", "fine", "first", "generation", "greatest", "initial", "last", "number", "passes",
-        "planted", "seen", "turned", "zero",
+        "ahead", "empty_at", "fine", "first", "generation", "greatest", "initial", "last", "least", "number", "passes",
+        "planted", "seen", "turned", "turns", "wanted", "zero",
     )  # fmt: skip
 
     def __init__(self, site: Site, number: int) -> None:
@@ -114,6 +117,10 @@ class RuntimeSite(Site):
         #: The error of a regulator when it came to its side of 0, and the number of passes since.
         self.first = 0.0
         self.passes = 0
+        #: The error of a regulator that has not been smaller for so many passes, in which the wanted value stood.
+        self.least = 0.0
+        self.wanted = 0.0
+        self.turns = 0
         #: The stamps compared here last; whether one of them has wrapped; awaited stamp -> how far it was ahead.
         self.last = (0, 0)
         self.turned = False
@@ -1153,18 +1160,19 @@ class Runtime:
             self.hit(site, "sign-lost", message, value)
         return value
 
-    def error_side(self, value: int, number: int) -> int:
-        """An error of a regulator that may have the wrong sign, an integer."""
-        self._follow_error(float(value), number)
+    def error_side(self, value: int, wanted: int, number: int) -> int:
+        """An error of a regulator that may have the wrong sign, an integer, and the wanted value."""
+        self._follow_error(float(value), float(wanted), number)
         return value
 
-    def error_side_float(self, value: float, number: int) -> float:
-        """An error of a regulator that may have the wrong sign, a float."""
-        self._follow_error(value, number)
+    def error_side_float(self, value: float, wanted: float, number: int) -> float:
+        """An error of a regulator that may have the wrong sign, a float, and the wanted value."""
+        self._follow_error(value, wanted, number)
         return value
 
-    def _follow_error(self, value: float, number: int) -> None:
+    def _follow_error(self, value: float, wanted: float, number: int) -> None:
         """Report an error that has stayed on one side of 0, and has not become smaller since it came there."""
+        self._follow_away(value, wanted, self.sites[number])
         site = self.sites[number]
         passes = site.passes + 1 if value * site.first > 0 else 0
         if not passes:
@@ -1173,6 +1181,17 @@ class Runtime:
         if passes >= _ONE_SIDE and abs(value) >= abs(site.first):
             message = f"{site.name} has had the same sign for {passes} passes, now {value:.7g}: it is {site.widened}"
             self.hit(site, "feedback-reversed", message, value)
+
+    def _follow_away(self, value: float, wanted: float, site: RuntimeSite) -> None:
+        """Report an error that has grown while the wanted value stood, and is greater than this value by far."""
+        away = value * site.least > 0 and abs(value) >= abs(site.least) and wanted == site.wanted
+        site.turns = site.turns + 1 if away else 0
+        if not away:
+            site.least, site.wanted = value, wanted
+        far = max(_AWAY * abs(site.least), _BEYOND * abs(wanted))
+        if site.turns >= _ONE_SIDE and wanted and abs(value) >= far:
+            message = f"{site.name} has grown from {site.least:.7g} to {value:.7g} in {site.turns} passes, while the"
+            self.hit(site, "runs-away", f"{message} wanted value stood at {wanted:.7g}: it is {site.widened}", value)
 
     def fraction(self, value: float, number: int) -> float:
         """A float that a cast makes an integer before it is multiplied by a scale."""

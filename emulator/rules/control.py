@@ -156,7 +156,27 @@ not judged, nor one whose error, integral or output is subtracted from something
 temperature, a level or a position is not judged, nor a brake, a sink, a panel: there the output may lower the value.
 
 It is a note, because an output that is active low, or a gain that is negative only when the program runs, makes it
-right.
+right. `runs-away` says that the run has shown the contrary.
+
+**Fix:** subtract the measured value from the wanted one.
+""",
+        "K. J. Astrom, R. M. Murray, Feedback Systems, 1.1",
+    ),
+    _rule(
+        "runs-away",
+        Severity.WARNING,
+        "A regulator drives the measured value away from the wanted one.",
+        """
+The motor turns the wrong way, faster and faster, or the voltage rises to its limit: the further the measured value is
+from the wanted one, the further the output drives it away.
+
+The source is that of `feedback-reversed`: the error is the measured value less the wanted one, and the integral and the
+output grow with it. Here the run shows what comes of it. For 40 passes the wanted value stood and the error was never
+smaller than at the first of them. Now it is 1.5 times as large, and larger than the wanted value by a fifth: the
+measured value has gone to the other side of 0, or beyond twice what is wanted.
+
+An output that is active low, or a gain that is negative when the program runs, brings the value back, so nothing is
+reported; neither where the value only stays away (a blocked motor, no supply), nor behind a new order.
 
 **Fix:** subtract the measured value from the wanted one.
 """,

@@ -855,13 +855,13 @@ class PythonWriter:
             test = f"0 <= (_t := {text})" if high <= e.ctype.high else f"0 <= (_t := {text}) <= {e.ctype.high}"
             text = f"(_t if {test} else _c_wrapped(_t, {number}))"
         if e.leaving is not None:
-            text = self.leaving(e.leaving, text)
+            text = self.leaving(e.leaving, text, e)
         if e.regulated is None:
             return text
         helper = "_c_regulated_float" if isinstance(e.ctype, FloatType) else "_c_regulated"
         return f"{helper}({text}, {self.number(e.regulated)})"
 
-    def leaving(self, guard: Guard, text: str) -> str:
+    def leaving(self, guard: Guard, text: str, e: Expr) -> str:
         """The text of a value, with the check that its use asks for."""
         number = self.number(guard)
         if guard.kind == "quantity":
@@ -876,7 +876,8 @@ class PythonWriter:
             return f"_c_word_of_24({text}, {number})"
         if guard.kind == "error-side":
             helper = "_c_error_side_float" if isinstance(guard.site.ctype, FloatType) else "_c_error_side"
-            return f"{helper}({text}, {number})"
+            assert isinstance(e, Binary)
+            return f"{helper}({text}, {self.value(e.right)}, {number})"
         if guard.kind == "shifted-sign":
             return f"(_t if 0 <= (_t := {text}) else _c_shifted_sign(_t, {number}))"
         if guard.kind == "sign-lost":
