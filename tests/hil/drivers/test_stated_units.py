@@ -14,7 +14,8 @@ from hil.drivers.unit_names import remark, unit_of_name, unit_of_text
 @pytest.mark.parametrize(("name", "unit"), [
     ("tickMs", "ms"), ("SAMPLE_US", "us"), ("supply_mV", "mV"), ("vMin_mV", "mV"), ("TiltDegrees", "degree"),
     ("rawRpm", "rpm"), ("f_kHz", "kHz"), ("battMilliVolts", "mV"), ("tempTenthsDeg", "1/10 degree"),
-    ("angle_deg_x100", "1/100 degree"), ("setpointMilli", "thousandths of a unit"), ("mv", "mV"), ("adc_to_mV", "mV"), ("permille", "permille"),
+    ("angle_deg_x100", "1/100 degree"), ("setpointMilli", "thousandths of a unit"), ("mv", "mV"), ("adc_to_mV", "mV"),
+    ("permille", "permille"),
     # Ends that mean other things too, with and without a word for the quantity.
     ("timeout_s", "s"), ("config_s", ""), ("temperatureDc", "decidegree Celsius"), ("BUS_DC", ""),
     ("motorCurrent_A", "A"), ("PORT_A", ""), ("heading_rad", "rad"),
