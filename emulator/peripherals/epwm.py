@@ -30,7 +30,7 @@ from emulator.peripherals.epwm_checks import CompareBeyondPeriod, EPwmChecks
 from emulator.peripherals.epwm_dead_band import SWITCHES
 from emulator.peripherals.epwm_digital_compare import DigitalCompare
 from emulator.peripherals.epwm_event_trigger import EventTrigger
-from emulator.peripherals.epwm_outputs import EpwmOutputs, Output
+from emulator.peripherals.epwm_outputs import EpwmOutputs, Output, SwallowedPulse
 from emulator.peripherals.epwm_shadow import AT_PERIOD, AT_ZERO, LOAD_POINTS, Shadow
 from emulator.peripherals.epwm_sync_pulse import SyncPulse
 from emulator.peripherals.epwm_time_base import DOWN, UP_DOWN, TimeBase
@@ -306,6 +306,11 @@ class EPwm:
     def above_half(self) -> Mapping[str, tuple[int, int]]:
         """Compare register -> its greatest value above half of the period, and that period."""
         return self._checks.above_half
+
+    @property
+    def swallowed(self) -> list[SwallowedPulse]:
+        """The pulses that the dead band has swallowed for more than a period."""
+        return self._outputs.swallowed
 
     @property
     def unpaired(self) -> PwmWire | None:

@@ -169,20 +169,21 @@ class DeadBand:
     def output(self, index: int) -> int:
         """The level of output A (0) or B (1)."""
         switches = self._switches
-        if self._has_a_path(index):
+        if self.has_rising_path(index):
             return self._rising.level ^ bool(switches & _S2) if switches & _S1 else self._a
         return self._falling.level ^ bool(switches & _S3) if switches & _S0 else self._b
 
     def source(self, index: int) -> int:
         """The input, A (0) or B (1), that an output follows."""
         switches = self._switches
-        if self._has_a_path(index):
+        if self.has_rising_path(index):
             return int(bool(switches & _S4)) if switches & _S1 else 0
         if not switches & _S0:
             return 1
         return int(bool(switches & (_S4 if switches & _S8 else _S5)))
 
-    def _has_a_path(self, index: int) -> bool:
+    def has_rising_path(self, index: int) -> bool:
+        """Whether an output comes from the path that delays rising edges."""
         return bool(self._switches & _S7) if index else not self._switches & _S6
 
     @property

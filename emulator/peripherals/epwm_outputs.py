@@ -8,7 +8,7 @@ work of that cycle (shadow loads), and before any part samples the pin.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Final
+from typing import Final, NamedTuple
 
 from emulator.clock import NEVER, Clock, ClockEvent
 from emulator.peripherals.epwm_action_qualifier import USES_COMPARE_A, USES_COMPARE_B, OutputWaveform, act, waveform
@@ -23,6 +23,20 @@ from emulator.signals import PwmWire
 _FORCED: Final = (1, 2)
 #: After shadow loads (0), before the samples of an input qualifier (2).
 _EDGE_PRIORITY: Final = 1
+
+
+class SwallowedPulse(NamedTuple):
+    """A compare value whose pulses the dead band swallows; times in cycles."""
+
+    output: str
+    compare: str
+    value: int
+    #: The width of the pulse in front of the dead band, and the period.
+    cycles: int
+    period: int
+    #: The register of the delay, and the delay.
+    register: str
+    delay: int
 
 
 class Output:
@@ -70,7 +84,7 @@ class EpwmOutputs:
 
     __slots__ = (
         "_a", "_b", "_band", "_band_control", "_clock", "_compare_a", "_compare_b", "_csfrc", "_edge_event", "_falling",
-        "_rising", "_settled", "_time_base", "_trip_zone", "both",
+        "_rising", "_settled", "_swallowed", "_swallowing", "_time_base", "_trip_zone", "both",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, time_base: TimeBase, a: Output, b: Output, *, compare: tuple[Shadow, Shadow],
@@ -88,6 +102,9 @@ class EpwmOutputs:
         self._settled = settled
         self._band = DeadBand()
         self._edge_event: ClockEvent | None = None
+        #: Pulses that the dead band swallows now, each with the cycle since when; those that it did for over a period.
+        self._swallowing: dict[SwallowedPulse, int] = {}
+        self._swallowed: dict[SwallowedPulse, None] = {}
         for output in self.both:
             output.wire.follow(_OnWire(self, output))
 
@@ -96,6 +113,7 @@ class EpwmOutputs:
         for output in self.both:
             output.level = 0
         self._band = DeadBand()
+        self._swallowing = {}
 
     # -- levels --------------------------------------------------------------------------------------------------
 
@@ -144,6 +162,8 @@ class EpwmOutputs:
                 self._a.level, self._b.level, self._clock.now,
             )  # fmt: skip
         delayed = self._delayed_duties() if self._band.on else None
+        if delayed is not None or self._swallowing:
+            self._follow_swallowed(delayed)
         for output in self.both:
             self._drive(output, delayed and delayed[output.index])
 
@@ -229,6 +249,41 @@ class EpwmOutputs:
             return high / two_periods, 0
         alternates = self.both[self._band.source(index)].waveform.alternates
         return high / two_periods, two_periods if alternates else two_periods // 2
+
+    def _follow_swallowed(self, delayed: tuple[tuple[float, int], tuple[float, int]] | None) -> None:
+        """Keep the pulses that have not come out for a period, and those that do not come out from now on."""
+        now = self._clock.now
+        self._swallowed |= self._for_a_period()
+        found = [pulse for n, duty in enumerate(delayed or ()) if not duty[1] and (pulse := self._lost_pulse(n))]
+        self._swallowing = {pulse: self._swallowing.get(pulse, now) for pulse in found}
+
+    def _lost_pulse(self, index: int) -> SwallowedPulse | None:
+        """The pulse that one compare value makes of an output whose level is steady behind the dead band."""
+        time_base, source = self._time_base, self.both[self._band.source(index)]
+        uses = source.control.active & (USES_COMPARE_A | USES_COMPARE_B)
+        by_a, by_b = bool(uses & USES_COMPARE_A), bool(uses & USES_COMPARE_B)
+        if by_a == by_b or not time_base.running or self.force_of(source) is not None:
+            return None
+        if self._trip_zone.action(index) != UNTOUCHED:
+            return None
+        high, total = source.waveform.high_time(source.level, time_base.arrivals()[0])
+        if high in (0, total):
+            return None
+        compare, tick = self._compare_a if by_a else self._compare_b, time_base.tick
+        register, delay = ("DBRED", self._rising) if self._band.has_rising_path(index) else ("DBFED", self._falling)
+        return SwallowedPulse(
+            self.both[index].wire.name, compare.register.name, compare.active, min(high, total - high) * tick,
+            total * tick, register, delay.active * tick,
+        )  # fmt: skip
+
+    @property
+    def swallowed(self) -> list[SwallowedPulse]:
+        """The pulses that the dead band has swallowed for more than a period."""
+        return list(self._swallowed | self._for_a_period())
+
+    def _for_a_period(self) -> dict[SwallowedPulse, None]:
+        now = self._clock.now
+        return {pulse: None for pulse, since in self._swallowing.items() if now - since > pulse.period}
 
     # -- edges ---------------------------------------------------------------------------------------------------
 

@@ -242,6 +242,25 @@ that it makes and takes back is missing.
         "TRM ADC: SOC triggers; TRM ePWM: time base, counter compare, event trigger; TRM PIE, external interrupts",
     ),
     _rule(
+        "pulse-swallowed",
+        Severity.WARNING,
+        "The dead band swallows the pulses of the least duty.",
+        """
+The switch stays off at the least duty and some way above it: a start, a charge pump or a current at low duty fails.
+
+A dead band delays one edge of each pulse. A pulse that is not longer than `DBRED` (or `DBFED`) does not come out. In
+the run an ePWM had a compare value for more than a period, the action qualifier made pulses of it, and none came out of
+the output. The value is a constant that is the least one by its name (`DUTY_MIN`, `LEAST_DUTY`), which the source gives
+to the compare register, or to an object that it gives to the register.
+
+Other small duties are not reported: a controller may go through them. Neither is a constant below 1 % of the period,
+which only keeps the value away from 0.
+
+**Fix:** make the least duty longer than the dead band, or the dead band as short as the switches allow.
+""",
+        "TRM ePWM: dead-band submodule",
+    ),
+    _rule(
         "compare-above-period",
         Severity.WARNING,
         "A compare value was computed beyond the period.",

@@ -19,6 +19,7 @@ from emulator.registers.spi import SPICCR, SPICTL
 from hil.drivers.budget import RUN, TimeBudget, computed
 from hil.drivers.cut_messages import TRIAL, CutTrial, cut_messages
 from hil.drivers.face_scale import FaceScales
+from hil.drivers.least_pulses import swallowed_pulses
 from hil.drivers.periods import RoutinePeriods, wrong_periods, wrong_timers
 from hil.drivers.places import anchored, mentions_gyro, of_open_trip, of_unused_part
 from hil.drivers.roles import Roles
@@ -241,6 +242,7 @@ def _run(
         *(wrong_periods(build.modules, routines.periods()) if known else ()), *scales.wrong(),
         *(misread_counts(build.modules, image.board.kernel.clocks.tick_period_us, image.board) if known else ()),
         *wrong_rates(build.modules, image.board), *wrong_timers(build.modules, image.board),
+        *swallowed_pulses(build.modules, image.board),
     )  # fmt: skip
     for wrong in told:
         image.board.findings.report_at(wrong.place, wrong.rule, wrong.message, object=wrong.object, how="dynamic")
