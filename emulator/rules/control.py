@@ -44,7 +44,10 @@ The check needs the source of a whole program, because it must know every value 
 object from each of these values, pass by pass, until the state is left or a value repeats. If an exit tests anything
 else (a register, a time stamp, a count of another function), nothing is reported.
 
-**Fix:** set the object where the state is entered, and only count it in the state.
+One test of time stamps is reported: all exits want a stamp that is later than the clock (`sample.taken > now`). All
+that the stamp ever gets are readings of that clock, and it does not change behind the one with which it is compared.
+
+**Fix:** set the object where the state is entered, and only count it in the state. Compare the age of a stamp.
 """,
         "CERT MSC07-C",
         how="static",

@@ -18,6 +18,7 @@ from emulator.c28x.passes.drained import check_drained
 from emulator.c28x.passes.dropped import check_dropped
 from emulator.c28x.passes.entrances import check_entrances
 from emulator.c28x.passes.flow import FlowReport
+from emulator.c28x.passes.future_stamps import unreachable_exits
 from emulator.c28x.passes.interrupted import sides_of
 from emulator.c28x.passes.likes import check_likes
 from emulator.c28x.passes.masked import check_masked
@@ -83,7 +84,16 @@ def check(
                 check_names(function, unit, report, used, by_address=function.path in entered)
         for variable in module.variables:
             file_scope(variable, initialisers[variable], report)
-    States(modules, entries, stamps).check(reports)
+    states = States(modules, entries, stamps)
+    states.check(reports)
+    for module, report in reports.items():
+        for function, test, state, label, why in unreachable_exits(states, module):
+            report.report(
+                function, test.where, "state-stuck",
+                f"{function.path} never leaves {state.declaration.name} = {label} by itself: {source_text(test)} is "
+                f"never true, for {why}",
+                object=state.declaration.path, declaration=state.declaration,
+            )  # fmt: skip
     check_begun_again(modules, reports)
     check_one_sided(modules, reports)
     check_never_back(modules, reports)

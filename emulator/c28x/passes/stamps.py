@@ -52,9 +52,10 @@ from emulator.c28x.tree_queries import addressed, assigned, bare, different, own
 NONE: Final = 0
 STAMP: Final = 1
 DEADLINE: Final = 2
-#: Free-running counter registers, and functions that return such a count.
+#: Free-running counter registers.
 _REGISTERS: Final = frozenset({"TIM", "TSCTR", "IPCCOUNTERL", "IPCCOUNTERH"})
-_FUNCTIONS: Final = frozenset({"Clock_getTicks", "Timestamp_get32"})
+#: Functions that return the count of a free-running counter.
+CLOCKS: Final = frozenset({"Clock_getTicks", "Timestamp_get32"})
 #: The capture registers of the eCAPs.
 CAPTURES: Final = frozenset({"CAP1", "CAP2", "CAP3", "CAP4"})
 #: What can hold a stamp: a variable, a member of a structure type, the target of a parameter, the result of a function.
@@ -171,7 +172,7 @@ class Stamps:
                 return NONE
             case Call(function=function):
                 if function.extern:
-                    return STAMP if function.name in _FUNCTIONS else NONE
+                    return STAMP if function.name in CLOCKS else NONE
                 return self.kinds.get(("result", function.path), NONE)
             case Load(lvalue=lvalue):
                 key = key_of(lvalue)

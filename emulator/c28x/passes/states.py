@@ -129,13 +129,14 @@ class States:
         match bare(e):
             case Const(value=int(value)):
                 return value
-            case Load(lvalue=LValue(root=Variable(kind="global") as v, indices=[], words=0)) if self._followed(v):
+            case Load(lvalue=LValue(root=Variable(kind="global") as v, indices=[], words=0)) if self.is_followed(v):
                 if v not in self.assigned and v.initial:
                     start = bare(v.initial[0])
                     return start.value if isinstance(start, Const) and isinstance(start.value, int) else None
         return None
 
-    def _followed(self, v: Variable) -> bool:
+    def is_followed(self, v: Variable) -> bool:
+        """Whether all values of an object are those that statements assign to it."""
         return isinstance(v.ctype, IntType) and v not in self.taken and not v.escapes
 
     def _start(self, v: Variable) -> int:
@@ -147,15 +148,15 @@ class States:
     def _state(
         self, f: Function, subject: Variable, label: int, body: list[Stmt], report: StaticReport
     ) -> None:  # fmt: skip
-        if not self._followed(subject):
+        if not self.is_followed(subject):
             return
-        exits = list(_exits(body, subject, ()))
+        exits = list(exits_of(body, subject))
         exits = [(e, tests) for e, tests in exits if self.constant(e.value) != label]
         if not exits or any(not tests for _, tests in exits):
             return
         last = exits[-1][1][-1][0]
         x = self._only(exits)
-        if x is None or x is subject or not self._followed(x) or x.kind != "global":
+        if x is None or x is subject or not self.is_followed(x) or x.kind != "global":
             return
         why = self._round(subject, label, x, body)
         if why and not self._ended_elsewhere(subject, label):
@@ -178,7 +179,7 @@ class States:
         for f in self.functions.values():
             for s in statements(f.body):
                 match s:
-                    case Switch(subject=chosen, cases=cases) if _variable(chosen) is subject:
+                    case Switch(subject=chosen, cases=cases) if only_variable(chosen) is subject:
                         for labels, body in cases:
                             inside = {id(inner) for inner in statements(body)}
                             in_states |= inside
@@ -353,7 +354,7 @@ class States:
                     goal, load = self.constant(other), bare(side)
                     if goal is not None and isinstance(load, Load) and self.constant(side) is None:
                         way, v = load.lvalue, load.lvalue.root
-                        if isinstance(v, Variable) and not way.indices and not way.words and self._followed(v):
+                        if isinstance(v, Variable) and not way.indices and not way.words and self.is_followed(v):
                             yield test, v, goal, op == "=="
 
     def _step_past(
@@ -416,7 +417,7 @@ class States:
             difference = difference.operand
         match difference:
             case Binary(op="-", left=old, right=now):
-                before, counter = _variable(old), _variable(now)
+                before, counter = only_variable(old), only_variable(now)
                 if before is None or counter is None or (counter, 0) not in counters or (before, 0) in counters:
                     return
                 given = [value for key, value in self.stamps.given if key == (before, 0)]
@@ -432,10 +433,11 @@ class States:
         inner = bare(value)
         if isinstance(inner, Binary) and inner.op == "-" and self.constant(inner.right) is not None:
             inner = bare(inner.left)
-        return isinstance(inner, Const) or _variable(inner) is counter
+        return isinstance(inner, Const) or only_variable(inner) is counter
 
 
-def _variable(e: Expr) -> Variable | None:
+def only_variable(e: Expr) -> Variable | None:
+    """The object at file scope that an expression is the value of; None: it is something else."""
     match bare(e):
         case Load(lvalue=LValue(root=Variable(kind="global") as v, indices=[], words=0)):
             return v
@@ -447,19 +449,19 @@ def _states(f: Function) -> Iterator[tuple[Variable, int, list[Stmt]]]:
     for s in statements(f.body):
         match s:
             case Switch(subject=subject, cases=cases):
-                v = _variable(subject)
+                v = only_variable(subject)
                 for labels, body in cases if v is not None else ():
                     if labels is not None and len(labels) == 1 and not (body and isinstance(body[-1], FallThrough)):
                         assert v is not None
                         yield v, labels[0], body
             case If(test=Compare(op="==", left=left, right=right), then=then):
-                v, value = _variable(left), bare(right)
+                v, value = only_variable(left), bare(right)
                 if v is not None and isinstance(value, Const) and isinstance(value.value, int):
                     yield v, value.value, then
 
 
-def _exits(
-    body: list[Stmt], subject: Variable, tests: tuple[tuple[Expr, bool], ...]
+def exits_of(
+    body: list[Stmt], subject: Variable, tests: tuple[tuple[Expr, bool], ...] = ()
 ) -> Iterator[tuple[Assign, tuple[tuple[Expr, bool], ...]]]:  # fmt: skip
     """The assignments to the object of a state, each with the tests around it and their outcomes."""
     for s in body:
@@ -467,11 +469,11 @@ def _exits(
             case Assign(target=LValue(root=Variable() as v)) if v is subject:
                 yield s, tests
             case If(test=test, then=then, otherwise=otherwise):
-                yield from _exits(then, subject, (*tests, (test, True)))
-                yield from _exits(otherwise, subject, (*tests, (test, False)))
+                yield from exits_of(then, subject, (*tests, (test, True)))
+                yield from exits_of(otherwise, subject, (*tests, (test, False)))
             case _:
                 for block in blocks(s):
-                    yield from _exits(block, subject, tests)
+                    yield from exits_of(block, subject, tests)
 
 
 def _bodies(body: list[Stmt]) -> Iterator[list[Stmt]]:
@@ -508,6 +510,6 @@ def _decided(test: Expr, x: Variable, constant: Callable[[Expr], int | None]) ->
         case Compare(op=op, left=left, right=right):
             for side, other, named in ((left, right, op), (right, left, _SWAPPED[op])):
                 goal = constant(other)
-                if _variable(side) is x and goal is not None:
+                if only_variable(side) is x and goal is not None:
                     return lambda value: COMPARE[named](value, goal)
     return None

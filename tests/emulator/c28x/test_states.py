@@ -14,10 +14,14 @@ PROGRAM = """#include "F28x_Project.h"
 enum DOOR {{ SHUT, OPENING, WIDE }};
 volatile enum DOOR Door = SHUT;
 volatile Uint16 Now, Seen, Rest, Level = 100, Pulls, Goal = 40, Ends, Pushed;
+typedef struct {{ Uint16 value; Uint32 taken; }} SAMPLE;
+SAMPLE Last;
+volatile Uint32 Millis;
 static Uint16 Pushed_Now(void) {{ return Pushed; }}
 interrupt void Tick(void)
 {{
     Now++;
+    Millis++;
     {tick}
     PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;
 }}
@@ -138,3 +142,53 @@ def test_a_goal_that_is_met_is_silent(tick: str, turn: str, tmp_path: Path) -> N
 ])  # fmt: skip
 def test_an_age_the_wrong_way_round_is_told(turn: str, found: bool, tmp_path: Path) -> None:
     assert [rule for rule, _ in told(tmp_path, turn=turn)] == ["stamp-backwards"] * found
+
+
+FRESH = """SAMPLE sample; Uint32 now, late = 0, gone = 0;
+{before}
+for (;;) {{
+    Pulls = Pushed_Now() + (gone > 9);
+    {first}
+    {second}
+    {between}
+    switch (Door) {{
+    case SHUT: if (Pulls) Door = WIDE; break;
+    case WIDE: default: Ends++; {more} if ({test} && Pulls < 7) {{ late = now; Door = SHUT; }} break;
+    }}
+    DELAY_US(50);
+}}"""
+TAKEN = "Last.value = 3; Last.taken = Millis;"
+
+
+def fresh(**given: str) -> str:
+    usual = {
+        "before": "late = Millis;", "first": "sample = Last;", "second": "now = Millis;", "between": "", "more": "",
+        "test": "sample.taken > now",
+    }  # fmt: skip
+    return FRESH.format(**(usual | given))
+
+
+@pytest.mark.parametrize("given", [
+    {}, {"test": "now < sample.taken"},
+    {"first": "gone = Last.taken;", "test": "gone > now"},
+])  # fmt: skip
+def test_a_state_whose_exit_wants_a_stamp_from_the_future_is_told(given: dict[str, str], tmp_path: Path) -> None:
+    test = given.get("test", "sample.taken > now")
+    line = f"case WIDE: default: Ends++;  if ({test} && Pulls < 7) {{ late = now; Door = SHUT; }} break;"
+    assert told(tmp_path, TAKEN, fresh(**given)) == [("state-stuck", line)]
+
+
+@pytest.mark.parametrize(("tick", "given"), [
+    # An age; equal times, in one count; a stamp of the next pass, or that changes behind the reading.
+    (TAKEN, {"test": "now - sample.taken < 5"}), (TAKEN, {"test": "sample.taken >= now"}),
+    (TAKEN, {"first": "now = Millis;", "second": "sample = Last;"}),
+    (TAKEN, {"between": "if (Pulls) sample = Last;"}), (TAKEN, {"between": "now = late;"}),
+    # A time in the future; of somebody else; of another clock.
+    ("Last.taken = Millis + 20;", {}), (TAKEN, {"before": "Last.taken = Level;"}),
+    (TAKEN + "Last.taken = Rest;", {}), ("Last.taken = Now;", {}),
+    # Another way out.
+    (TAKEN, {"more": "if (Pulls == 5) Door = SHUT;"}), (TAKEN, {"between": "if (Pulls == 5) Door = SHUT;"}),
+    (TAKEN, {"test": "(sample.taken > now || Pulls == 3)"}),
+])  # fmt: skip
+def test_a_state_that_a_stamp_can_end_is_silent(tick: str, given: dict[str, str], tmp_path: Path) -> None:
+    assert told(tmp_path, tick, fresh(**given)) == []
