@@ -108,7 +108,11 @@ class L3G4200D:
             r.STATUS_REG: self._read_status,
             r.FIFO_SRC_REG: self._read_fifo_src,
             r.INT1_SRC: self._read_int1_src,
+            r.WHO_AM_I: self._read_who_am_i,
         }
+        #: How often the identity was read before anything was written.
+        self.asked = 0
+        self.written = False
         self.reset()
 
     def reset(self) -> None:
@@ -231,6 +235,7 @@ class L3G4200D:
 
     def write_register(self, address: int, byte: int) -> None:
         """One byte as the serial interface writes it."""
+        self.written = True
         writable = _WRITABLE.get(address)
         if writable is None:
             kind = "read-only" if address in _BY_ADDRESS else "reserved"
@@ -305,6 +310,10 @@ class L3G4200D:
         self.outputs.restart_set()
         self._update_pins()
         self._plan_event()
+
+    def _read_who_am_i(self) -> int:
+        self.asked += not self.written
+        return self.registers[r.WHO_AM_I]
 
     def _read_ctrl_reg5(self) -> int:
         word = self.registers[r.CTRL_REG5]

@@ -977,6 +977,22 @@ The word leaves the chip, but no device takes it. The word that is received is t
         "L3G, SPI bus interface",
     ),
     _rule(
+        "wrong-identity",
+        Severity.WARNING,
+        "The identity of a part is compared with that of another part.",
+        """
+The program searches the part for ever, or says that it is missing, although it is there.
+
+In the run a part on the board was asked three times or more who it is (`WHO_AM_I`), and nothing was ever written to it.
+The source compares the answer with a constant that is another one than the data sheet of this part has. The part is the
+right one if the board was named (`--board`), or if a comment or a name of the program names it. A program that knows
+several parts, and compares with the right identity too, is not told.
+
+**Fix:** take the identity from the data sheet of the part.
+""",
+        "L3G4200D data sheet, WHO_AM_I: 0xD3",
+    ),
+    _rule(
         "device-register",
         Severity.WARNING,
         "A register of a device was accessed in a way that its data sheet forbids.",

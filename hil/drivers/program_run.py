@@ -19,6 +19,7 @@ from emulator.registers.spi import SPICCR, SPICTL
 from hil.drivers.budget import RUN, TimeBudget, computed
 from hil.drivers.cut_messages import TRIAL, CutTrial, cut_messages
 from hil.drivers.face_scale import FaceScales
+from hil.drivers.identities import wrong_identities
 from hil.drivers.least_pulses import swallowed_pulses
 from hil.drivers.periods import RoutinePeriods, wrong_periods, wrong_timers
 from hil.drivers.places import anchored, mentions_gyro, of_open_trip, of_unused_part
@@ -243,6 +244,7 @@ def _run(
         *(misread_counts(build.modules, image.board.kernel.clocks.tick_period_us, image.board) if known else ()),
         *wrong_rates(build.modules, image.board), *wrong_timers(build.modules, image.board),
         *swallowed_pulses(build.modules, image.board),
+        *wrong_identities(build.modules, image.board, board_named=board_named),
     )  # fmt: skip
     for wrong in told:
         image.board.findings.report_at(wrong.place, wrong.rule, wrong.message, object=wrong.object, how="dynamic")
