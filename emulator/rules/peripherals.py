@@ -242,25 +242,6 @@ that it makes and takes back is missing.
         "TRM ADC: SOC triggers; TRM ePWM: time base, counter compare, event trigger; TRM PIE, external interrupts",
     ),
     _rule(
-        "pulse-swallowed",
-        Severity.WARNING,
-        "The dead band swallows the pulses of the least duty.",
-        """
-The switch stays off at the least duty and some way above it: a start, a charge pump or a current at low duty fails.
-
-A dead band delays one edge of each pulse. A pulse that is not longer than `DBRED` (or `DBFED`) does not come out. In
-the run an ePWM had a compare value for more than a period, the action qualifier made pulses of it, and none came out of
-the output. The value is a constant that is the least one by its name (`DUTY_MIN`, `LEAST_DUTY`), which the source gives
-to the compare register, or to an object that it gives to the register.
-
-Other small duties are not reported: a controller may go through them. Neither is a constant below 1 % of the period,
-which only keeps the value away from 0.
-
-**Fix:** make the least duty longer than the dead band, or the dead band as short as the switches allow.
-""",
-        "TRM ePWM: dead-band submodule",
-    ),
-    _rule(
         "compare-above-period",
         Severity.WARNING,
         "A compare value was computed beyond the period.",
@@ -975,22 +956,6 @@ The word leaves the chip, but no device takes it. The word that is received is t
 **Fix:** lower the chip select before the first word of a transaction, and make its pin an output.
 """,
         "L3G, SPI bus interface",
-    ),
-    _rule(
-        "wrong-identity",
-        Severity.WARNING,
-        "The identity of a part is compared with that of another part.",
-        """
-The program searches the part for ever, or says that it is missing, although it is there.
-
-In the run a part on the board was asked three times or more who it is (`WHO_AM_I`), and nothing was ever written to it.
-The source compares the answer with a constant that is another one than the data sheet of this part has. The part is the
-right one if the board was named (`--board`), or if a comment or a name of the program names it. A program that knows
-several parts, and compares with the right identity too, is not told.
-
-**Fix:** take the identity from the data sheet of the part.
-""",
-        "L3G4200D data sheet, WHO_AM_I: 0xD3",
     ),
     _rule(
         "device-register",
