@@ -18,8 +18,9 @@ they were scheduled: two runs of one seed are the same run.
 from __future__ import annotations
 
 from collections.abc import Callable
-from heapq import heappop, heappush
 from typing import Final
+
+from mypy_extensions import i64
 
 SYSCLK_HZ: Final = 200_000_000
 CYCLES_PER_US: Final = SYSCLK_HZ // 1_000_000
@@ -40,11 +41,11 @@ class ClockEvent:
 
     def __init__(self, callback: Callable[[], None], priority: int = 0) -> None:
         self.callback = callback
-        self.priority = priority
+        self.priority: i64 = priority
         #: When it is due, or was, in cycles.
-        self.time = 0
+        self.time: i64 = 0
         #: Its number in the order of scheduling; 0 while it does not wait.
-        self.number = 0
+        self.number: i64 = 0
 
     @property
     def waits(self) -> bool:
@@ -71,25 +72,21 @@ class Clock:
     ``clock.now += n`` / ``if clock.now >= clock.next: clock.run_due()``.
     """
 
-    __slots__ = (
-        "_attention", "_cancelled", "_heap", "_sequence", "_soonest", "need_attention", "next", "now", "waited",
-    )  # fmt: skip
+    __slots__ = ("_attention", "_cancelled", "_sequence", "_waiting", "need_attention", "next", "now", "waited")
 
     def __init__(self) -> None:
-        self.now = 0
-        self.next = NEVER
+        self.now: i64 = 0
+        self.next: i64 = NEVER
         #: The cycles of polls, delays and idling.  Time skips them; they are not executed one by one.
-        self.waited = 0
+        self.waited: i64 = 0
         #: Whether the CPU must look for interrupts or task switches (`request_attention`).
         self.need_attention = False
         self._attention: Callable[[], None] = no_attention
-        #: The first event is kept apart while that is cheap: what is scheduled as the next thing to happen (a
-        #: conversion, a transfer) never enters the heap.  It sorts before all of the heap; None: nothing is kept apart.
-        self._soonest: ClockEvent | None = None
-        #: (time, priority, number, event), void if the event has another number by now.  Contains an event that never
-        #: comes, so that there is always a first one.
-        self._heap: list[tuple[int, int, int, ClockEvent]] = [(NEVER, 0, 0, ClockEvent(_never))]
-        self._sequence = 0
+        #: The events that wait, the soonest last: what is scheduled as the next thing to happen (a conversion, a
+        #: transfer) moves no other one.  The first is one that never comes, so that there is always a last one.
+        self._waiting = [ClockEvent(_never)]
+        self._waiting[0].time = NEVER
+        self._sequence: i64 = 0
         self._cancelled = 0
 
     def schedule(self, time: int, callback: Callable[[], None], priority: int = 0) -> ClockEvent:
@@ -105,7 +102,7 @@ class Clock:
         """Run `callback` `cycles` from now."""
         return self.schedule(self.now + cycles, callback, priority)
 
-    def start(self, event: ClockEvent, time: int) -> None:
+    def start(self, event: ClockEvent, time: i64) -> None:
         """Run an event at `time` (absolute cycles), and not when it was to run before, if it waits already.
 
         Raises ValueError for a time that has passed.
@@ -117,19 +114,21 @@ class Clock:
         self._sequence = number = self._sequence + 1
         event.time = time
         event.number = number
-        soonest = self._soonest
+        waiting = self._waiting
+        first, end = 0, len(waiting)
+        last = waiting[-1]
+        if time < last.time or (time == last.time and event.priority < last.priority):
+            first = end
+        while first < end:
+            middle = (first + end) // 2
+            other = waiting[middle]
+            if other.time < time or (other.time == time and other.priority <= event.priority):
+                end = middle
+            else:
+                first = middle + 1
+        waiting.insert(first, event)
         if time < self.next:
             self.next = time
-            self._soonest = event
-            if soonest is not None:
-                heappush(self._heap, (soonest.time, soonest.priority, soonest.number, soonest))
-        elif soonest is not None and (
-            time < soonest.time or (time == soonest.time and event.priority < soonest.priority)
-        ):
-            self._soonest = event
-            heappush(self._heap, (soonest.time, soonest.priority, soonest.number, soonest))
-        else:
-            heappush(self._heap, (time, event.priority, number, event))
 
     def cancel(self, event: ClockEvent | None) -> None:
         """Forget an event.  Cancelling one that does not wait, or None, does nothing."""
@@ -137,24 +136,16 @@ class Clock:
             return
         event.number = 0
         self._cancelled += 1
-        if event is self._soonest:
-            self._soonest = None
-        heap = self._heap
-        while _void(heap[0]):
-            heappop(heap)
-        soonest = self._soonest
-        self.next = heap[0][0] if soonest is None else soonest.time
+        waiting = self._waiting
+        waiting.remove(event)
+        self.next = waiting[-1].time
         if self.need_attention and self.next > self.now:
             self.next = self.now
 
-    def next_besides(self, event: ClockEvent) -> int:
-        """A time before which nothing but `event` is due (a cancelled event not surfaced yet may make it early)."""
-        soonest, heap = self._soonest, self._heap
-        if soonest is event:
-            return heap[0][0]
-        if soonest is not None:
-            return soonest.time
-        return heap[0][0] if heap[0][3] is not event else min(entry[0] for entry in heap[1:3])
+    def next_besides(self, event: ClockEvent) -> i64:
+        """The time before which nothing but `event` is due."""
+        waiting = self._waiting
+        return waiting[-2].time if waiting[-1] is event else waiting[-1].time
 
     def serve_with(self, attention: Callable[[], None]) -> None:
         """Give the CPU to a new owner: `attention` is called, at the CPU's time, after events that requested it.
@@ -175,7 +166,7 @@ class Clock:
         if self.next > self.now:
             self.next = self.now
 
-    def charge(self, cycles: int) -> None:
+    def charge(self, cycles: i64) -> None:
         """The CPU executes for `cycles`."""
         self.now = now = self.now + cycles
         if now >= self.next:
@@ -183,22 +174,13 @@ class Clock:
 
     def run_due(self) -> None:
         """Run what is due up to `now`, then give the CPU's owner its chance to switch."""
-        heap = self._heap
+        waiting = self._waiting
         cpu_time = self.now
         while True:
-            event = self._soonest
-            if event is None:
-                time, _, number, event = heap[0]
-                if time > cpu_time:
-                    break
-                heappop(heap)
-                if event.number != number:
-                    continue  # cancelled
-            else:
-                time = event.time
-                if time > cpu_time:
-                    break
-                self._soonest = None
+            time = waiting[-1].time
+            if time > cpu_time:
+                break
+            event = waiting.pop()
             event.number = 0
             self.now = time
             event.run()
@@ -208,7 +190,7 @@ class Clock:
             self.need_attention = False
             self._attention()
 
-    def advance_to(self, time: int) -> None:
+    def advance_to(self, time: i64) -> None:
         """Move the time of an idle CPU to `time`.  It stops at each event on the way."""
         while self.next <= time:
             if self.next > self.now:
@@ -219,7 +201,7 @@ class Clock:
             self.waited += time - self.now
             self.now = time
 
-    def delay(self, cycles: int) -> None:
+    def delay(self, cycles: i64) -> None:
         """A busy wait of `cycles` *executed* cycles: pre-emption makes it longer, as on the chip."""
         remaining = cycles
         while remaining > 0:
@@ -230,39 +212,33 @@ class Clock:
             if self.now >= self.next:
                 self.run_due()
 
-    def poll(self, iteration_cycles: int) -> int:
+    def poll(self, iteration_cycles: i64) -> i64:
         """Move the time of a loop that only polls a flag to its first iteration at or after the next event.
 
         Equal to running the iterations one by one, because between events no register changes.
         Returns the time then; NEVER, without moving, when no event is left: then nothing can end the poll.
         """
         now, due = self.now, self.next
-        event = self._soonest
-        if event is not None and due > now:
-            # The poll nearly always waits for the event that is kept apart, and it alone: it runs as in `run_due`.
+        if due <= now:
+            self.now = now + iteration_cycles
+        elif due - now < FAR:
             cpu_time = due + (now - due) % iteration_cycles
             self.waited += cpu_time - now
-            self._soonest = None
-            self.next = self._heap[0][0]
+            # The poll nearly always waits for this event alone: it runs as in `run_due`, which would look for more.
+            event = self._waiting.pop()
+            self.next = self._waiting[-1].time
             self.now = due
             event.number = 0
             event.run()
             self.now = cpu_time
-            if cpu_time >= self.next:
-                self.run_due()
-                return self.now
-            return cpu_time
-        if due <= now:
-            self.now = now + iteration_cycles
-        elif due - now < FAR:
-            self.now = due + (now - due) % iteration_cycles
-            self.waited += self.now - now
+            if cpu_time < self.next:
+                return cpu_time
         else:
             return NEVER
         self.run_due()
         return self.now
 
-    def skip_turns(self, cycles: int, until: int) -> None:
+    def skip_turns(self, cycles: i64, until: i64) -> None:
         """Skip whole turns of a loop, of `cycles` each, that end before the next event and not after `until`."""
         end = min(self.next - 1, until)
         if 0 < cycles <= end - self.now < FAR:
@@ -278,25 +254,16 @@ class Clock:
     @property
     def events_run(self) -> int:
         """How many events have run since the clock was made."""
-        return self._sequence - self._cancelled - len(self._waiting())
+        return self._sequence - self._cancelled - self.pending
 
     def waiting(self) -> list[Callable[[], None]]:
-        """The callbacks of the events that wait, in no order."""
-        return [event.callback for event in self._waiting()]
-
-    def _waiting(self) -> list[ClockEvent]:
-        events = [entry[3] for entry in self._heap if entry[3].number and not _void(entry)]
-        return events if self._soonest is None else [*events, self._soonest]
+        """The callbacks of the events that wait, the soonest first."""
+        return [event.callback for event in self._waiting[:0:-1]]
 
     @property
     def pending(self) -> int:
-        """How many events wait (cancelled ones that have not surfaced yet included)."""
-        return len(self._heap) - 1 + (self._soonest is not None)
-
-
-def _void(entry: tuple[int, int, int, ClockEvent]) -> bool:
-    """Whether what waited in an entry of the heap was cancelled."""
-    return entry[3].number != entry[2]
+        """How many events wait."""
+        return len(self._waiting) - 1
 
 
 def us(cycles: int) -> float:

@@ -783,7 +783,7 @@ class Connections:
         placed = {f"{m.name}.{name}" for m in self._linked.program.modules.values() for name in m.placed}
         used = self._chip.dma.objects
         for name, cause in used.items() if placed & used.keys() else ():
-            path = self._chip.findings.path(*cause[:2]) if cause is not None else ()
+            path = self._chip.findings.path(cause.at, cause.calls) if cause is not None else ()
             if name not in placed and path:
                 other = min(placed & used.keys())
                 self._chip.findings.report_at(
@@ -1484,8 +1484,7 @@ class Connections:
     def _check_beyond_period(self, register: str, compare: str, beyond: CompareBeyondPeriod) -> bool:
         """Report a compare value above the period if it was computed.  A constant is taken to be meant."""
         findings = self._chip.findings
-        at, calls, task = beyond.cause
-        path = findings.path(at, calls)
+        path, task = findings.path(beyond.cause.at, beyond.cause.calls), beyond.cause.who
         writes = (*self._source.writes.get(_split(register), ()), *self._source.pointed.get(compare, ()))
         computed = {write.place[:2] for write in writes if write.values is None}
         at_call = next((n for n, place in enumerate(path) if place[:2] in computed), None)

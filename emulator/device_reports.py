@@ -28,7 +28,7 @@ class Reports:
             path = self._path_of_both(since)
             cause = findings.cause
             if cause is not None:
-                begun = findings.path(*cause[:2])
+                begun = findings.path(cause.at, cause.calls)
                 if len(begun) == len(path):
                     path = begun  # The statement before the wait in which the access ended.
             if path:

@@ -72,9 +72,19 @@ class Finding:
         }
 
 
-#: The statement that started something which ends later: its number, its calls, and the task that ran.  It is a tuple,
-#: because every conversion makes one, and an object of a class takes six times as long.
-Cause = tuple[int, Calls | None, str]
+class Cause:
+    """The statement that started something which ends later: its number, its calls, and who ran (as in `Position`)."""
+
+    __slots__ = ("at", "calls", "who")
+
+    def __init__(self) -> None:
+        self.at = 0
+        self.calls: Calls | None = None
+        self.who = ""
+
+    def take(self, position: Position) -> None:
+        """Make it the statement that executes now."""
+        self.at, self.calls, self.who = position.at, position.calls, position.who
 
 
 class Findings:
@@ -163,8 +173,7 @@ class Findings:
             path = self.path(at or self.position.at, self.position.calls)
             cause = None if path else otherwise
         if cause is not None:
-            at, calls, task = cause
-            path = self.path(at, calls)
+            path, task = self.path(cause.at, cause.calls), cause.who
         return self._record(path, task, rule, message, object, declaration, value, details, "dynamic")
 
     def report_at(
@@ -208,7 +217,9 @@ class Findings:
         position = self.position
         if not position.at and position.calls is None:
             return None
-        return position.at, position.calls, position.who
+        cause = Cause()
+        cause.take(position)
+        return cause
 
     def path(self, at: int, calls: Calls | None) -> tuple[Place, ...]:
         """The call path of a position, as places, the innermost first.

@@ -499,9 +499,9 @@ class Memory:
         obj = p.obj
         if obj is not None and not obj.readonly:
             found = obj.claim(p.offset + words, ctype)
-            if found is not None and compatible(found[1], ctype):
+            if found is not None and (found[1] is ctype or compatible(found[1], ctype)):
                 leaf_type = found[1]
-                if isinstance(leaf_type, IntType) and leaf_type != ctype:
+                if leaf_type is not ctype and isinstance(leaf_type, IntType) and leaf_type != ctype:
                     value = leaf_type.wrap(value)
                 obj.data[found[0]] = value
                 return

@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final
 
+from mypy_extensions import i64
+
 #: The callers of the running function: (place of the call, callers of the caller); None at the bottom of a stack.  Each
 #: call makes a new tuple, so the tuple is also the identity of the call.  A third member (`INTERRUPT`) marks a step
 #: that is not a call: an interrupt, or something that runs from one.
@@ -33,7 +35,7 @@ class Position:
     __slots__ = ("at", "calls", "follow", "hold", "who")
 
     def __init__(self) -> None:
-        self.at = 0
+        self.at: i64 = 0
         self.calls: Calls | None = None
         self.who = "main"
         #: Called with the locals before each statement, in an image linked with `CompileOptions.steps`.

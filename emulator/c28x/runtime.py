@@ -9,11 +9,8 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
-from dataclasses import fields
 from math import isfinite
 from typing import Any, Final, Protocol
-
-from mypy_extensions import mypyc_attr
 
 from emulator.c28x.arithmetic import COMPARE, DIVIDERS, FLOAT_TO_INT, divide_double, divide_int, modulo_int
 from emulator.c28x.called_as import fitted, misfit
@@ -96,17 +93,19 @@ class Idling(EndlessPoll):
     """A function idles in an endless loop while its caller waits for its return: this is not a defect of the loop."""
 
 
-@mypyc_attr(native_class=False)  # sites are kept by pickling, which a native class cannot be
-class RuntimeSite(Site):
-    """One check of a running image: its site, its number, and what it has found so far."""
+class RuntimeSite:
+    """One check of a running image: what the program says of it (`check`), its number, and what it has found so far.
+
+    It is compiled, and `Site` is not: type and name, which are asked often, stand here too.
+    """
 
     __slots__ = (
-        "ahead", "empty_at", "fine", "first", "generation", "greatest", "initial", "last", "least", "number", "passes",
-        "planted", "seen", "turned", "turns", "wanted", "zero",
+        "ahead", "check", "ctype", "empty_at", "fine", "first", "generation", "greatest", "initial", "last", "least",
+        "name", "number", "passes", "planted", "seen", "turned", "turns", "wanted", "zero",
     )  # fmt: skip
 
     def __init__(self, site: Site, number: int) -> None:
-        super().__init__(*(getattr(site, f.name) for f in fields(Site)))
+        self.check, self.ctype, self.name = site, site.ctype, site.name
         self.number = number
         self.seen: Finding | None = None
         self.generation = -1
@@ -162,8 +161,8 @@ class RuntimeSites(dict[int, RuntimeSite]):
     def __missing__(self, number: int) -> RuntimeSite:
         runtime = self._runtime
         self[number] = site = RuntimeSite(runtime.findings.places.site(number), number)
-        if site.declaration is not None:
-            path = site.declaration.path
+        if site.check.declaration is not None:
+            path = site.check.declaration.path
             site.initial = runtime.initials.setdefault(path, {})
             site.planted = runtime.planted.setdefault(path, {})
         return site
@@ -171,9 +170,9 @@ class RuntimeSites(dict[int, RuntimeSite]):
 
 def _wrap(site: RuntimeSite, index: int) -> list[str]:
     """The detail that an unsigned subscript has wrapped below 0, as a list; empty if it has not."""
-    if not site.wraps or index <= 0x7FFF:
+    if not site.check.wraps or index <= 0x7FFF:
         return []
-    return [f"the unsigned {site.wraps} went below 0 and wrapped: {index - 0x10000} became {index}"]
+    return [f"the unsigned {site.check.wraps} went below 0 and wrapped: {index - 0x10000} became {index}"]
 
 
 class StackPointer(Protocol):
@@ -307,8 +306,8 @@ class Runtime:
             return
         shown = value if isinstance(value, int | float) else None
         site.seen = self.findings.report(
-            rule, message, object=site.name, declaration=str(site.declaration or ""), value=shown, details=details,
-            at=site.number,
+            rule, message, object=site.name, declaration=str(site.check.declaration or ""), value=shown,
+            details=details, at=site.number,
         )  # fmt: skip
         site.generation = self.findings.generation
 
@@ -366,7 +365,7 @@ class Runtime:
             assert seen is not None
             self.findings.count(seen)
             return site.initial.get("value", site.zero)
-        declaration = site.declaration
+        declaration = site.check.declaration
         part = ""
         if declaration is not None and isinstance(declaration.ctype, ArrayType | StructType):
             part = part_name(declaration.ctype, word)
@@ -374,7 +373,7 @@ class Runtime:
         # One defect, one finding: if a switch has no case for a value, `no-case` was reported at the switch, where it
         # must be corrected; that nothing was written is only the consequence.  For a value that `no-case` does not
         # report (one that means "none"), the finding is made here.
-        told = any(self.caseless.get(where) == self.findings.generation for where in site.caseless)
+        told = any(self.caseless.get(where) == self.findings.generation for where in site.check.caseless)
         if "value" in site.initial:
             value = site.initial["value"]
         else:
@@ -384,7 +383,7 @@ class Runtime:
                 raise UninitialisedRead(f"{message} ({declaration})")
             value = self.fill_value(site.ctype, f"{site.name}+{word}", addr)
         if not told:
-            details = (f"it is read as {site.text}",) if part and site.text else ()
+            details = (f"it is read as {site.check.text}",) if part and site.check.text else ()
             self.hit(site, "uninitialised", message, value, details)
         return value
 
@@ -396,7 +395,7 @@ class Runtime:
     # Indices outside an object
 
     def oob_load(self, number: int, index: int, stride: int, base: int) -> Any:
-        """Read element `index` of an array of `site.bound`; `base` is the address of element 0, `stride` in words."""
+        """Read element `index` of an array of `bound`; `base` is the address of element 0, `stride` in words."""
         site = self.sites[number]
         addr = base + index * stride
         if not self.counted(site):
@@ -410,7 +409,7 @@ class Runtime:
         return self.strayed_load(site.ctype, addr)
 
     def oob_store(self, number: int, index: int, stride: int, base: int, value: Any) -> None:
-        """Write element `index` of an array of `site.bound`."""
+        """Write element `index` of an array of `bound`."""
         site = self.sites[number]
         addr = base + index * stride
         if not self.counted(site):
@@ -425,18 +424,19 @@ class Runtime:
     ) -> None:  # fmt: skip
         where = self.neighbour(site, words, addr)
         name, obj = site.name, self.memory.find(addr - words)
-        if obj is not None and obj.declaration is site.declaration and isinstance(obj.declaration.ctype, StructType):
-            name += part_name(obj.declaration.ctype, addr - words - obj.base).removesuffix("[0]")
-        of = f"the array has {site.bound} elements"
+        declaration = site.check.declaration
+        if obj is not None and obj.declaration is declaration and isinstance(declaration.ctype, StructType):
+            name += part_name(declaration.ctype, addr - words - obj.base).removesuffix("[0]")
+        of = f"the array has {site.check.bound} elements"
         details = [f"what is {done} instead: {where}", *_wrap(site, index)]
         self.hit(site, "index", f"{name}{subscripts} is {done}: {of}; this {does} {where}", index, tuple(details))
 
     def neighbour(self, site: RuntimeSite, words: int, addr: int) -> str:
         """What is `words` from the start of the array at `site`, or at `addr`, as text."""
-        if site.frame is None:
+        if site.check.frame is None:
             return self.memory.neighbour(addr)
-        function, place = site.frame.function, site.frame_start + words
-        for offset, declaration in site.frame.objects:
+        function, place = site.check.frame.function, site.check.frame_start + words
+        for offset, declaration in site.check.frame.objects:
             if 0 <= place - offset < declaration.ctype.words:
                 part = part_name(declaration.ctype, place - offset)
                 return f"{declaration.path}{part}, a local of the same function"
@@ -468,18 +468,19 @@ class Runtime:
         self, site: RuntimeSite, indices: tuple[int, ...], base: int, done: str, does: str
     ) -> tuple[int, int | None]:
         """The word that the subscripts designate, and the number of the scalar there (None: outside of the object)."""
-        assert site.declaration is not None
-        ctype = site.declaration.ctype
-        offset = site.word + sum(i * stride for i, (_, stride) in zip(indices, site.dimensions, strict=True))
+        check, dimensions = site.check, site.check.dimensions
+        assert check.declaration is not None
+        ctype = check.declaration.ctype
+        offset = check.word + sum(i * stride for i, (_, stride) in zip(indices, dimensions, strict=True))
         leaf = next((n for n, (o, t) in enumerate(scalars(ctype)) if o == offset and t == site.ctype), None)
         if not self.counted(site):
-            wrong, (limit, _) = next((i, d) for i, d in zip(indices, site.dimensions, strict=True) if not 0 <= i < d[0])
+            wrong, (limit, _) = next((i, d) for i, d in zip(indices, dimensions, strict=True) if not 0 <= i < d[0])
             where = self.neighbour(site, offset, base + offset)
             if leaf is not None:
-                where = f"{site.declaration.path}{part_name(ctype, offset)}, within the same object"
+                where = f"{check.declaration.path}{part_name(ctype, offset)}, within the same object"
             subscripts = "".join(f"[{i}]" for i in indices) if isinstance(ctype, ArrayType) else ""
             message = (
-                f"{site.text or site.name}: index {wrong} is {done}, but this dimension has {limit} elements; "
+                f"{check.text or site.name}: index {wrong} is {done}, but this dimension has {limit} elements; "
                 f"this {does} {where}"
             )
             details = [f"what is {done} instead: {where}"]
@@ -491,11 +492,12 @@ class Runtime:
     # Pointers
 
     def member_index(self, index: int, number: int) -> int:
-        """Check and return the subscript of an array of `site.bound`, a member behind a pointer."""
+        """Check and return the subscript of an array of `bound`, a member behind a pointer."""
         site = self.sites[number]
-        behind = index == site.bound and site.kind == "address"
-        if not 0 <= index < site.bound and not behind and not self.counted(site):
-            message = f"{site.text or site.name}: index {index} is outside: the array has {site.bound} elements"
+        bound = site.check.bound
+        behind = index == bound and site.check.kind == "address"
+        if not 0 <= index < bound and not behind and not self.counted(site):
+            message = f"{site.check.text or site.name}: index {index} is outside: the array has {bound} elements"
             behind_it = f"the access goes to the next member, or behind the object that {site.name} points to"
             self.hit(site, "index", message, index, (behind_it, *_wrap(site, index)))
         return index
@@ -522,7 +524,7 @@ class Runtime:
         part = part_name(obj.declaration.ctype, offset)
         message = f"{name}{part} is read through {site.name} before anything was written to it"
         if site.seen is None or site.generation != self.findings.generation:
-            site.declaration = obj.declaration
+            site.check.declaration = obj.declaration
         self.hit(site, "uninitialised", message, value)
         if self.fill == "trap" and obj.initial is None:
             raise UninitialisedRead(f"{message} ({obj.declaration})")
@@ -658,8 +660,8 @@ class Runtime:
         where = self.memory.neighbour(p.addr + words)
         distance = p.offset + words
         details = [f"what is {verb} instead: {where}"]
-        if site.wraps and distance >= 0x7FFF:
-            details.append(f"the unsigned {site.wraps} went below 0 and wrapped")
+        if site.check.wraps and distance >= 0x7FFF:
+            details.append(f"the unsigned {site.check.wraps} went below 0 and wrapped")
         found = obj.leaf(0)
         if site.ctype.name.endswith("char") and found is not None and not found[1].name.endswith("char"):
             details.append(f"a char is a word of 16 bits here: a {found[1]} is {found[1].words} of them, not octets")
@@ -691,7 +693,7 @@ class Runtime:
         obj = p.obj
         if obj is not None:
             found = obj.leaf(p.offset)
-            if found is not None and found[1] == p.target:
+            if found is not None and (found[1] is p.target or found[1] == p.target):
                 value = obj.data[found[0]]
                 if value is not None:
                     return value
@@ -708,7 +710,7 @@ class Runtime:
             if p.obj is None or p.obj.ended or p.offset < 0 or p.offset + words > p.obj.words:
                 self.examine(p, 0, site, verb)
         obj = source.obj
-        local = obj is not None and obj.declaration.function and site.kind != "parameter"
+        local = obj is not None and obj.declaration.function and site.check.kind != "parameter"
         if obj is not None and local and obj.data and all(value is None for value in obj.data):
             path = obj.declaration.path
             self.hit(site, "uninitialised", f"{path} is copied before anything was written to it")
@@ -913,17 +915,18 @@ class Runtime:
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         wrapped = ctype.wrap(value)
-        if site.kind == "shift" and not site.widened and 0 <= value <= 2 * ctype.high + 1:
+        if site.check.kind == "shift" and not site.check.widened and 0 <= value <= 2 * ctype.high + 1:
             return wrapped  # a bit was shifted into the sign bit, as in every mask for bit 15; no bit is lost
         message = f"{site.name} is {value}, which does not fit a {ctype.bits}-bit {ctype}: it becomes {wrapped}"
         details: tuple[str, ...] = ()
-        if site.widened:
-            late = f"{site.name} is computed in {ctype.bits} bits and widened to {site.widened} afterwards: {wrapped}"
-            details = (f"the result is converted to {site.widened} only after it lost its upper bits",)
+        if site.check.widened:
+            wider = site.check.widened
+            late = f"{site.name} is computed in {ctype.bits} bits and widened to {wider} afterwards: {wrapped}"
+            details = (f"the result is converted to {wider} only after it lost its upper bits",)
             if not self.counted(site):
                 self.findings.report(
                     "widened-late", f"{late} instead of {value}", object=site.name, value=value,
-                    declaration=str(site.declaration or ""), at=site.number,
+                    declaration=str(site.check.declaration or ""), at=site.number,
                 )  # fmt: skip
         self.hit(site, "overflow", message, value, details)
         return wrapped
@@ -937,21 +940,21 @@ class Runtime:
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         result = ctype.wrap(value)
-        if site.difference and value < -(ctype.high // 2 + 1):
+        if site.check.difference and value < -(ctype.high // 2 + 1):
             return result
-        if site.kind == "stamps" and value >= -0x8000:
+        if site.check.kind == "stamps" and value >= -0x8000:
             return result  # less than half of the range of 16 bits: the number has decreased
         became = f"the unsigned {site.name} is {value}, which wraps to {result}"
-        match site.rule:
+        match site.check.rule:
             case "widened-late":
-                message = f"{became} in {ctype.bits} bits before it is converted to {site.widened}"
+                message = f"{became} in {ctype.bits} bits before it is converted to {site.check.widened}"
             case "sign-compare":
                 message = f"{site.name} is {value} and is compared as unsigned: it counts as {result}"
             case "unsigned-wrap-index":
                 message = f"{became} and then selects an element"
             case _:
-                message = f"{became} and then {site.widened}"
-        self.hit(site, site.rule, message, value)
+                message = f"{became} and then {site.check.widened}"
+        self.hit(site, site.check.rule, message, value)
         return result
 
     def stamps(self, a: int, op: str, b: int, number: int) -> bool:
@@ -961,10 +964,10 @@ class Runtime:
         assert isinstance(ctype, IntType)
         half = ctype.high // 2 + 1
         outcome = COMPARE[op](a, b)
-        if site.kind == "equal, left":
+        if site.check.kind == "equal, left":
             a, b = b, a
         apart = (a - b + half) % (2 * half) - half
-        if site.kind != "order":
+        if site.check.kind != "order":
             # By awaited stamp: whether it was still in the future at the previous test.
             before = site.ahead.get(b)
             if before is not None and before < 0 < apart < half // 2:
@@ -987,7 +990,7 @@ class Runtime:
         site = self.sites[number]
         ctype = site.ctype
         assert isinstance(ctype, IntType)
-        whole, other = (left, right) if site.kind == "left" else (right, left)
+        whole, other = (left, right) if site.check.kind == "left" else (right, left)
         cut = ctype.wrap(whole)
         outcome = bool(COMPARE[op](cut, other))
         if cut != whole == other:
@@ -1021,10 +1024,10 @@ class Runtime:
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         mask = (1 << ctype.bits) - 1
-        for lower, upper in site.dimensions:
+        for lower, upper in site.check.dimensions:
             common = terms[lower] & terms[upper] & mask
             if common:
-                low, high = site.constants[lower][1], site.constants[upper][1]
+                low, high = site.check.constants[lower][1], site.check.constants[upper][1]
                 message = f"{low} is {terms[lower] & mask:#x}: its bits {common:#x} are also those of {high}"
                 self.hit(site, "fields-overlap", f"{message}, which is {terms[upper] & mask:#x}", value)
                 break
@@ -1036,21 +1039,21 @@ class Runtime:
         if whole != value:
             site = self.sites[number]
             message = f"{site.name} has read {whole}, which does not fit an int: it becomes {value}, and then"
-            self.hit(site, "widened-late", f"{message} a {site.widened}", whole)
+            self.hit(site, "widened-late", f"{message} a {site.check.widened}", whole)
         return value
 
     def pulse(self, value: int, number: int) -> int:
         """A time between two captures, of which an object keeps 16 bits, or that object where it is used wider."""
         site = self.sites[number]
-        if site.kind == "cut":
-            self.cut_pulses.pop(site.text, None)
+        if site.check.kind == "cut":
+            self.cut_pulses.pop(site.check.text, None)
             if value > 0xFFFF:
-                self.cut_pulses[site.text] = site, value
-        elif site.text in self.cut_pulses:
-            cut, whole = self.cut_pulses.pop(site.text)
+                self.cut_pulses[site.check.text] = site, value
+        elif site.check.text in self.cut_pulses:
+            cut, whole = self.cut_pulses.pop(site.check.text)
             self.wrong_pulses += value == whole & 0xFFFF  # else it has another value by now
             if value == whole & 0xFFFF and self.wrong_pulses >= WRONG_PULSES:
-                kept = f"{site.text} keeps {value} of it, which is used as a wider number then"
+                kept = f"{site.check.text} keeps {value} of it, which is used as a wider number then"
                 self.hit(cut, "widened-late", f"{cut.name} is {whole}: {kept}", whole)
         return value
 
@@ -1067,14 +1070,14 @@ class Runtime:
     def _regulate(self, value: float, number: int) -> None:
         """Report an integral that goes on growing while the output stands at its limit."""
         site = self.sites[number]
-        state = self.regulators.get(site.regulator)
+        state = self.regulators.get(site.check.regulator)
         if state is None:
-            state = self.regulators[site.regulator] = RegulatorState()
-        if site.kind == "sum":
+            state = self.regulators[site.check.regulator] = RegulatorState()
+        if site.check.kind == "sum":
             state.sum_at = number
-        elif site.kind == "share":
-            state.share, state.side = value * site.scale, site.side
-        elif site.kind == "output":
+        elif site.check.kind == "share":
+            state.share, state.side = value * site.check.scale, site.check.side
+        elif site.check.kind == "output":
             state.output = value
         elif state.output is not None:
             output, state.output = state.output, None
@@ -1097,27 +1100,28 @@ class Runtime:
     def quantity(self, value: int, number: int) -> int:
         """A number that does not fit the register field to which it is written."""
         site = self.sites[number]
-        message = f"{site.text} holds 0 to {site.bound}: {site.name} is {value}, and arrives as {value & site.bound}"
+        bound = site.check.bound
+        message = f"{site.check.text} holds 0 to {bound}: {site.name} is {value}, and arrives as {value & bound}"
         self.hit(site, "register-value", message, value)
         return value
 
     def sign_lost(self, value: int, number: int) -> int:
         """A negative number that is converted to unsigned."""
         site = self.sites[number]
-        if site.kind == "small" and value < SMALL:
+        if site.check.kind == "small" and value < SMALL:
             return value
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         taken = value & (1 << ctype.bits) - 1
-        message = f"{site.name} is {value}: taken as unsigned it is {taken}, which {site.widened}"
+        message = f"{site.name} is {value}: taken as unsigned it is {taken}, which {site.check.widened}"
         self.hit(site, "sign-lost", message, value)
         return value
 
     def signed_word(self, value: int, number: int) -> int:
         """An unsigned word or octet whose highest bit is set, which the source takes for a sign."""
         site = self.sites[number]
-        meant = value - 2 * (site.bound + 1)
-        message = f"{site.name} is {value}, as its highest bit is no sign here: {meant} is meant, {site.widened}"
+        meant = value - 2 * (site.check.bound + 1)
+        message = f"{site.name} is {value}, as its highest bit is no sign here: {meant} is meant, {site.check.widened}"
         self.hit(site, "sign-lost", message, value)
         return value
 
@@ -1125,7 +1129,7 @@ class Runtime:
         """A difference of 32 bits that is just below 0, and of which 16 bits without a sign are kept."""
         site = self.sites[number]
         gone, kept = value - 0x1_0000_0000, value & 0xFFFF
-        message = f"{site.name} is {gone}: as 16 bits without a sign it is {kept}, which {site.widened}"
+        message = f"{site.name} is {gone}: as 16 bits without a sign it is {kept}, which {site.check.widened}"
         self.hit(site, "sign-lost", message, gone)
         return value
 
@@ -1135,7 +1139,7 @@ class Runtime:
         ctype = site.ctype
         assert isinstance(ctype, IntType)
         bits = f"{value & 2 * ctype.high + 1:#x}"
-        message = f"{site.name} holds the bits {bits}, as an {ctype} {value}: {site.widened}"
+        message = f"{site.name} holds the bits {bits}, as an {ctype} {value}: {site.check.widened}"
         self.hit(site, "sign-extended", message, value)
         return value
 
@@ -1156,7 +1160,7 @@ class Runtime:
         site.last = above, below
         if below > 1 and not site.turned:
             meant = value - _ALL_24 - 1
-            message = f"{site.name} is {value}: bit 23 is its sign, {meant} is meant, and it {site.widened}"
+            message = f"{site.name} is {value}: bit 23 is its sign, {meant} is meant, and it {site.check.widened}"
             self.hit(site, "sign-lost", message, value)
         return value
 
@@ -1179,7 +1183,8 @@ class Runtime:
             site.first = value
         site.passes = passes
         if passes >= _ONE_SIDE and abs(value) >= abs(site.first):
-            message = f"{site.name} has had the same sign for {passes} passes, now {value:.7g}: it is {site.widened}"
+            same = f"{site.name} has had the same sign for {passes} passes, now {value:.7g}"
+            message = f"{same}: it is {site.check.widened}"
             self.hit(site, "feedback-reversed", message, value)
 
     def _follow_away(self, value: float, wanted: float, site: RuntimeSite) -> None:
@@ -1190,29 +1195,30 @@ class Runtime:
             site.least, site.wanted = value, wanted
         far = max(_AWAY * abs(site.least), _BEYOND * abs(wanted))
         if site.turns >= _ONE_SIDE and wanted and abs(value) >= far:
-            message = f"{site.name} has grown from {site.least:.7g} to {value:.7g} in {site.turns} passes, while the"
-            self.hit(site, "runs-away", f"{message} wanted value stood at {wanted:.7g}: it is {site.widened}", value)
+            grown = f"{site.name} has grown from {site.least:.7g} to {value:.7g} in {site.turns} passes"
+            message = f"{grown}, while the wanted value stood at {wanted:.7g}: it is {site.check.widened}"
+            self.hit(site, "runs-away", message, value)
 
     def fraction(self, value: float, number: int) -> float:
         """A float that a cast makes an integer before it is multiplied by a scale."""
         site = self.sites[number]
-        if abs(value) < _WHOLE and int(value * site.scale) != int(value) * int(site.scale):
-            message = f"{site.name} is {value:.7g}, and {int(value)} in front of the factor {site.scale:g}"
-            became = f"{int(value) * int(site.scale)} instead of {int(value * site.scale)}"
+        if abs(value) < _WHOLE and int(value * site.check.scale) != int(value) * int(site.check.scale):
+            message = f"{site.name} is {value:.7g}, and {int(value)} in front of the factor {site.check.scale:g}"
+            became = f"{int(value) * int(site.check.scale)} instead of {int(value * site.check.scale)}"
             self.hit(site, "remainder-lost", f"{message}: {became}", value)
         return value
 
     def no_case(self, value: int, number: int) -> None:
         """A switch over an enumeration, without default, has no case for a value."""
         site = self.sites[number]
-        name = dict(site.constants).get(value)
+        name = dict(site.check.constants).get(value)
         if name is not None:
-            self.hit(site, "no-case", f"{site.name} is {name}, which has no case: {site.text}", value)
-        elif not site.constants and value > site.word and value not in NOBODY:
-            named = f"{site.word} to {site.bound}"
+            self.hit(site, "no-case", f"{site.name} is {name}, which has no case: {site.check.text}", value)
+        elif not site.check.constants and value > site.check.word and value not in NOBODY:
+            named = f"{site.check.word} to {site.check.bound}"
             message = f"{site.name} is {value}, no constant of its enumeration ({named}): it has no case"
             self.hit(site, "no-case", message, value)
-            self.caseless[site.where] = self.findings.generation
+            self.caseless[site.check.where] = self.findings.generation
 
     def octet(self, value: int, number: int) -> int:
         """A value that does not fit an octet is converted to a character, which has 16 bits here."""
@@ -1221,7 +1227,7 @@ class Runtime:
         assert isinstance(ctype, IntType)
         kept = ctype.wrap(value)
         octet = value & 0xFF
-        if site.kind == "sign" or ctype.name == "signed char":
+        if site.check.kind == "sign" or ctype.name == "signed char":
             octet -= 0x100 if octet > 0x7F else 0
             message = f"{site.name} is {value}: a 16-bit {ctype} has no sign there, where 8 bits would give {octet}"
         else:
@@ -1235,7 +1241,7 @@ class Runtime:
         result = self.divide_ints(a, b, number)
         site.fine = site.fine or abs(result) >= _FINE
         if b and a % b and not site.fine:
-            then = "is scaled" if site.widened == "scaled" else "is converted to float"
+            then = "is scaled" if site.check.widened == "scaled" else "is converted to float"
             message = f"{site.name}: {a} / {b} is {result} in integers, and {then} only afterwards"
             self.hit(site, "remainder-lost", message, a)
         return result
@@ -1370,7 +1376,7 @@ class Runtime:
         if not self.skips_turns:
             return
         clock, findings = self.clock, self.findings
-        if self._idle_turn == (began, clock.next, clock.scheduled, findings.occurrences):
+        if self._idle_turn == (began, int(clock.next), int(clock.scheduled), findings.occurrences):
             clock.skip_turns(clock.now - began, until)
         self._idle_turn = (clock.now, clock.next, clock.scheduled, findings.occurrences)
 
@@ -1388,7 +1394,7 @@ class Runtime:
         """
         site = self.sites[number]
         context = self.findings.context()
-        if site.kind == "idle" and context == "main" and self._driven():
+        if site.check.kind == "idle" and context == "main" and self._driven():
             return
         alone = context.startswith(("main", "Isr:"))
         if not alone and self.counted(site, "endless-loop"):

@@ -395,13 +395,13 @@ class L3G4200D:
         self.clock.cancel(self._event)
         self._event = None
         now = self.clock.now
-        times = []
+        change = NEVER
         if self._period and self._pins_in_use:
-            times.append(self._time_base + ((now - self._time_base) // self._period + 1) * self._period)
-        if self.registers[r.CTRL_REG3] & 0x40 and now < self._boot_end:
-            times.append(self._boot_end)
-        if times:
-            self._event = self.clock.schedule(min(times), self._on_event)
+            change = self._time_base + ((now - self._time_base) // self._period + 1) * self._period
+        if self.registers[r.CTRL_REG3] & 0x40 and now < self._boot_end < change:
+            change = self._boot_end
+        if change < NEVER:
+            self._event = self.clock.schedule(change, self._on_event)
 
     def _on_event(self) -> None:
         self._catch_up()

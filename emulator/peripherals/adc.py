@@ -25,6 +25,8 @@ from functools import partial
 from random import Random
 from typing import Final, Literal
 
+from mypy_extensions import i64
+
 from emulator.c28x.findings import Cause
 from emulator.c28x.sites import Place
 from emulator.clock import CYCLES_PER_US, NEVER, Clock, ClockEvent
@@ -80,6 +82,7 @@ class Adc:
         "_findings",
         "_flag_at",
         "_flags_then",
+        "_forced",
         "_frozen_at",
         "_full_scale",
         "_interrupts",
@@ -174,19 +177,21 @@ class Adc:
             clock, cpu, regs, results, partial(self._pulse, 4), self._configure, self._result_of_soc0
         )  # fmt: skip
         self._at_end, self._at_pulse = _AtEnd(self), ClockEvent(self._early)
-        #: The statement that forced the conversions under way.
+        #: The statement that forced the conversions under way, in the same object each time: `Findings.mark` would make
+        #: a new one, 2 % of a mission.
+        self._forced = Cause()
         self._cause: Cause | None = None
         self._converter = converter = Converter(regs.name, pins, vrefhi_v, vreflo_v, noise_lsb, random)
         self._vreflo_v, self._span_v = converter.vreflo_v, converter.span_v
         self._noise_lsb, self._noise = converter.noise_lsb, converter.noise
-        self._sync_cycles = sync_cycles
+        self._sync_cycles: i64 = sync_cycles
         self._stopped_by_fault = False
         self._stopping_faults = 0
         self._trigger_changed = trigger_changed
         #: The hardware triggers that start a conversion.
         self._obeyed: frozenset[int] = frozenset()
         #: Conversions ended since the object was made.
-        self.conversions = 0
+        self.conversions: i64 = 0
         self._socs = Socs(regs, cpu.findings, converter, self._results, any_write_resets_pointer)
         #: The SOCs that begin at once if they are forced while no conversion is under way.
         self._ready: list[Soc] = []
@@ -223,7 +228,9 @@ class Adc:
         #: The register that the last conversion gave reads `_unlatched` until `_latch_at`; then another conversion may
         #: be under way, `_latch_at` is NEVER and it reads so until `_latched`.
         self._latch: Cell | None = None
-        self._latch_at = self._latched = self._unlatched = 0
+        self._latch_at: i64 = 0
+        self._latched: i64 = 0
+        self._unlatched: i64 = 0
         #: SOCs that hardware or another conversion triggered.
         self._by_hardware = 0
         for hook in self._reads:
@@ -238,11 +245,12 @@ class Adc:
         self._begun = 0  # SOCs that have begun a conversion
         self._extra_work_socs = 0xFFFF  # SOCs of which more is to be done when they begin: see `_extra_work`
         self._soc = self._last_soc = self._socs.every[0]
-        self._start = self._sample = 0
+        self._start: i64 = 0
+        self._sample: i64 = 0
         self._code: int | None = None  # sampled by an early pulse, not ended yet
-        self._sel_then = 0  # ADCINTSEL1N2 when the conversion under way began
+        self._sel_then: i64 = 0  # ADCINTSEL1N2 when the conversion under way began
         self._epoch = self._clock.now
-        self._ready_at = NEVER
+        self._ready_at: i64 = NEVER
         self._frozen_at: int | None = None if self._regs.clocked else self._clock.now
         self._configure()
 
@@ -359,7 +367,7 @@ class Adc:
         else:
             self._socs.add(socs)
 
-    def _begin(self, start: int) -> None:
+    def _begin(self, start: i64) -> None:
         """The arbiter gives the S/H to a pending SOC: its window opens at `start`."""
         soc = self._socs.choose()
         n = soc.n
@@ -466,13 +474,14 @@ class Adc:
         """Follow the registers that configure conversions."""
         converter = self._converter
         converter.configure(self._ctl2.value)
-        self._t_eoc, self._latch_delay = converter.t_eoc, converter.t_lat - converter.t_eoc
+        self._t_eoc = converter.t_eoc
+        self._latch_delay: i64 = converter.t_lat - converter.t_eoc
         self._acqps_min = converter.acqps_min
         self._late = bool(self._ctl1.value & 0x0004)
         #: A float, because the voltage is one: comparing an int with a float takes twice as long.
         self._full_scale = float(converter.full_scale)
         #: A window that opens at this cycle or later yields the scaled voltage of its pin.
-        self._plain_from = self._ready_at if converter.plain and not self._ppb.in_use else NEVER
+        self._plain_from: i64 = self._ready_at if converter.plain and not self._ppb.in_use else NEVER
         #: Whether an EOC drives only ADCINT1 and ADCINT2.
         self._eoc_is_plain = not (
             self._intsel34.value or self._socsel1.value or self._socsel2.value or self._notes_collisions
@@ -694,8 +703,8 @@ class Adc:
         return self._socs.pending
 
     def _write_ADCSOCFRC1(self, word: int) -> None:
-        position = self._position
-        self._cause = position.at, position.calls, position.who  # `Findings.mark` without its call: 0.7 % of a mission
+        self._forced.take(self._position)
+        self._cause = self._forced
         start = self._clock.now + self._sync_cycles
         if self._event is None and start >= self._ready_at:
             for soc in self._ready:

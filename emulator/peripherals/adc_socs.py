@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import Final
 
+from mypy_extensions import i64
+
 from emulator.c28x.findings import Cause, Findings
 from emulator.peripherals.adc_converter import Converter
 from emulator.registers.adc import AdcRegs
@@ -27,15 +29,17 @@ class Soc:
     __slots__ = ("adcint1", "bit", "channel", "converted_at", "cycles", "n", "pin", "result", "window")
 
     def __init__(self, n: int, pin: AnalogWire, result: Cell) -> None:
-        self.n, self.pin, self.result = n, pin, result
-        self.bit = 1 << n
-        self.channel = 0
+        self.pin, self.result = pin, result
+        self.n: i64 = n
+        self.bit: i64 = 1 << n
+        self.channel: i64 = 0
         #: Cycles of the window, and cycles from its opening to the end of the conversion.
-        self.window = self.cycles = 1
+        self.window: i64 = 1
+        self.cycles: i64 = 1
         #: The value of INT1E and INT1SEL if the EOC of this SOC drives ADCINT1, and nothing drives ADCINT2.
-        self.adcint1 = 0x20 | n
+        self.adcint1: i64 = 0x20 | n
         #: When the last conversion ended; 0: never.
-        self.converted_at = 0
+        self.converted_at: i64 = 0
 
 
 class Socs:
@@ -70,7 +74,8 @@ class Socs:
         #: SOCs that were triggered and have not got the S/H.
         self.pending = 0
         #: RRPOINTER, and as it was before the last `choose`.
-        self.pointer = self.before = NO_POINTER
+        self.pointer: i64 = NO_POINTER
+        self.before: i64 = NO_POINTER
 
     def configure(self) -> None:
         """Follow ADCSOCnCTL, ADCSOCPRICTL and ADCBURSTCTL; the converter has followed ADCCTL2."""

@@ -56,7 +56,7 @@ class EPwmChecks:
             self.above_half[compare] = value, period
         if not value > period + 1 > 1 or (cause := self._cpu.findings.mark()) is None:
             return
-        if all(seen.cause[0] != cause[0] for seen in self.above.get(compare, ())):
+        if all(seen.cause.at != cause.at for seen in self.above.get(compare, ())):
             self._above[compare] = CompareBeyondPeriod(value, period, cause)
 
     def period_written(self) -> None:

@@ -243,15 +243,14 @@ class GpioPort:
         findings = self._cpu.findings
         for i in [i for i in self._copied if pins >> i & 1]:
             cause, level = self._copied.pop(i), self._latch >> i & 1
-            at, calls, task = cause
-            path = findings.path(at, calls)
+            path = findings.path(cause.at, cause.calls)
             name = f"GPIO{self._first + i}"
             if path:
                 findings.report_at(
                     path[0], "latch-copied",
                     f"{name} becomes an output and drives {level}: this statement read the levels of all pins of the "
                     f"port and wrote them back, so that the latch of {name}, an input then, became {level}",
-                    how="dynamic", object=name, value=level, call_path=path, task=task,
+                    how="dynamic", object=name, value=level, call_path=path, task=cause.who,
                 )  # fmt: skip
 
     def _inversion_changed(self, _name: str, changed: int) -> None:

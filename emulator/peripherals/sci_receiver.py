@@ -272,7 +272,7 @@ class SciReceiver:
         """A character has come.  Was the end of the message before it still in the FIFO, below the level?"""
         now, own, fifo = self._clock.now, self._own_format(), self.fifo
         since, self._last_came = now - self._last_came, now
-        if since < 2 * own.frame_bits * own.bit_cycles:
+        if int(since) < 2 * own.frame_bits * own.bit_cycles:
             self._in_a_row += 1
             return
         ended, self._in_a_row = self._in_a_row > 1, 1

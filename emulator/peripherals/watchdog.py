@@ -55,13 +55,12 @@ class Watchdog:
         begun, findings = self._begun, self._cpu.findings
         if self._wdcr.value & WDDIS or begun is None or self._serviced_at <= since:
             return
-        at, calls, task = begun
-        path = findings.path(at, calls)
+        path = findings.path(begun.at, begun.calls)
         findings.report_at(
             path[0], "watchdog-in-vain",
-            f"{task} services the watchdog while main hangs in {hung.function}, line {hung.line}, for the last "
+            f"{begun.who} services the watchdog while main hangs in {hung.function}, line {hung.line}, for the last "
             f"{ms(self._clock.now - since):.0f} ms: the device is not reset",
-            how="dynamic", object=self._regs.name, call_path=path, task=task,
+            how="dynamic", object=self._regs.name, call_path=path, task=begun.who,
         )  # fmt: skip
 
     def reset(self) -> None:

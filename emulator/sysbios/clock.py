@@ -121,7 +121,11 @@ class ClockModule:
                     core.trace.emit("clock", timer.name)
                 core.clock.charge(self._cost_call)
                 timer.function(timer.arg)
-        self._next_due = min((timer.due for timer in self.queue if timer.active), default=NEVER)
+        next_due = NEVER
+        for timer in self.queue:
+            if timer.active and timer.due < next_due:
+                next_due = timer.due
+        self._next_due = next_due
 
     # Timeouts of other modules
 

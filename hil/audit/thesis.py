@@ -164,7 +164,7 @@ def characters_ms(order: bytes) -> list[float]:
         begin = bench.clock.now
         bench.feed(order)
         bench.run_for(0.1)
-        return [1e3 * (cycles - begin) / SYSCLK_HZ for cycles in times]
+        return [1e3 * int(cycles - begin) / SYSCLK_HZ for cycles in times]
 
 
 def bits_of_stop() -> float:

@@ -111,7 +111,7 @@ def wrong_timers(modules: Iterable[Module], board: Board) -> Iterator[UnitMismat
     functions = [function for module in modules for function in module.functions]
     for n, timer in enumerate(board.timers):
         set_by, cycles = timer.period_by, timer.period_cycles
-        path = board.findings.path(*set_by[:2]) if set_by is not None and cycles else ()
+        path = board.findings.path(set_by.at, set_by.calls) if set_by is not None and cycles else ()
         of: frozenset[Variable] | None = None
         inner = ""
         for place in path:

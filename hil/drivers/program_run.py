@@ -316,17 +316,17 @@ def _bare(
     stood = EndPosition()
     clock, position, places = image.board.clock, image.board.findings.position, image.board.findings.places
     end = until()
-    step = max(1, min((end - clock.now) // 50, SYSCLK_HZ // 50))
+    step = max(1, min(int(end - clock.now) // 50, SYSCLK_HZ // 50))
     since: dict[tuple[str, int], int] = {}
     enough = min((end - clock.now) // 2, _RETRYING)
     latest = end + image.linked.runtime.poll_limit + step
-    computed_before, executed_before = computed(image), clock.now - clock.waited
+    computed_before, executed_before = computed(image), int(clock.now - clock.waited)
 
     def look() -> None:
         nonlocal computed_before, executed_before, since
         end = until()
         budget.spend(computed(image) - computed_before)
-        executed = clock.now - clock.waited
+        executed = int(clock.now - clock.waited)
         idle = executed - executed_before < step * _BUSY
         computed_before, executed_before = computed(image), executed
         around = retries([places[at] for at, _ in position.frames()], roles.functions)

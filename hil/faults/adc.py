@@ -112,7 +112,7 @@ class ReferenceDrift(Effect):
 
     def _drifted_code(self, soc: int, _channel: int, code: int) -> int:
         over = self.number("over") * SYSCLK_HZ
-        share = 1.0 if over <= 0.0 else min(1.0, (self.clock.now - self._began) / over)
+        share = 1.0 if over <= 0.0 else min(1.0, int(self.clock.now - self._began) / over)
         adc = self.text("adc")
         top = _full_scale(self.board, adc)
         after = min(top, int((code + 0.5) / (1.0 + share * self.number("percent") / 100.0)))

@@ -221,7 +221,7 @@ class _FedShaft:
             if course.smooth:
                 turned = angle_rad - self._angle_rad
                 self._angle_rad = angle_rad
-                self._shaft.turn(turned, start, end, turned * SYSCLK_HZ / (end - start))
+                self._shaft.turn(turned, start, end, turned * SYSCLK_HZ / int(end - start))
             else:
                 edge = floor(angle_rad / _EDGE_RAD)
                 if edge != self._edge:

@@ -315,7 +315,7 @@ class _HitCounter:
         elif self._near_since is None:
             self._near_since = now
         if robot.collisions > self._collisions:
-            seen = self._near_since is not None and now - self._near_since > _HIT_SEEN_S * SYSCLK_HZ
+            seen = self._near_since is not None and int(now - self._near_since) > _HIT_SEEN_S * SYSCLK_HZ
             self.count += seen and self._speed_m_s > _HIT_M_S and bench.status().state == "MISSION"
             self._collisions = robot.collisions
         self._speed_m_s = robot.v_m_s

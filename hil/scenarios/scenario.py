@@ -161,7 +161,7 @@ class Scenario:
                 bench.feed(orders.popleft().data)
             due = start + round(orders[0].time_s * SYSCLK_HZ) if orders else end
             bench.run_until(min(end, due, bench.clock.now + SYSCLK_HZ // 5))
-            progress((bench.clock.now - start) / (end - start))
+            progress(int(bench.clock.now - start) / int(end - start))
 
 
 def load_scenario(path: Path, policy: Policy) -> tuple[Scenario, Policy]:

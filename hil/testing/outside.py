@@ -216,7 +216,7 @@ class _Wheel:
         if now > since:
             self._since = now
             speed = self._speed_rad_s
-            self._motor.turn(speed * (now - since) / SYSCLK_HZ, since, now, speed)
+            self._motor.turn(speed * int(now - since) / SYSCLK_HZ, since, now, speed)
 
     def _tick(self) -> None:
         self._sync()

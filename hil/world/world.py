@@ -114,7 +114,7 @@ class World:
         self.sync(clock.now)
         if self._moving:
             since, since_s = self._paced
-            self._carry(since_s + (clock.now - since) / self.robot.second_cycles)
+            self._carry(since_s + int(clock.now - since) / self.robot.second_cycles)
         clock.schedule(clock.now + CHECK_CYCLES, self._look)
 
     def _carry(self, time_s: float) -> None:
