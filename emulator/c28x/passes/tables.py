@@ -1,20 +1,23 @@
-"""Static check of tables that are shorter than a remainder or a mask allows: `table-short`.
+"""Static check of tables that are shorter than a remainder, a mask or the end of a count allows: `table-short`.
 
     static const STEP Steps[7] = ...;
     Steps[Word() & 7]
+    Steps[at];  at++;  if (at > 7) at = 0;
 
-The check follows such an index through objects that get nothing but remainders, masks and constants, and through the
-results of functions.  What the program compares, or decides by, may have been tested: it is left alone.
+The check follows such an index through objects that get nothing but remainders, masks, constants and steps behind which
+a test sets them back, and through the results of functions.  What the program compares, or decides by, may have been
+tested: it is left alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any, Final, NamedTuple
 
 from emulator.c28x.ctypes import IntType
 from emulator.c28x.passes.intervals import interval
 from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.passes.state_values import constant_of
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     AddressOf,
@@ -31,6 +34,7 @@ from emulator.c28x.tree import (
     Function,
     If,
     Load,
+    Logic,
     LValue,
     Not,
     RegisterLoad,
@@ -42,7 +46,9 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
     NamedScalar,
+    all_blocks,
     bare,
+    blocks,
     named_scalar,
     own_nodes,
     parts,
@@ -55,14 +61,14 @@ _DEEPEST: Final = 4
 
 
 class _Reach(NamedTuple):
-    """The largest value of an index, and the remainder or mask that allows it (None: a constant)."""
+    """The largest value of an index, and the remainder, mask or test that allows it (None: a constant)."""
 
     high: int
-    by: Binary | None
+    by: Binary | Compare | None
 
 
 def check_tables(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
-    """Report subscripts that a remainder or a mask lets go beyond the end of a table."""
+    """Report subscripts that a remainder, a mask or the end of a count lets go beyond the end of a table."""
     indices = _Indices([function for module in modules for function in module.functions])
     for module, report in reports.items():
         for function in module.functions:
@@ -77,11 +83,36 @@ class _Indices:
         self._given: dict[NamedScalar, list[Expr | None]] = {}
         self._results: dict[str, list[Expr | None]] = {}
         self._tested: set[NamedScalar] = set()
+        #: Identity of the value of a step -> how far it leads; the identities of the tests that end a count.
+        self._steps: dict[int, _Reach] = {}
+        self._ends: set[int] = set()
+        for function in functions:
+            for block in all_blocks(function.body):
+                self._counts(block)
         for function in functions:
             for parameter in function.parameters:
                 self._given[parameter, 0] = [None]
             for s in statements(function.body):
                 self._take(function, s)
+
+    def _counts(self, block: list[Stmt]) -> None:
+        """Take the steps by 1 of a block behind which a test sets the scalar back."""
+        for number, s in enumerate(block):
+            match s:
+                case Assign(target=LValue() as target, value=value) if _is_step(target, value):
+                    pass
+                case _:
+                    continue
+            for later in block[number + 1 :]:
+                match later:
+                    case If(test=Compare() as test, then=then, otherwise=[]) if (
+                        (high := _highest(test, target)) is not None and any(_sets_back(t, target) for t in then)
+                    ):  # fmt: skip
+                        self._steps[id(value)] = _Reach(high, test)
+                        self._ends.add(id(test))
+                        break
+                if blocks(later) or any(isinstance(p, LValue) and p == target for p in own_nodes(later)):
+                    break
 
     def _take(self, function: Function, s: Stmt) -> None:
         match s:
@@ -98,7 +129,8 @@ class _Indices:
             if isinstance(p, AddressOf) and (scalar := named_scalar(p.lvalue)) is not None:
                 self._given.setdefault(scalar, []).append(None)
         for test in _tests(s, nodes):
-            self._tested |= {scalar for p in parts(test) if isinstance(p, LValue) and (scalar := named_scalar(p))}
+            if id(test) not in self._ends:
+                self._tested |= {scalar for p in _ranged(test) if isinstance(p, LValue) and (scalar := named_scalar(p))}
 
     def check(self, function: Function, report: StaticReport) -> None:
         """Report the subscripts of one function."""
@@ -116,7 +148,7 @@ class _Indices:
                         continue
                     if texts is None:
                         texts = _tested_texts(function)
-                    if reach.by.op == "%" or not texts & _read(index.expr):
+                    if not (isinstance(reach.by, Binary) and reach.by.op == "&") or not texts & _read(index.expr):
                         self._report(function, s, lvalue, index.expr, index.bound, reach, report)
 
     @staticmethod
@@ -127,6 +159,8 @@ class _Indices:
         assert reach.by is not None
         name, text = lvalue.root.declaration, source_text(index)
         why = "" if bare(index) == reach.by else f", by {source_text(reach.by)}"
+        if isinstance(reach.by, Compare):
+            why = f" before {source_text(reach.by)} sets it back"
         message = f"{text} may be {reach.high}{why}, and {lvalue.text or name.name} has only {bound} elements there"
         report.report(
             function, s.where, "table-short", message, object=name.path, declaration=name, value=reach.high
@@ -136,6 +170,8 @@ class _Indices:
         """How far an index reaches; None: not known."""
         if not isinstance(e.ctype, IntType) or depth > _DEEPEST:
             return None
+        if id(e) in self._steps:
+            return self._steps[id(e)]
         match e:
             case Const(value=int(value)):
                 return _Reach(value, None)
@@ -158,6 +194,33 @@ class _Indices:
         return max(known, key=lambda reach: reach.high) if known and len(known) == len(values) else None
 
 
+def _is_step(target: LValue, value: Expr) -> bool:
+    """Whether a value is that of a named scalar and 1 more.  (`n++` keeps the old value in a temporary.)"""
+    match bare(value):
+        case Binary(op="+", left=left, right=right) if constant_of(right) == 1:
+            old = bare(left)
+        case _:
+            return False
+    if named_scalar(target) is None or not isinstance(old, Load):
+        return False
+    match old.lvalue.root, target.root:
+        case Variable(kind="temporary", declaration=kept), Variable(declaration=counted):
+            return kept == counted
+    return old.lvalue == target
+
+
+def _highest(test: Compare, target: LValue) -> int | None:
+    """The largest value of a count that a test of it lets through; None: the test is about something else."""
+    left, limit = bare(test.left), constant_of(test.right)
+    if not isinstance(left, Load) or left.lvalue != target or limit is None:
+        return None
+    return {">": int(limit), ">=": int(limit) - 1, "==": int(limit) - 1}.get(test.op)
+
+
+def _sets_back(s: Stmt, target: LValue) -> bool:
+    return isinstance(s, Assign) and s.target == target and constant_of(s.value) is not None
+
+
 def _most(e: Expr) -> int:
     """The largest value of the operand of a mask; of one that may be negative, all its bits."""
     low, high = interval(e, {}) if isinstance(e.ctype, IntType) else (-1, 0)
@@ -172,6 +235,22 @@ def _tests(s: Stmt, nodes: Iterable[Any]) -> list[Expr]:
         case If(test=test) | While(test=test) | Switch(subject=test):
             found.append(test)
     return found
+
+
+def _ranged(test: Expr) -> Iterator[Any]:
+    """The parts of a test that may exclude values: not whether two objects are equal (`head == tail`)."""
+    match bare(test):
+        case Logic(operands=operands):
+            for operand in operands:
+                yield from _ranged(operand)
+        case Not(operand=operand):
+            yield from _ranged(operand)
+        case Compare(op="==" | "!=", left=left, right=right) if isinstance(bare(left), Load) and isinstance(
+            bare(right), Load
+        ):
+            pass
+        case _:
+            yield from parts(test)
 
 
 def _tested_texts(function: Function) -> set[str]:

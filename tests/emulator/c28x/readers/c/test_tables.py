@@ -9,7 +9,8 @@ from tests.emulator.c28x.readers.c.workshop import findings_of
 HEAD = """typedef unsigned int Uint16;
 static const int row[5] = {1, 2, 3, 4, 5}, table[4][3] = {{1}};
 volatile Uint16 in;
-static Uint16 place, *where;
+static Uint16 place, *where, at, rows[6];
+static struct { Uint16 at, level; } ring;
 static Uint16 Word(void) { return in >> 8 & 7; }
 static void Set(Uint16 n) { place = n % 7; }
 """
@@ -32,6 +33,12 @@ def told(body: str, more: str = "") -> bool:
         ("Uint16 w = Word(); return row[w];", ""),
         ("return row[place];", ""),
         ("return n < 3 ? 0 : row[n % 9];", ""),  # a test of the number before its remainder excludes none
+        ("return row[at];", "void Next(void) { at++; if (at > 5) at = 0; }"),
+        ("return row[at];", "void Next(void) { if (++at > 5) { at = 0; in = 1; } }"),
+        ("return row[at];", "void Next(void) { at = at + 1; if (at >= 6) at = 0; }"),
+        ("return row[at];", "void Next(void) { at++; if (at == 6) at = 0; }"),
+        ("return row[ring.at];", "void Next(void) { ring.at++; in = 2; if (ring.at > 5) ring.at = 0; }"),
+        ("return row[at] + (at == place);", "void Next(void) { rows[at++] = in; if (at > 5) at = 0; }"),
     ],
 )
 def test_an_index_that_may_be_too_high_is_told(body: str, more: str) -> None:
@@ -54,6 +61,15 @@ def test_an_index_that_may_be_too_high_is_told(body: str, more: str) -> None:
         ("return row[place];", "static void Other(void) { where = &place; }"),
         ("const int *end = &row[n % 6]; return *where + (end != row);", ""),
         ("return row[n];", ""),
+        ("return row[at];", "void Next(void) { at++; if (at >= 5) at = 0; }"),
+        ("return row[at];", "void Next(void) { at++; if (at > 4) at = 0; }"),
+        ("return row[at];", "void Next(void) { at++; if (at == 5) at = 0; }"),
+        ("return row[at];", "void Next(void) { at++; if (at > 5) in = 0; }"),  # nothing sets it back
+        ("return at < 5 ? row[at] : 0;", "void Next(void) { at++; if (at > 5) at = 0; }"),
+        ("if (at == 5) return 0; return row[at];", "void Next(void) { at++; if (at > 5) at = 0; }"),
+        ("return row[at - 1];", "void Next(void) { at++; if (at > 5) at = 1; }"),
+        ("return row[at];", "void Next(void) { at++; if (at > 5 || in) at = 0; }"),  # what the other half does is open
+        ("return row[at];", "void Next(void) { at++; if (at > 5) at = 0; } void Give(Uint16 n) { at = n; }"),
     ],
 )
 def test_an_index_that_stays_inside_or_is_tested_is_silent(body: str, more: str) -> None:
