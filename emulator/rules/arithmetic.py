@@ -89,9 +89,14 @@ product, also one that is divided or shifted down (`(int) ((long) a * b >> 15)`)
 reported despite the cast. A capture of an eCAP (32 bits) that goes to a `Uint16` and is divided later is reported too;
 other registers, and differences of captures, may be cut on purpose.
 
+A test says which values are meant. So `if (n <= 100000L) period = (Uint16) n;` is reported before the program runs: the
+test lets more through than the type holds. It is not reported if the branch uses the value otherwise too, as for its
+upper word.
+
 **Fix:** make the object `long`, or limit the value before the assignment.
 """,
         "ISO C 6.3.1.3 p3",
+        how="dynamic/static",
     ),
     _rule(
         "unsigned-wrap",

@@ -51,16 +51,18 @@ real project may choose another order, so the neighbour may be another one on yo
     _rule(
         "table-short",
         Severity.WARNING,
-        "A remainder or a mask allows an index that its table does not have.",
+        "A remainder, a mask or the end of a count allows an index that its table does not have.",
         """
 Most of the time all is well. With a word that nobody expected, the program reads behind the end of the table.
 
 `Steps[word & 7]` needs eight elements, `mixture[n % 15]` fifteen. A table with seven or five is too short, or the
 number is wrong: of `mixture[5][3]`, `sizeof mixture / sizeof mixture[0][0]` is 15, and the rows are 5.
 
-The check follows the index through objects that get only remainders, masks and constants, and through results of
-functions. Not reported: an index by which the program decides anything (`if (word == 7) return;`), because the test may
-exclude it; a mask with gaps; a table that is reached by a pointer.
+An index that is counted, and set back too late, is such a one too: `at++; if (at > 5) at = 0;` for a table of five.
+
+The check follows the index through objects that get only remainders, masks, constants and such counts, and through
+results of functions. Not reported: an index by which the program decides anything else (`if (word == 7) return;`),
+because the test may exclude it; a mask with gaps; a table that is reached by a pointer.
 
 **Fix:** a row for each value, or a test; `sizeof table / sizeof table[0]` for the number of rows.
 """,

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from emulator.c28x.passes.admitted import check_admitted
 from emulator.c28x.passes.anew import check_begun_anew
 from emulator.c28x.passes.begun_again import check_begun_again
 from emulator.c28x.passes.cleared import check_cleared
@@ -74,6 +75,7 @@ def check(
             Liveness(function, report).run()
             check_stores(function, report)
             check_copies(function, report)
+            check_admitted(function, report)
             check_decided(function, report)
             check_masked(function, report)
             check_begun_anew(function, report)
