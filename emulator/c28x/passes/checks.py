@@ -37,6 +37,7 @@ from emulator.c28x.passes.stores import check_stores
 from emulator.c28x.passes.tables import check_tables
 from emulator.c28x.passes.timer_clock import check_timer_clocks
 from emulator.c28x.passes.undone import check_undone
+from emulator.c28x.passes.unlimited_lines import check_unlimited_lines
 from emulator.c28x.passes.unread_inputs import check_unread_inputs
 from emulator.c28x.passes.values import ValueChecks, file_scope, flag_words
 from emulator.c28x.passes.waiting import WriterAnalysis, check_waiting
@@ -109,6 +110,7 @@ def check(
     check_likes(modules, reports)
     check_spans(modules, reports)
     check_drained(modules, reports)
+    check_unlimited_lines(modules, reports)
     check_undone(modules, reports)
     check_unread_inputs(modules, reports)
     check_entrances(modules, reports)
