@@ -82,14 +82,24 @@ def _stores(function: Function) -> Iterator[tuple[Stmt, Variable, Variable, Vari
 
 
 def _in_no_counting_loop(body: list[Stmt]) -> Iterator[Stmt]:
-    """Statements that are in no loop but those without an end, and those that wait for a register or a function."""
+    """Statements that are in no loop but those without an end, and those that take what there is.
+
+    These ask a register or a function, or whether the two indices of a ring differ.
+    """
     for s in body:
         yield s
-        waits = isinstance(s, While) and any(isinstance(p, RegisterLoad | Call) for p in parts(s.test))
-        endless = isinstance(s, While) and constant_of(s.test) is not None
-        if waits or endless or not isinstance(s, For | While):
-            for block in blocks(s):
-                yield from _in_no_counting_loop(block)
+        if isinstance(s, For) or (isinstance(s, While) and not _takes_what_is_there(s.test)):
+            continue
+        for block in blocks(s):
+            yield from _in_no_counting_loop(block)
+
+
+def _takes_what_is_there(test: Expr) -> bool:
+    """Whether a loop with this test counts no turns."""
+    match bare(test):
+        case Compare(op="!=", left=left, right=right) if isinstance(bare(left), Load) and isinstance(bare(right), Load):
+            return True
+    return constant_of(test) is not None or any(isinstance(p, RegisterLoad | Call) for p in parts(test))
 
 
 def _never_limited(length: Variable, functions: Iterable[Function]) -> bool:

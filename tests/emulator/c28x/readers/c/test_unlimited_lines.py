@@ -28,6 +28,8 @@ def told(body: str, more: str = "") -> bool:
         f"if (c == 2) Length = 0; else if (c == '\\r' || c == '\\n') {{ if (Length > 0) Obey(); Length = 0; }}"
         f" else if (c >= ' ' && c < 127) {{ {STORE} }}",
         "if (c == '\\r') { Obey(); Length = 0; } else { Line[Length] = c; Length = Length + 1; }",
+        "while (Left != Full) { char d = Line[Left]; Left = (Left + 1) % 16; if (d == '\\r') Length = 0;"
+        " else Line[Length++] = d; }",
     ],
 )
 def test_a_line_without_a_limit_is_told(body: str) -> None:
