@@ -248,6 +248,25 @@ looked at.
         "CERT MSC04-C",
     ),
     _rule(
+        "line-unlimited",
+        Severity.WARNING,
+        "Nothing but the last character of a line limits its length.",
+        """
+A line that is longer than its buffer overwrites the objects behind it: a disturbed link, a wrong baud rate, or somebody
+who leaves a key pressed is enough.
+
+A function puts characters into an array and counts them (`line[length++] = c`). The count is set back where the
+character is the last of a line (`if (c == '\\r')`), and no test of the program limits it.
+
+The check needs the source of a whole program. Not reported if the program may limit the length in another way: by a
+test of the count or of another count in the function, by a loop with a number of turns, by a value that is computed
+from the count.
+
+**Fix:** `if (length < sizeof line - 1)` around the statement, and a way to give up a line that is too long.
+""",
+        "CERT STR31-C, ARR30-C",
+    ),
+    _rule(
         "input-unused",
         Severity.NOTE,
         "An input is set up, and nothing looks at it.",

@@ -46,9 +46,10 @@ STATIC = (
     *(
         f"emulator/c28x/passes/{name}.py"
         for name in (
-            "anew", "begun_again", "blocks", "checks", "cleared", "copies", "decided", "drained", "dropped",
+            "admitted", "anew", "begun_again", "blocks", "checks", "cleared", "copies", "decided", "drained", "dropped",
             "entrances", "flow", "formats", "likes", "names", "never_back", "null_tests", "one_sided", "published",
-            "released", "spans", "states", "stores", "tables", "undone", "unread_inputs", "values", "waiting",
+            "released", "spans", "states", "stores", "tables", "undone", "unlimited_lines",
+            "unread_inputs", "values", "waiting",
         )
     ),
     "emulator/c28x/build/", "emulator/c28x/readers/",

@@ -560,6 +560,54 @@ def Show() -> int16:
         ("Show", ()),
     ),
     static_pair(
+        "table-short",
+        "a count that is set back one step too late",
+        """
+Pans: array[int16, 4] = (1, 2, 3, 4)
+_point: uint16 = 0
+def Pan() -> int16:
+    global _point
+    pan: int16 = Pans[_point]  # <-
+    _point += 1
+    if _point > 4:
+        _point = 0
+    return pan
+""",
+        """
+Pans: array[int16, 4] = (1, 2, 3, 4)
+_point: uint16 = 0
+def Pan() -> int16:
+    global _point
+    pan: int16 = Pans[_point]
+    _point += 1
+    if _point >= 4:
+        _point = 0
+    return pan
+""",
+        ("Pan", ()),
+    ),
+    static_pair(
+        "narrowed",
+        "a limit that the type behind it cannot hold",
+        """
+Period_ms: uint16 = 1000
+def Set(number: int32) -> uint16:
+    global Period_ms
+    if number > 0 and number <= 100000:  # <-
+        Period_ms = uint16(number)
+    return Period_ms
+""",
+        """
+Period_ms: uint16 = 1000
+def Set(number: int32) -> uint16:
+    global Period_ms
+    if number > 0 and number <= 60000:
+        Period_ms = uint16(number)
+    return Period_ms
+""",
+        ("Set", (500,)),
+    ),
+    static_pair(
         "octet",
         "bits of an object counted with eight",
         """
