@@ -25,7 +25,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final, NamedTuple
 
 from emulator.c28x.arithmetic import COMPARE, divide_int, modulo_int
-from emulator.c28x.ctypes import VOID, FloatType, IntType, StructType, usual
+from emulator.c28x.ctypes import VOID, FloatType, IntType, PointerType, StructType, usual
 from emulator.c28x.passes.intervals import RING
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.tree import (
@@ -580,13 +580,22 @@ def after_store(
 
 
 def _beside(kept: Spot, stored: Variable | Spot | None) -> bool:
-    """Whether a store does not reach a scalar: it is in another object, or at another place behind the same pointer."""
+    """Whether a store does not reach a scalar: it is in another object, or at another place behind the same pointer.
+
+    A pointer to a structure does not lead to an object that is a mere number (ISO C 6.5 p7).
+    """
     if not isinstance(stored, Spot):
         return False
     if kept.root == stored.root:
         return bool(kept.place != stored.place)
-    named = isinstance(kept.root, Variable) and isinstance(stored.root, Variable)
-    return named and not kept.uses and not stored.uses
+    if not isinstance(kept.root, Variable) or not isinstance(stored.root, Variable):
+        return False
+    if not kept.uses and not stored.uses:
+        return True
+    pointer, named = (kept, stored) if kept.uses else (stored, kept)
+    if named.uses or not isinstance(pointer.root.ctype, PointerType):
+        return False
+    return isinstance(pointer.root.ctype.target, StructType) and isinstance(named.root.ctype, IntType | FloatType)
 
 
 def _may_store(s: Stmt) -> bool:
