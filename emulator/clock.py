@@ -114,6 +114,7 @@ class Clock:
         self._sequence = number = self._sequence + 1
         event.time = time
         event.number = number
+        # Its place is behind later ones and before equal ones, which were scheduled earlier.  Mostly it is the last.
         waiting = self._waiting
         first, end = 0, len(waiting)
         last = waiting[-1]
