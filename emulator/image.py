@@ -272,7 +272,7 @@ def link(
     watch: bool = False, static: bool = False, entries: Iterable[str] = (),
     include: Sequence[str | Path] = (), defines: Sequence[str] = (), abi: str = "coff",
     coverage: Coverage | None = None, steps: bool = False,
-    calibration: Mapping[str, float] | None = None, asked: Mapping[str, Any] | None = None, keep: bool = True,
+    calibration: Mapping[str, float] | None = None, asked: Mapping[str, Any] | None = None,
     charge_by_call: bool = CHARGE_BY_CALL, built: Callable[[str], Any] | None = None,
 ) -> Firmware:  # fmt: skip
     """Translate `modules` and bind them to `system`.
@@ -285,7 +285,7 @@ def link(
     says how long a division takes (`calibrated`, `tmu`, `fast`, `standard`).  It, `calibration`,
     `charge_by_call`, `coverage`,
     `keep_locals` and `steps` are those of `CompileOptions`, `built` is that of `Linked`.
-    `asked` holds further arguments for `Program`; for `keep` see `emulator.c28x.cache`.
+    `asked` holds further arguments for `Program`.
 
     Raises ValueError for an unknown policy and for source outside the language, with file and line.
     """
@@ -298,6 +298,6 @@ def link(
     )  # fmt: skip
     program = compiled(
         {"names": tuple(modules), "include": include, "defines": defines, "abi": abi, **(asked or {})}, options,
-        lambda block, name: system.register(block, name).looked_at, keep=keep,
+        lambda block, name: system.register(block, name).looked_at,
     )  # fmt: skip
     return Firmware(bind(system, program, runtime, externs=externs, coverage=coverage, built=built))

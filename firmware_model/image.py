@@ -16,7 +16,7 @@ from emulator.image import Firmware
 from emulator.system import System
 from firmware_model import c_files
 from firmware_model.calibration import CALIBRATION
-from firmware_model.corrections import ALL, overlays, resolve
+from firmware_model.corrections import overlays, resolve
 
 #: The C files of the robot, in link order.
 MODULES: Final = (
@@ -44,6 +44,5 @@ def link(
         asked |= own.arguments()
     return image.link(
         system, (*modules, *own.besides), asked=asked, calibration=calibration,
-        keep=chosen in (frozenset(), resolve([ALL])),  # the audit alone makes a hundred others, each once
         **options,
     )  # fmt: skip
