@@ -421,6 +421,17 @@ def named_scalar(lvalue: LValue) -> NamedScalar | None:
     return None
 
 
+def fixed_words(lvalue: LValue) -> int | None:
+    """The offset of a scalar from the root of its lvalue, in words; None if a subscript is no constant."""
+    words = lvalue.words
+    for index in lvalue.indices:
+        at = bare(index.expr)
+        if not isinstance(at, Const) or not isinstance(at.value, int):
+            return None
+        words += at.value * index.words
+    return words
+
+
 def made_float(functions: Iterable[Function]) -> set[NamedScalar]:
     """The unsigned scalars of 16 bits whose value some expression converts to a float."""
     found: set[NamedScalar] = set()

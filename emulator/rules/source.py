@@ -166,9 +166,11 @@ One half of something is there, and the other half has been forgotten or removed
 * A value of an enumeration has a case, or is asked for, and no statement gives it to its object: the way into this
   state is missing.
 
-The check needs the source of a whole program. Not reported: a number of events without a limit; objects that are
-not `static`, which a debugger or another program may set or watch; objects whose address is taken; names of switches
-for tests (`debug`, `enable`).
+Members of `static` structures, and elements of arrays, count as objects if nothing takes the address of the whole.
+
+The check needs the source of a whole program. Not reported: a number of events without a limit; objects that
+are not `static`, which a debugger or another program may set or watch; objects whose address is taken; names of
+switches for tests (`debug`, `enable`).
 
 **Fix:** write the other half, or remove this one.
 """,
@@ -197,7 +199,8 @@ branch that gives up anyway (`Wait(); return 0;`), nor about functions whose add
         """
 After one of several faults the motor runs on, or a lamp stays dark: most ways into a state are right, and one is not.
 
-A state is entered where a constant is given to an object that a `switch` or a test asks for. This one has at least
+A state is entered where a constant is given to an object that a `switch` or a test asks for, also by a function that
+gets it (`Enter(FAULT);`). This one has at least
 three entrances. All others call the same function with the same constants, or give the same constant to the same object
 or register (`Motor_Off(); state = FAULT;`); this one does not.
 
@@ -216,10 +219,12 @@ left out may have been done long before. (The time in a state is `not-begun-agai
         """
 After the first error the chip select stays low, the motor runs on, or a device is busy for ever.
 
-A block sets a pin and clears it later, or calls `Motor_On` and later `Motor_Off` (start and stop, select and deselect,
-lock and unlock, enable and disable, begin and end, open and close). A `return` in between leaves it as it is. The same
-is reported of an object that gets one constant and later another (`busy = 1; ... busy = 0;`), if another `return` in
-between undoes it: `valid = 0; ... valid = 1;` is a usual way to say that all went well.
+A block sets a pin and clears it later (by its field, a mask or a function), or calls `Motor_On` and later `Motor_Off`
+(start and stop, select and deselect, lock and unlock, enable and disable, begin and end, open and close, also in German
+and Spanish), `Valve(1)` and later `Valve(0)`, `EALLOW` and `EDIS`. A `return` in between leaves it as it is. The same is
+reported of an object that gets one constant and later another (`busy = 1; ... busy = 0;`), if another `return` in
+between undoes it: `valid = 0; ... valid = 1;` is a usual way to say that all went well. An interrupt that is held back
+(`IER &= ~M_INT9;`) is meant to come again if another function lets it through.
 
 What the branch undoes before it returns, itself or in a function that it calls, is not reported, nor what the callers
 of the function undo. If it is meant to stay on, a lamp for example, write `hil: allow not-undone, ...` at the `return`.

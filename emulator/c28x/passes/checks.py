@@ -23,6 +23,7 @@ from emulator.c28x.passes.future_stamps import unreachable_exits
 from emulator.c28x.passes.interrupted import sides_of
 from emulator.c28x.passes.likes import check_likes
 from emulator.c28x.passes.masked import check_masked
+from emulator.c28x.passes.members import with_members
 from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
 from emulator.c28x.passes.never_back import check_never_back
 from emulator.c28x.passes.null_tests import NullTests
@@ -98,7 +99,8 @@ def check(
                 object=state.declaration.path, declaration=state.declaration,
             )  # fmt: skip
     check_begun_again(modules, reports)
-    check_one_sided(modules, reports)
+    whole = {other: reports[module] for module, other in with_members(modules).items()}
+    check_one_sided(whole, whole)
     check_never_back(modules, reports)
     check_tables(modules, reports)
     sides = sides_of(modules, reports)
@@ -110,7 +112,7 @@ def check(
     check_likes(modules, reports)
     check_spans(modules, reports)
     check_drained(modules, reports)
-    check_unlimited_lines(modules, reports)
+    check_unlimited_lines(whole, whole)
     check_undone(modules, reports)
     check_unread_inputs(modules, reports)
     check_entrances(modules, reports)

@@ -1,6 +1,7 @@
 """Static check of the entrances of a state: `entrance-differs`, and `not-begun-again` for its time.
 
-A state is entered where a statement gives its constant to the object of the state.  What the entrances do besides is
+A state is entered where a statement gives its constant to the object of the state, itself or to a function that gives
+its parameter to that object.  What the entrances do besides is
 the same for a reason: they stop an output, begin a time, clear a count.  One that leaves it out is most likely wrong.
 
 * Its time: the state ends by a count or a stamp.  All other entrances begin it, this one does not.
@@ -64,8 +65,10 @@ class _Entrance:
 
     function: Function
     state: Place
+    #: The state's name in the source.
+    name: str
     value: int
-    s: Assign
+    s: Stmt
     #: The blocks around it, the innermost last.
     around: tuple[list[Stmt], ...]
 
@@ -92,6 +95,8 @@ class _EntranceCheck:
         self._own = {function.path: function for function in functions}
         self._reports = reports
         self._later = self._run_later(main)
+        #: Function -> the number of the parameter that it gives to a state, that state and its name.
+        self._setters = {f.path: setter for f in functions if (setter := _setter(f)) is not None}
         #: Function -> the blocks around each call of it, with the caller.
         self._callers: dict[str, list[tuple[Function, tuple[list[Stmt], ...]]]] = {}
         self._handled: dict[tuple[Place, int], list[list[Stmt]]] = {}
@@ -132,7 +137,13 @@ class _EntranceCheck:
             case Assign(target=LValue(ctype=IntType()) as target, value=value):
                 state, number = _place(target), constant_of(value)
                 if state is not None and number is not None:
-                    entrances.append(_Entrance(function, state, number, s, around))
+                    name = source_text(Load(value.ctype, target))
+                    entrances.append(_Entrance(function, state, name, number, s, around))
+            case Evaluate(value=Call(function=Function(path=path), arguments=arguments)) if path in self._setters:
+                which, state, name = self._setters[path]
+                number = constant_of(arguments[which]) if which < len(arguments) else None
+                if number is not None:
+                    entrances.append(_Entrance(function, state, name, number, s, around))
             case Switch(subject=subject, cases=cases) if (state := _scalar(subject)) is not None:
                 named = {label for labels, _ in cases for label in labels or ()}
                 for labels, body in cases:
@@ -182,9 +193,8 @@ class _EntranceCheck:
                 self._prepared(entrance, same)
 
     def _tell(self, entrance: _Entrance, rule: str, message: str) -> None:
-        name = source_text(Load(entrance.s.value.ctype, _lvalue(entrance.s)))
         self._reports[entrance.function].report(
-            entrance.function, entrance.s.where, rule, message, object=name, value=entrance.value
+            entrance.function, entrance.s.where, rule, message, object=entrance.name, value=entrance.value
         )
 
     # Its time
@@ -265,9 +275,16 @@ def _with_blocks(
             yield from _with_blocks(block, inside)
 
 
-def _lvalue(s: Assign) -> LValue:
-    assert isinstance(s.target, LValue)
-    return s.target
+def _setter(function: Function) -> tuple[int, Place, str] | None:
+    """Which parameter a function gives to an object, that object and its name."""
+    for s in function.body:
+        match s:
+            case Assign(target=LValue(ctype=IntType()) as target, value=value):
+                given, place = bare(value), _place(target)
+                root = given.lvalue.root if isinstance(given, Load) and not given.lvalue.indices else None
+                if place is not None and isinstance(root, Variable) and root in function.parameters:
+                    return function.parameters.index(root), place, source_text(Load(value.ctype, target))
+    return None
 
 
 def _place(lvalue: LValue) -> Place | None:

@@ -1,0 +1,178 @@
+"""The members of structures at file scope as objects of their own, for checks that know whole objects only.
+
+    static struct { Uint16 lost, sent; } Link;
+    Link.lost++;
+
+A check that asks who writes an object, and who reads it, asks the same of `Link.lost` if only named accesses reach it:
+nobody takes the address of `Link` or copies it, each subscript is a constant, and no two members overlap.  Elements of
+arrays that are only accessed by constants count as members.  The trees that the checks get have a variable for each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from copy import copy
+from dataclasses import dataclass, field, fields, replace
+from itertools import pairwise
+from typing import Any, Final
+
+from emulator.c28x import tree
+from emulator.c28x.ctypes import ArrayType, FloatType, IntType, PointerType, StructType
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    FOUND,
+    AddressOf,
+    Bits,
+    Declaration,
+    Declare,
+    Expr,
+    Index,
+    Load,
+    LValue,
+    RegisterAt,
+    Stmt,
+    Variable,
+)  # fmt: skip
+from emulator.c28x.tree_queries import addressed, assigned, fixed_words, own_nodes, parts, statements
+
+#: A member: its offset in words, and its bits if it is a bit-field.
+_Member = tuple[int, Bits | None]
+_SCALARS: Final = (IntType, FloatType, PointerType)
+_NODES: Final = (Expr, LValue, Index, RegisterAt, Stmt)
+#: Kind of node -> its fields that may have other nodes in them.
+_FIELDS: Final[dict[type[Any], tuple[str, ...]]] = {
+    kind: tuple(f.name for f in fields(kind) if f.metadata != FOUND and f.name not in ("where", "ctype"))
+    for kind in vars(tree).values()
+    if isinstance(kind, type) and issubclass(kind, _NODES)
+}
+
+
+def with_members(modules: Iterable[Module]) -> dict[Module, Module]:
+    """The modules, each with one in whose trees the members of structures are objects of their own."""
+    modules = list(modules)
+    split = _split(modules)
+    if not split:
+        return {module: module for module in modules}
+    found: dict[Module, Module] = {}
+    for module in modules:
+        other = copy(module)
+        rewriting = _Rewriting(split)
+        other.functions = [replace(f, body=rewriting.body(f.body)) for f in module.functions]
+        other.variables = [v for variable in module.variables for v in _instead(variable, split)]
+        found[module] = other
+    return found
+
+
+def _instead(variable: Variable, split: dict[Variable, dict[_Member, Variable]]) -> list[Variable]:
+    return list(split[variable].values()) if variable in split else [variable]
+
+
+def _split(modules: list[Module]) -> dict[Variable, dict[_Member, Variable]]:
+    """The structures and arrays whose members are objects of their own, with these."""
+    uses: dict[Variable, dict[_Member, LValue] | None] = {
+        v: {} for module in modules for v in module.variables
+        if isinstance(v.ctype, StructType | ArrayType) and v.kind == "global" and v.address is None and not v.constant
+        and not v.escapes and v.declaration.name not in module.placed and not module.brought
+    }  # fmt: skip
+    if not uses:
+        return {}
+    written: set[Variable] = set()
+    for module in modules:
+        for variable in module.variables:
+            for root in addressed(p for value in variable.initial or () for p in parts(value)):
+                uses.pop(root, None)
+        for function in module.functions:
+            for s in statements(function.body):
+                if (target := assigned(s)) is not None:
+                    written.add(target)
+                for p in own_nodes(s):
+                    _use(p, uses)
+    return {
+        variable: {member: _object(variable, member, lvalue) for member, lvalue in members.items()}
+        for variable, members in uses.items() if members and variable in written and _apart(members)
+    }  # fmt: skip
+
+
+def _use(p: Any, uses: dict[Variable, dict[_Member, LValue] | None]) -> None:
+    """Take note of an access to a structure, or drop it."""
+    match p:
+        case AddressOf(lvalue=LValue(root=Variable() as root)):
+            uses.pop(root, None)
+        case LValue(root=Variable() as root) if (members := uses.get(root)) is not None:
+            words = fixed_words(p)
+            if words is None or not isinstance(p.ctype, _SCALARS) or (p.bits is not None and p.bits.octets):
+                uses.pop(root, None)
+                return
+            known = members.setdefault((words, p.bits), p)
+            if known.ctype != p.ctype:
+                uses.pop(root, None)
+
+
+def _apart(members: dict[_Member, LValue]) -> bool:
+    """Whether no two members share a bit."""
+    spans: list[tuple[int, int]] = []
+    for (words, bits), lvalue in members.items():
+        low = 16 * words + (bits.lo if bits is not None else 0)
+        spans.append((low, low + (bits.width if bits is not None else 16 * lvalue.ctype.words)))
+    return all(one[1] <= other[0] for one, other in pairwise(sorted(spans)))
+
+
+def _object(variable: Variable, member: _Member, lvalue: LValue) -> Variable:
+    """The object that stands for a member."""
+    at = lvalue.leaf + sum(_leaves(index) for index in lvalue.indices)
+    start = variable.initial[at : at + 1] if variable.initial and member[1] is None else None
+    declared = variable.declaration
+    declaration = Declaration(
+        lvalue.text or f"{declared.name}+{member[0]}", lvalue.ctype, declared.module, declared.file, declared.line,
+        declared.function, declared.column,
+    )  # fmt: skip
+    return Variable(
+        declaration, lvalue.ctype, "global", initialised=variable.initialised, initial=start,
+        volatile=variable.volatile or lvalue.volatile,
+    )  # fmt: skip
+
+
+def _leaves(index: Index) -> int:
+    value = getattr(index.expr, "value", 0)
+    return index.leaves * value if isinstance(value, int) else 0
+
+
+@dataclass
+class _Rewriting:
+    """Trees in which each member is an object; what has none in it stays the same node."""
+
+    split: dict[Variable, dict[_Member, Variable]]
+    #: The temporaries that hold the old value of a member, as of `x.n++`: each names the member as its declaration.
+    kept: dict[Variable, Variable] = field(default_factory=dict)
+
+    def body(self, body: list[Stmt]) -> list[Stmt]:
+        """Statements."""
+        return [self._node(s) for s in body]
+
+    def _node(self, node: Any) -> Any:
+        if isinstance(node, list):
+            changed = [self._node(each) for each in node]
+            return changed if any(a is not b for a, b in zip(changed, node, strict=True)) else node
+        if isinstance(node, tuple):  # a case of a switch
+            inner = tuple(self._node(each) for each in node)
+            return inner if any(a is not b for a, b in zip(inner, node, strict=True)) else node
+        if isinstance(node, Variable):
+            return self.kept.get(node, node)
+        if not isinstance(node, _NODES):
+            return node
+        if isinstance(node, Declare) and node.variable.kind == "temporary":
+            self._keep(node)
+        if isinstance(node, LValue) and isinstance(node.root, Variable) and node.root in self.split:
+            words = fixed_words(node)
+            assert words is not None
+            member = self.split[node.root][words, node.bits]
+            return LValue(node.ctype, member, where=node.where, text=node.text, volatile=node.volatile)
+        before = {name: getattr(node, name) for name in _FIELDS[type(node)]}
+        after = {name: self._node(old) for name, old in before.items()}
+        new = {name: value for name, value in after.items() if value is not before[name]}
+        return replace(node, **new) if new else node
+
+    def _keep(self, s: Declare) -> None:
+        value = self._node(s.value)
+        if value is not s.value and isinstance(value, Load) and isinstance(value.lvalue.root, Variable):
+            self.kept[s.variable] = replace(s.variable, declaration=value.lvalue.root.declaration)
