@@ -221,8 +221,8 @@ After the first error the chip select stays low, the motor runs on, or a device 
 
 A block sets a pin and clears it later (by its field, a mask or a function), or calls `Motor_On` and later `Motor_Off`
 (start and stop, select and deselect, lock and unlock, enable and disable, begin and end, open and close, also in German
-and Spanish), `Valve(1)` and later `Valve(0)`, `EALLOW` and `EDIS`. A `return` in between leaves it as it is. The same is
-reported of an object that gets one constant and later another (`busy = 1; ... busy = 0;`), if another `return` in
+and Spanish), `Valve(1)` and later `Valve(0)`, `EALLOW` and `EDIS`. A `return` in between leaves it as it is. The same
+is reported of an object that gets one constant and later another (`busy = 1; ... busy = 0;`), if another `return` in
 between undoes it: `valid = 0; ... valid = 1;` is a usual way to say that all went well. An interrupt that is held back
 (`IER &= ~M_INT9;`) is meant to come again if another function lets it through.
 

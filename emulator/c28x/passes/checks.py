@@ -40,7 +40,7 @@ from emulator.c28x.passes.timer_clock import check_timer_clocks
 from emulator.c28x.passes.undone import check_undone
 from emulator.c28x.passes.unlimited_lines import check_unlimited_lines
 from emulator.c28x.passes.unread_inputs import check_unread_inputs
-from emulator.c28x.passes.values import ValueChecks, file_scope, flag_words
+from emulator.c28x.passes.values import ValueChecks, file_scope, flag_words, macro_masks, results_of
 from emulator.c28x.passes.waiting import WriterAnalysis, check_waiting
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
@@ -64,7 +64,8 @@ def check(
     mentions = Mentions(modules, initialisers)
     entered = mentions.by_address | entries
     threads = WriterAnalysis(modules, entered)
-    flags = flag_words(function for module in modules for function in module.functions)
+    functions = [function for module in modules for function in module.functions]
+    flags, masks, results = flag_words(functions), macro_masks(functions), results_of(functions)
     for module, report in reports.items():
         for remark in module.remarks:
             at = remark.where
@@ -73,7 +74,7 @@ def check(
         for function in module.functions:
             unit = module.unit(function.name)
             FlowReport(function, report).run()
-            ValueChecks(function, report, unit.symbols, flags).run()
+            ValueChecks(function, report, unit.symbols, flags, masks, results).run()
             Liveness(function, report).run()
             check_stores(function, report)
             check_copies(function, report)

@@ -24,6 +24,7 @@ from emulator.c28x.tree import (
     LValue,
     Not,
     Stmt,
+    Unary,
     Variable,
 )  # fmt: skip
 from emulator.c28x.tree_queries import assigned_variables, blocks, observable, own_nodes, parts, variables
@@ -134,6 +135,9 @@ def bounds(e: Expr, ranges: Ranges, of: Callable[[Expr], Interval]) -> Interval:
         case Conditional(then=then, otherwise=otherwise):
             (a, b), (c, d) = of(then), of(otherwise)
             return (min(a, c), max(b, d))
+        case Unary(op="~", operand=operand) if not ctype.signed:
+            a, b = of(operand)
+            return (high - b, high - a)
         case Binary(op=op, left=left, right=right):
             result = combine(op, of(left), of(right))
             return result if result is not None and low <= result[0] and result[1] <= high else (low, high)

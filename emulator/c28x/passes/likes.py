@@ -14,17 +14,24 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Any, Final
 
-from emulator.c28x.ctypes import StructType
+from emulator.c28x.ctypes import ArrayType, StructType
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.state_values import constant_of
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
+    AddressOf,
     Assign,
     Call,
     Const,
+    Declare,
     Evaluate,
+    Expr,
+    Field,
     Function,
+    Load,
     LValue,
+    RegisterAddress,
+    RegisterAt,
     RegisterRef,
     Stmt,
     Variable,
@@ -50,8 +57,9 @@ def check_likes(modules: Iterable[Module], reports: dict[Module, StaticReport]) 
     for module in modules:
         for function in module.functions:
             here: dict[_Thing, dict[str, Stmt]] = {}
+            at_blocks = _pointers_to_blocks(function)
             for s in statements(function.body):
-                for thing, step in _steps(s):
+                for thing, step in _steps(s, at_blocks):
                     here.setdefault(thing, {})[step] = s
                     everywhere.setdefault(thing, set()).add(step)
             by_function.append((module, function, here))
@@ -67,24 +75,68 @@ def check_likes(modules: Iterable[Module], reports: dict[Module, StaticReport]) 
                 reports[module].report(function, last.where, "like-but-one", message, object=_name(thing))
 
 
-def _steps(s: Stmt) -> Iterator[tuple[_Thing, str]]:
+def _pointers_to_blocks(function: Function) -> dict[Variable, str]:
+    """The locals that always point to one register block: `volatile struct EPWM_REGS *p = &EPwm1Regs;`."""
+    found: dict[Variable, str] = {}
+    others: set[Variable] = set()
+    for s in statements(function.body):
+        match s:
+            case Declare(variable=variable, value=Expr() as value):
+                pass
+            case Assign(target=LValue(root=Variable(in_memory=False) as variable, indices=[]), value=value):
+                pass
+            case _:
+                continue
+        inner = bare(value)
+        block = inner.block if isinstance(inner, RegisterAddress) and not inner.register else ""
+        if block and found.get(variable, block) == block:
+            found[variable] = block
+        else:
+            others.add(variable)
+    return {variable: block for variable, block in found.items() if variable not in others}
+
+
+def _steps(s: Stmt, at_blocks: dict[Variable, str]) -> Iterator[tuple[_Thing, str]]:
     """What a statement does to a thing that may have its like."""
     match s:
         case Assign(target=RegisterRef(block=block, register=register, field=field)):
-            kind = re.sub(r"\d+(?=Regs$)|(?<=[a-z])[a-dA-D](?=Regs$)", "", block)
-            if kind != block and not kind.startswith("Gpio"):
-                yield (kind, block), register + (f".{field.name}" if field else "")
-        case Assign(
-            target=LValue(root=Variable(ctype=StructType() as kind) as root, indices=[]) as target, value=value
-        ):  # fmt: skip
-            # To get a constant is another step than to be computed with.
-            computed = "" if constant_of(value) is not None else " = ..."
-            yield (kind.name, root), target.text.partition(".")[2] + computed
+            yield from _block_step(block, register, field)
+        case Assign(target=RegisterAt(block=Load(lvalue=LValue(root=Variable() as p)), name=name, field=field)):
+            if p in at_blocks:
+                yield from _block_step(at_blocks[p], name, field)
+        case Assign(target=LValue(root=Variable()) as target, value=value):
+            thing = _structure(target)
+            if thing is not None:
+                # To get a constant is another step than to be computed with.
+                computed = "" if constant_of(value) is not None else " = ..."
+                yield thing, target.text.partition(".")[2] + computed
         case Evaluate(value=Call(function=Function(name=name), arguments=[first, *_])):
             number = bare(first)
             module = name.partition("_")[0]
             if isinstance(number, Const) and constant_of(number) and module != name and not name.startswith("GPIO"):
                 yield (module, number.value), name
+            if isinstance(number, AddressOf) and isinstance(number.lvalue.ctype, StructType):
+                thing = _structure(number.lvalue)
+                if thing is not None:
+                    yield thing, name
+
+
+def _block_step(block: str, register: str, field: Field | None) -> Iterator[tuple[_Thing, str]]:
+    """A register that a block gets, if there are several of its kind."""
+    kind = re.sub(r"\d+(?=Regs$)|(?<=[a-z])[a-dA-D](?=Regs$)", "", block)
+    if kind != block and not kind.startswith("Gpio"):
+        yield (kind, block), register + (f".{field.name}" if field else "")
+
+
+def _structure(lvalue: LValue) -> _Thing | None:
+    """The structure to which a member belongs: an object, or an element of an array with a constant subscript."""
+    match lvalue:
+        case LValue(root=Variable(ctype=StructType() as kind) as root, indices=[]):
+            return kind.name, (root, None)
+        case LValue(root=Variable(ctype=ArrayType(element=StructType() as kind)) as root, indices=[index]):
+            number = constant_of(index.expr)
+            return None if number is None else (kind.name, (root, number))
+    return None
 
 
 def _odd(here: dict[_Thing, dict[str, Stmt]]) -> Iterator[tuple[_Thing, set[str], _Thing]]:
@@ -101,5 +153,9 @@ def _odd(here: dict[_Thing, dict[str, Stmt]]) -> Iterator[tuple[_Thing, set[str]
 
 
 def _name(thing: _Thing) -> str:
-    which = thing[1]
-    return which.declaration.name if isinstance(which, Variable) else str(which)
+    match thing[1]:
+        case (Variable(declaration=declaration), None):
+            return declaration.name
+        case (Variable(declaration=declaration), number):
+            return f"{declaration.name}[{number}]"
+    return str(thing[1])

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator, Mapping
 from itertools import pairwise
 from math import ceil, floor, isfinite
-from typing import Any
+from typing import Any, Final
 
 from emulator.c28x.arithmetic import COMPARE
 from emulator.c28x.ctypes import LONG_DOUBLE, NOBODY, UCHAR, FloatType, IntType, PointerType
@@ -20,6 +20,7 @@ from emulator.c28x.tree import (
     Call,
     CallPointer,
     Compare,
+    Conditional,
     Const,
     Convert,
     CopyStruct,
@@ -28,6 +29,7 @@ from emulator.c28x.tree import (
     For,
     Function,
     If,
+    Interval,
     Load,
     Logic,
     LValue,
@@ -48,7 +50,11 @@ from emulator.c28x.tree_queries import (
     parts,
     source_text,
     statements,
+    within,
 )  # fmt: skip
+
+#: Operator -> the one that says the same with the operands exchanged.
+_TURNED: Final = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}
 
 
 class ConstantChecks:
@@ -113,12 +119,19 @@ class ValueChecks(ConstantChecks):
 
     def __init__(
         self, function: Function, report: StaticReport, shared: Container[str] = (),
-        flag_words: Container[Variable] = (),
+        flag_words: Container[Variable] = (), masks: Container[Where] = (),
+        results: Mapping[str, Interval] | None = None,
     ) -> None:  # fmt: skip
-        """`shared`: the names of the file's objects.  `flag_words`: those in which a bit above bit 0 is a flag."""
+        """`shared`: the names of the file's objects.  `flag_words`: those in which a bit above bit 0 is a flag.
+
+        `masks`: the places of the macros that the program uses as masks.
+        `results`: the bounds of what functions return.
+        """
         super().__init__(function, report, function.where)
         self.shared = shared
         self.flag_words = flag_words
+        self.masks = masks
+        self.results = results or {}
         self.body = function.body
         self.known = known_locals(function, counted=True)
         self.loosely = known_locals(function, counted=False)
@@ -214,6 +227,7 @@ class ValueChecks(ConstantChecks):
             case Logic(operands=operands):
                 for operand in operands:
                     self.condition(operand)
+                    self.constant_operand(test, operand)
             case Not(operand=operand):
                 self.condition(operand)
             case Compare():
@@ -224,6 +238,21 @@ class ValueChecks(ConstantChecks):
                     always = "true" if low > 0 or high < 0 else "false"
                     text = source_text(test)
                     self.report_here("constant-condition", f"{text} is always {always}: it is {low} to {high}", text)
+
+    def constant_operand(self, test: Logic, operand: Expr) -> None:
+        """Report `mode == 1 || 2`, and `flags && MASK` where the program uses MASK as a mask.
+
+        0 and 1 are truth values.  What a macro names may be a choice of the build.
+        """
+        number = bare(operand)
+        if not isinstance(number, Const) or number.value in (0, 1) or number.source is not None or not depends(test):
+            return
+        others = [bare(o) for o in test.operands if o is not operand]
+        compared = any(isinstance(o, Compare) and o.op == "==" and isinstance(bare(o.right), Const) for o in others)
+        if number.where.macro in self.masks if number.where.macro is not None else compared:
+            text = source_text(test)
+            message = f"{text}: {source_text(number)} alone is always true; it is not compared with anything"
+            self.report_here("constant-condition", message, text)
 
     def bounds(self, e: Expr) -> tuple[float, float] | None:
         """Bounds of an arithmetic expression; None if nothing is known."""
@@ -242,7 +271,8 @@ class ValueChecks(ConstantChecks):
             return
         outcomes = {COMPARE[e.op](a, b) for a in left for b in right}
         if e.op in ("==", "!="):
-            apart = left[1] < right[0] or right[1] < left[0]
+            left, right = self.returned(e.left, e.right) or left, self.returned(e.right, e.left) or right
+            apart = left[1] < right[0] or right[1] < left[0] or _no_common_bits(e.left, e.right)
             same = left == right and left[0] == left[1]
             outcomes = {e.op == "!="} if apart else {e.op == "=="} if same else {False, True}
         if len(outcomes) > 1:
@@ -250,9 +280,19 @@ class ValueChecks(ConstantChecks):
         always = "true" if outcomes.pop() else "false"
         text = source_text(e)
         of = e.left if not isinstance(bare(e.left), Const) else e.right
-        low, high = self.bounds(of) or (0, 0)
+        low, high = self.returned(of, e.right if of is e.left else e.left) or self.bounds(of) or (0, 0)
         why = f"{source_text(of)} is {low:g} to {high:g} ({bare(of).ctype})"
         self.report_here("constant-condition", f"{text} is always {always}: {why}", text)
+
+    def returned(self, e: Expr, other: Expr) -> Interval | None:
+        """The bounds of a call whose result is compared with a number; None: not known.
+
+        A negative number may stand for a failure that the function of this build does not have.
+        """
+        call, number = bare(e), bare(other)
+        if isinstance(call, Call) and isinstance(number, Const) and number.value > 0 and not _negative_source(number):
+            return self.results.get(call.function.path)
+        return None
 
     def logic(self, e: Logic) -> None:
         """Check joined comparisons of one value with constants: try the values at the constants, and between them."""
@@ -260,7 +300,12 @@ class ValueChecks(ConstantChecks):
         tests: list[tuple[str, float]] = []
         limits: set[float] = set()
         points: set[float]
+        turned: list[Expr] = []
         for operand in e.operands:
+            match operand:
+                case Compare(left=Const()):
+                    operand = Compare(operand.ctype, _TURNED[operand.op], operand.right, operand.left)
+            turned.append(operand)
             match operand:
                 case Compare(op=op, left=left, right=Const(value=value)) if not calls(left) and depends(left):
                     subjects.add(source_text(left) if not volatile(left) else "")
@@ -270,7 +315,7 @@ class ValueChecks(ConstantChecks):
                     return
         if len(subjects) != 1 or "" in subjects or "expression" in subjects:
             return
-        first = e.operands[0]
+        first = turned[0]
         assert isinstance(first, Compare)
         bounds = self.bounds(first.left)
         if isinstance(bare(first.left).ctype, IntType) and bounds is not None:
@@ -351,6 +396,11 @@ class ValueChecks(ConstantChecks):
             case Binary(op="&" | "|" | "^", right=right) if _compared_mask(right):
                 text = source_text(e)
                 self.report_here("mixed-logic", f"{text}: the comparison comes first and gives 0 or 1", text)
+            case Binary(op="&", left=left, right=right) if (
+                (truth := _truth_of_mask(left, right) or _truth_of_mask(right, left)) is not None
+            ):
+                text = source_text(e)
+                self.report_here("mixed-logic", f"{text} is always 0: {source_text(truth)} is 0 or 1", text)
             case Binary(op="&" | "|" | "^", left=left, right=right) if (
                 mask := self.not_of_mask(left, right) or self.not_of_mask(right, left)
             ):
@@ -431,6 +481,31 @@ def _as_pattern(e: Const, to: IntType) -> bool:
     return e.value == -1 or (bits and (not e.ctype.signed or (isinstance(e.source, Unary) and e.source.op == "~")))
 
 
+def _no_common_bits(left: Expr, right: Expr) -> bool:
+    """Whether a constant has a bit that the other operand has not: `(x & 0x10) == 0x20`."""
+    for side, other in ((left, right), (right, left)):
+        constant = bare(other)
+        if isinstance(constant, Const) and isinstance(constant.value, int) and constant.value > 0:
+            bits = _possible_bits(side)
+            if bits is not None and constant.value & ~bits:
+                return True
+    return False
+
+
+def _possible_bits(e: Expr) -> int | None:
+    """The bits that a value masked by a constant may have; None: not known."""
+    match e:
+        case Convert(ctype=IntType(bits=bits), operand=operand) if (inner := _possible_bits(operand)) is not None:
+            return inner if inner < 1 << bits - 1 else None
+        case Binary(op="&", left=left, right=right):
+            masks = [m.value for m in (bare(left), bare(right)) if isinstance(m, Const) and isinstance(m.value, int)]
+            return masks[0] if masks and masks[0] >= 0 else None
+        case Binary(op=">>", left=left, right=Const(value=int(by))) if by >= 0:
+            inner = _possible_bits(left)
+            return None if inner is None else inner >> by
+    return None
+
+
 def _assigned_in_both(branch: list[Stmt], other: list[Stmt]) -> set[int]:
     """Identities of the assignments in a branch whose targets the other branch assigns too."""
     targets = [s.target for s in other if isinstance(s, Assign)]
@@ -443,6 +518,14 @@ def _compared_mask(e: Expr) -> bool:
         case Compare(op="==" | "!=", left=left):
             return isinstance(bare(left), Const)
     return False
+
+
+def _truth_of_mask(e: Expr, other: Expr) -> Expr | None:
+    """A negation that is masked with bits of which it has none, as in `!flags & 0x20`; None: it is none."""
+    truth, mask = bare(e), bare(other)
+    if isinstance(truth, Not) and isinstance(mask, Const) and isinstance(mask.value, int):
+        return truth if mask.value and not mask.value & 1 else None
+    return None
 
 
 def flag_words(functions: Iterable[Function]) -> set[Variable]:
@@ -458,6 +541,45 @@ def flag_words(functions: Iterable[Function]) -> set[Variable]:
                                 case Load(lvalue=LValue(root=same)), Const(value=int(bit)) if same is root:
                                     if bit > 1 and not bit & bit - 1:
                                         found.add(root)
+    return found
+
+
+def results_of(functions: Iterable[Function]) -> dict[str, Interval]:
+    """The bounds of the results of functions that compute or test what they return; not of those that name a constant.
+
+    A caller may ask for a constant that a function of this build does not return.
+    """
+    found: dict[str, Interval] = {}
+    for function in functions:
+        values = [s.value for s in statements(function.body) if isinstance(s, Return) and s.value is not None]
+        if not values or function.ends or any(not _computed(value) for value in values):
+            continue
+        bounds = [interval(value, {}) for value in values]
+        found[function.path] = min(low for low, _ in bounds), max(high for _, high in bounds)
+    return found
+
+
+def _computed(value: Expr) -> bool:
+    """Whether a value is an integer that is a truth value, or masked by a constant."""
+    if not isinstance(value.ctype, IntType):
+        return False
+    match bare(value):
+        case Compare() | Logic() | Not():
+            return True
+        case Conditional(then=then, otherwise=otherwise):
+            return {getattr(bare(then), "value", None), getattr(bare(otherwise), "value", None)} == {0, 1}
+        case Binary(op="&", left=left, right=right):
+            return any(isinstance(bare(side), Const) for side in (left, right))
+    return False
+
+
+def macro_masks(functions: Iterable[Function]) -> set[Where]:
+    """The places of the macros whose constants are masks: `status & FAULT`."""
+    found: set[Where] = set()
+    for function in functions:
+        for p in within(function.body):
+            if isinstance(p, Binary) and p.op == "&":
+                found |= {m.where.macro for m in map(bare, (p.left, p.right)) if isinstance(m, Const) and m.where.macro}
     return found
 
 

@@ -39,6 +39,7 @@ from emulator.c28x.tree import (
     Declaration,
     Expr,
     Function,
+    FunctionRef,
     LValue,
     RegisterLoad,
     Variable,
@@ -367,9 +368,32 @@ class CExpressionReader:
     def ternary(self, node: c_ast.TernaryOp) -> Expr:
         """`a ? b : c`."""
         test = self.value(node.cond)
+        self.tell_assigned_constants(node.cond)
         return build.conditional(
             self.b, test, lambda: self.value(node.iftrue), lambda: self.value(node.iffalse), node.coord
         )
+
+    def tell_assigned_constants(self, node: c_ast.Node) -> None:
+        """Report the assignments of constants in a condition, and in the operands of its `!`, `&&` and `||`."""
+        match node:
+            case c_ast.UnaryOp(op="!", expr=inner):
+                self.tell_assigned_constants(inner)
+            case c_ast.BinaryOp(op="&&" | "||", left=left, right=right):
+                self.tell_assigned_constants(left)
+                self.tell_assigned_constants(right)
+            case c_ast.Assignment(op="=") if self.assigns_constant(node):
+                self.tell_assigned(node)
+
+    def assigns_constant(self, node: c_ast.Assignment) -> bool:
+        """Whether an assignment gives a constant."""
+        effects, value = self.b.collect_effects(lambda: self.value(node.rvalue))
+        return not effects and build.constant_value(value) is not None
+
+    def tell_assigned(self, node: c_ast.Assignment) -> None:
+        """Report an assignment as a condition."""
+        text = written(node.lvalue)
+        message = f"the condition assigns {written(node.rvalue)} to {text}: == compares"
+        self.b.remark(node.coord, "assigned-condition", message, text)
 
     def assignment(self, node: c_ast.Assignment) -> Expr:
         """An assignment used as a value."""
@@ -434,7 +458,7 @@ class CExpressionReader:
                 self.assembler(node)
             case _:
                 value = self.value(node)
-                if isinstance(node, c_ast.BinaryOp) and _idle(node.op, value):
+                if _idle(node, value):
                     text = written(node)
                     self.b.remark(where, "idle-statement", f"{text} is computed and not used", text)
                 build.evaluate(b, value)
@@ -612,12 +636,23 @@ def _unused(symbol: Function | Variable, where: Where) -> None:
     """Do nothing: a name in `sizeof` is not a use, so it needs no definition."""
 
 
-def _idle(op: str, value: Expr) -> bool:
-    """Whether an operation as a statement has no effect.  `a && f()` has one, and so may a read of a register."""
+def _idle(node: c_ast.Node, value: Expr) -> bool:
+    """Whether an operation as a statement has no effect.  `a && f()` has one, and so may a read of a register.
+
+    The name of a function alone does not call it.
+    """
     acts = any(isinstance(p, Call | CallPointer) for p in parts(value))
-    if op in ("&&", "||"):
-        return not acts
-    return op in _COMPARISONS or not (acts or any(isinstance(p, RegisterLoad) for p in parts(value)))
+    reads = any(isinstance(p, RegisterLoad) for p in parts(value))
+    match node:
+        case c_ast.BinaryOp(op="&&" | "||"):
+            return not acts
+        case c_ast.BinaryOp(op=op):
+            return op in _COMPARISONS or not (acts or reads)
+        case c_ast.UnaryOp(op="-" | "~" | "!"):
+            return not (acts or reads)
+        case c_ast.ID():
+            return isinstance(value, FunctionRef)
+    return False
 
 
 def _orders(node: c_ast.Node) -> bool:

@@ -307,10 +307,10 @@ class CStatementReader:
             raise SourceError.at(node.coord, f"a structure ({value.ctype}) is not a condition")
         if value.ctype == VOID:
             raise SourceError.at(node.coord, f"'{written(node)}' is void: it is not a condition")
-        if isinstance(node, c_ast.Assignment) and node.op == "=" and self.compares(node, branches):
-            text = written(node.lvalue)
-            message = f"the condition assigns {written(node.rvalue)} to {text}: == compares"
-            self.b.remark(node.coord, "assigned-condition", message, text)
+        if not isinstance(node, c_ast.Assignment):
+            self.expressions.tell_assigned_constants(node)
+        elif node.op == "=" and self.compares(node, branches):
+            self.expressions.tell_assigned(node)
         return value
 
     def compares(self, node: c_ast.Assignment, branches: tuple[c_ast.Node | None, ...]) -> bool:
@@ -320,8 +320,7 @@ class CStatementReader:
         own, and a branch copies the target back (`if (now = seen) seen = now;`) or none uses it.  An `else` that reads
         it does not use it: it is 0 there.  A local that gets the result of a function may be used later: it was not.
         """
-        effects, value = self.b.collect_effects(lambda: self.expressions.value(node.rvalue))
-        if not effects and build.constant_value(value) is not None:
+        if self.expressions.assigns_constant(node):
             return True
         if not branches or isinstance(node, Parenthesised):
             return False
@@ -497,6 +496,7 @@ class CStatementReader:
             for i, statement in enumerate(statements):
                 if isinstance(statement, c_ast.Break):
                     ended = True
+                    self.behind_break(statements[i + 1 :])
                     break
                 if isinstance(statement, c_ast.Compound) and i == len(statements) - 1:
                     ended = self.block_case(statement)
@@ -506,6 +506,14 @@ class CStatementReader:
             end = last.coord if last is not None else where
             body.append(FallThrough(end, said=self.falls(end, behind)))
         return labels, body
+
+    def behind_break(self, statements: list[Any]) -> None:
+        """Report the statements between the `break` of a case and the next one: they are not in the tree."""
+        idle = (c_ast.Break, c_ast.Return, c_ast.EmptyStatement, c_ast.Pragma, c_ast.Decl)
+        first = next((s for s in statements if not isinstance(s, idle)), None)
+        if first is not None:
+            name = self.b.function.path
+            self.b.remark(first.coord, "unreachable", f"this statement of {name} can never run", name)
 
     def falls(self, end: Where, behind: Where) -> bool:
         """Whether a comment between the end of a case and the next one says that it falls through.

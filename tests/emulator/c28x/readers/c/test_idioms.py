@@ -135,7 +135,82 @@ int main(void)
 """
 
 
-@pytest.mark.parametrize("text", [_LEFT_ON, _STATES, _MEMBERS], ids=["left on", "states", "members"])
+_CONDITIONS = """#include "F2837xS_Device.h"
+#define READY 0x10u
+#define FAULT 0x20u
+#define LEVEL 4
+#define IN_RANGE(v, lo, hi) ((lo) <= (v) && (v) <= (hi))
+enum { RUN = 1, HALT = 3 };
+Uint16 Status, Mode, Hot, Out;
+static Uint16 Pressed(Uint16 m) { return (GpioDataRegs.GPADAT.all & m) ? 1 : 0; }
+static Uint16 Octet(void) { return SciaRegs.SCIRXBUF.all & 0xFF; }
+static Uint16 Send(void) { return HALT; }
+static void Work(void)
+{
+    if (Pressed(READY) == READY) Out++;                 // told: constant-condition
+    if (Pressed(READY) == 1) Out++;
+    if (Octet() == 0x1FF) Out++;                        // told: constant-condition
+    if (Octet() == 0xFF || Octet() == -1) Out++;
+    if (Send() == RUN) Out++;
+    if ((GpioDataRegs.GPADAT.all & 0x0F00UL) == 0xFUL) Out++;   // told: constant-condition
+    if ((GpioDataRegs.GPADAT.all >> 8 & 0xFUL) == 0xFUL) Out++;
+    if (IN_RANGE(Hot, 90, 10)) Out++;                   // told: constant-condition
+    if (IN_RANGE(Hot, 10, 90)) Out++;
+    if (Status && FAULT) Out++;                         // told: constant-condition
+    if (Status & FAULT) Out++;
+    if (Mode == RUN || HALT) Out++;                     // told: constant-condition
+    if (Mode == RUN && LEVEL) Out++;
+    if (~(Status & READY)) Out++;                       // told: constant-condition
+    if (!(Status & READY)) Out++;
+    if (!Status & FAULT) Out++;                         // told: mixed-logic
+    if (!Status & 1) Out++;
+}
+static void Choose(void)
+{
+    switch (Mode) {
+    case RUN:
+        Out = 1;
+        break;
+        Status = 0;                                     // told: unreachable
+    case HALT: { Out = 2; break; }
+        break;
+    default:
+        Out = 3;
+        break;
+    }
+}
+int main(void) { for (;;) { Status++; Mode++; Hot++; Work(); Choose(); } }
+"""
+
+_STATEMENTS = """#include "F2837xS_Device.h"
+Uint16 a, b, c;
+static void Trip(void) { c++; }
+static void (*Call)(void);
+int main(void)
+{
+    for (;;) {
+        a++;
+        Trip;                                           // told: idle-statement
+        Trip();
+        -a;                                             // told: idle-statement
+        (void)a;
+        b = (c = 0) ? 3 : 4;                            // told: assigned-condition
+        b = (c = a) ? 3 : 4;
+        if (a > 2 && (GpioDataRegs.GPADAT.bit.GPIO3 = 1)) b++;  // told: assigned-condition
+        if (a > 2 && (c = a) != 0) b++;
+        if (!(c = 2)) b++;                              // told: assigned-condition
+        if (!(c = a)) b++;
+        Call = Trip;
+        Call();
+    }
+}
+"""
+
+
+@pytest.mark.parametrize(
+    "text", [_LEFT_ON, _STATES, _MEMBERS, _CONDITIONS, _STATEMENTS],
+    ids=["left on", "states", "members", "conditions", "statements"],
+)  # fmt: skip
 def test_a_mistake_is_told_in_each_idiom(tmp_path: Path, text: str) -> None:
     file = tmp_path / "a.c"
     file.write_text(text, encoding="utf-8")
