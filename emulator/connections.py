@@ -116,10 +116,11 @@ class Connections:
         if self._done:
             return
         self._done = True
+        modules = list(self._linked.program.modules.values())
+        if not any(f.name == "main" and f.body for module in modules for f in module.functions):
+            return  # not a whole program
         blocks = (*self._chip.blocks.values(), self._chip.vectors.registers)
-        self._source = source = RegisterWrites(self._linked.program.modules.values(), blocks)
-        if not source.whole:
-            return
+        self._source = RegisterWrites(modules, blocks)
         self._adc_triggers()
         self._adc_inputs()
         self._interrupts()

@@ -130,7 +130,6 @@ class RegisterWrites:
         self.calls: dict[str, list[tuple[Place, list[Expr]]]] = {}
         modules = list(modules)
         own = {f.path: f for module in modules for f in module.functions}
-        self.whole = any(f.name == "main" and f.body for f in own.values())
         reached = self._reached(modules, own)
         library = _of_libraries(modules)
         #: The statements that every start-up runs and that cannot run after it.
@@ -151,7 +150,9 @@ class RegisterWrites:
         for f in reached:
             self._read_accesses(f, f.path in library)
         entries = [f for f in reached if f.path not in self._called or f.name == "main"]
-        self._read_by_address(ByAddress(own, library, self).accesses(entries), register_blocks)
+        by_address = list(ByAddress(own, library, self).accesses(entries))
+        if by_address:
+            self._read_by_address(by_address, register_blocks)
         for name, fields in _FUNCTIONS.items():
             for place, arguments in self.calls.get(name, ()):
                 for (block, register, mask), what in fields:
@@ -306,7 +307,7 @@ class RegisterWrites:
         for block in register_blocks:
             for cell in block:
                 words = 1 if block.byte_peripheral else cell.bits // 16
-                at |= {cell.address + n: (cell, 16 * n) for n in range(words)}
+                at.update((cell.address + n, (cell, 16 * n)) for n in range(words))
             spans[block] = range(block.base, max(cell.address + cell.bits // 16 for cell in block))
         for access in accesses:
             write = Write(access.mask, access.values, access.place)

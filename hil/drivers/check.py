@@ -86,15 +86,7 @@ def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction:
     checked = Checked()
     for file in build.files:
         allowances(file)  # a wrong one is told before anything runs
-    static = build.image()
-    for mixed in (
-        *mixed_units(build.modules, static.board.kernel.clocks.tick_period_us), *unused_limits(build.files),
-    ):  # fmt: skip
-        static.board.findings.report_at(mixed.place, mixed.rule, mixed.message, object=mixed.object, how="static")
-    for step in wrong_steps(build.modules):
-        static.board.findings.report_at(step.place, "step-away", step.message, object=step.object, how="static")
-    keys = _add(checked, (f for f in static.findings if f.place is None or f.place.file not in build.others), {})
-    static.close()
+    keys = _add(checked, source_findings(build), {})
     if found.main is not None or found.tasks:
         checked.ran = run_program(
             build, found, wanted.seconds, lambda fraction: progress("run", fraction), board_named=wanted.board_named,
@@ -108,6 +100,20 @@ def check_files(wanted: DriverFiles, progress: Progress = lambda what, fraction:
     checked.faults = build.fired
     progress("done", 1.0)
     return checked
+
+
+def source_findings(build: Build) -> list[Finding]:
+    """What the source alone shows: the static checks, and units, limits and steps that names and comments state."""
+    image = build.image()
+    for mixed in (
+        *mixed_units(build.modules, image.board.kernel.clocks.tick_period_us), *unused_limits(build.files),
+    ):  # fmt: skip
+        image.board.findings.report_at(mixed.place, mixed.rule, mixed.message, object=mixed.object, how="static")
+    for step in wrong_steps(build.modules):
+        image.board.findings.report_at(step.place, "step-away", step.message, object=step.object, how="static")
+    found = [f for f in image.findings if f.place is None or f.place.file not in build.others]
+    image.close()
+    return found
 
 
 def _add(checked: Checked, findings: Iterable[Finding], keys: dict[Key, Finding]) -> dict[Key, Finding]:

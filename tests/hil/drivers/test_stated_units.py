@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from hil.cli import invoke
-from hil.drivers.check import DriverFiles, check_files
+from hil.drivers.check import source_findings
 from hil.drivers.unit_names import remark, unit_of_name, unit_of_text
+from hil.image import Build
 
 
 @pytest.mark.parametrize(("name", "unit"), [
@@ -96,7 +97,7 @@ int16_t greater(int16_t a, int16_t b) { return a > b ? a : b; }
 def told(folder: Path, text: str, rule: str, name: str = "a.c") -> list[str]:
     file = folder / name
     file.write_text(text, encoding="utf-8")
-    return [f.message for f in check_files(DriverFiles([file], calls=1)).findings if f.rule == rule]
+    return [f.message for f in source_findings(Build([str(file)])) if f.rule == rule]
 
 
 MIXED = [
