@@ -167,9 +167,10 @@ The units are those that names and comments state. A name states one by its end 
 quantity (`timeout_s`, `temperatureDc`). Time-outs and periods of SYS/BIOS are in ticks, `DELAY_US` takes microseconds,
 angles of the C library are in radians. The message names both units, and says where each comes from.
 
-`hil check` reports a value that goes to an object, a parameter or a result with another unit of the same quantity, and
-sums and comparisons of two units. A constant factor converts: `x_ms * 1000` is microseconds. A power of ten in the
-wrong direction, or the reverse of the right factor, is reported. Any other factor may mean something else, and is not.
+`hil check` reports a value that goes to an object, a parameter or a result with another unit of the same quantity, also
+in a list of initial values, and sums and comparisons of two units. A constant factor converts: `x_ms * 1000` is
+microseconds. A power of ten in the wrong direction, or the reverse of the right factor, is reported. Any other factor
+may mean something else, and is not.
 A product with 180/pi (57.3) is in degrees: it is reported where it, or an object that takes only such products, goes to
 `sinf` or to a value in radians. A share of a value (`FULL_MV * permille / 100`) that goes to its own quantity is
 reported if its factor is ten times too large, for a share is no multiple; a smaller part of it can be meant.
@@ -186,8 +187,9 @@ object that the program converts where it is (`t_us /= 1000`) make the unit unkn
         "unit-in-comment", Severity.NOTE, "The name of a constant states another unit than its comment.", """
 `#define TIMEOUT_MS 5    // 5 s` is 5 ms by its name and 5 s by its comment: one of them is wrong.
 
-The comment beside the definition begins with a number and a unit (`// 85 degrees`), and in the unit that the name
-states it is the number of the definition times a power of ten. Differences that are no power of ten are not reported:
+The definition is a macro, a constant of an enumeration or a declaration with a number. The comment beside it begins
+with a number and a unit (`// 85 degrees`), and in the unit that the name states it is the number of the definition
+times a power of ten. Differences that are no power of ten are not reported:
 they come from rounding, or from a comment that says something else.
 
 **Fix:** correct the number, the name or the comment.
@@ -197,7 +199,8 @@ they come from rounding, or from a comment that says something else.
         "period-by-name", Severity.WARNING, "A name states another period than its routine has.", """
 Speeds and integrals are wrong by a power of ten: the program computes with a period that it does not have.
 
-The name of a constant says that it is a period or a rate (`CONTROL_S`, `LOOP_MS`, `SAMPLE_HZ`), and each run of an
+The name of a constant (a macro, a `const` object or a member of one) says that it is a period or a rate (`CONTROL_S`,
+`LOOP_MS`, `SAMPLE_HZ`, `pi.dt_s`), and each run of an
 interrupt routine multiplies with it or divides by it. In the run, the routine's period is a power of ten longer or
 shorter. Somebody has changed the timer and not the constant, or the other way round. The same is told of a count that
 each run of a routine adds to, and that is a time by its name (`tickMs++`, `Time_us += 100`).

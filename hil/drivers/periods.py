@@ -34,6 +34,8 @@ from emulator.c28x.tree import (
     Function,
     If,
     LeaveSwitch,
+    Load,
+    LValue,
     Return,
     Stmt,
     Variable,
@@ -52,7 +54,10 @@ _STEADY: Final = 0.5
 #: A power of ten is exact up to this: dividers round.
 _EXACT: Final = 0.02
 #: The words of a name one of which says whose period it is, its last ones with the unit in seconds (Hz: 0).
-_WHOSE: Final = frozenset({"CONTROL", "CONTROLLER", "LOOP", "SAMPLE", "SAMPLING", "TICK", "DT", "ISR", "PID"})
+_WHOSE: Final = frozenset({
+    "CONTROL", "CONTROLLER", "CTRL", "LOOP", "SAMPLE", "SAMPLING", "TICK", "DT", "TS", "ISR", "PID",
+    "ABTAST", "ABTASTUNG", "REGEL", "REGELUNG", "REGLER", "TAKT", "MUESTREO", "MUESTRA", "LAZO",
+})  # fmt: skip
 _UNITS: Final = {"S": 1.0, "SEC": 1.0, "MS": 1e-3, "US": 1e-6, "HZ": 0.0, "KHZ": 0.0}
 #: Words of names that are other times.
 _OTHERS: Final = frozenset({"TAU", "FILTER", "DELAY", "TIMEOUT", "RAMP", "MAX", "MIN", "LIMIT", "RISE", "PER", "WAIT"})
@@ -229,32 +234,53 @@ def _told(function: Function, s: Stmt, routine: Function, period: float) -> Iter
                 yield UnitMismatch(_place(function, s), message, name, "period-by-name")
 
 
-def _factors(e: object) -> Iterator[Const]:
-    """The named constants that an expression multiplies with, or divides by."""
+def _factors(e: object) -> Iterator[Expr]:
+    """The named constants that an expression multiplies with, or divides by: macros, and `const` objects."""
     for p in parts(e):
         if isinstance(p, Const) and p.source is not None:
             yield from _factors(p.source)
         if isinstance(p, Binary) and p.op in ("*", "/"):
             for side in (p.left, p.right):
                 factor = bare(side)
-                if isinstance(factor, Const) and factor.where.macro is not None:
+                if (isinstance(factor, Const) and factor.where.macro is not None) or isinstance(factor, Load):
                     yield factor
 
 
 def _stated(e: Expr) -> tuple[str, float]:
     """The name of a constant, and the period in seconds that it states; 0: none."""
-    if not isinstance(e, Const) or e.where.macro is None:
-        return "", 0.0
-    lines = lines_with_comments(e.where.macro.file)
-    line = lines[e.where.macro.line - 1][0] if 0 < e.where.macro.line <= len(lines) else ""
-    match = _DEFINITION.match(line)
-    words = match[1].upper().split("_") if match is not None else []
-    if match is None or words[-1] not in _UNITS or not _WHOSE.intersection(words) or _OTHERS.intersection(words):
-        return "", 0.0
-    if e.value <= 0:
+    name, value = _named(e)
+    words = name.upper().split("_")
+    if words[-1] not in _UNITS or not _WHOSE.intersection(words) or _OTHERS.intersection(words) or value <= 0:
         return "", 0.0
     size = _UNITS[words[-1]]
-    return match[1], float(e.value) * size if size else 1 / (e.value * (1e3 if words[-1] == "KHZ" else 1.0))
+    return name, value * size if size else 1 / (value * (1e3 if words[-1] == "KHZ" else 1.0))
+
+
+def _named(e: Expr) -> tuple[str, float]:
+    """The name of a macro, or of a `const` object or a member of one, and its value; "": it is none."""
+    match e:
+        case Const() if e.where.macro is not None and _of_one_macro(e, e.where.macro):
+            lines = lines_with_comments(e.where.macro.file)
+            line = lines[e.where.macro.line - 1][0] if 0 < e.where.macro.line <= len(lines) else ""
+            match = _DEFINITION.match(line)
+            return (match[1], float(e.value)) if match is not None else ("", 0.0)
+        case Load(lvalue=LValue(root=Variable(constant=True, initial=[*initial]), indices=[]) as lvalue):
+            value = initial[lvalue.leaf] if lvalue.bits is None and lvalue.leaf < len(initial) else None
+            if isinstance(value, Const):
+                return lvalue.text.rpartition(".")[2], float(value.value)
+    return "", 0.0
+
+
+def _of_one_macro(e: Expr, macro: Where) -> bool:
+    """Whether all of a constant comes from the definition at a place: `LOOP_HZ / 10` is another number."""
+    for part in parts(e):
+        if isinstance(part, Const):
+            at = part.where.macro
+            if at is None or (at.file, at.line) != (macro.file, macro.line):
+                return False
+            if part.source is not None and not _of_one_macro(part.source, macro):
+                return False
+    return True
 
 
 def _always(function: Function, by_path: dict[str, Function], seen: set[str]) -> Iterator[tuple[Function, Stmt]]:

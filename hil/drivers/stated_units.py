@@ -16,8 +16,12 @@ from hil.drivers.unit_names import PhysicalUnit, UnitRemark, remark, unit_of_nam
 _NUMBER: Final = (
     r"\(*\s*(?:\(\s*\w+\s*\)\s*)?([-+]?\s*(?:0[xX][0-9a-fA-F]+|\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+))[uUlLfF]*\s*\)*"
 )
-#: A definition whose value is one number.
-_DEFINITION: Final = re.compile(rf"^\s*(?:#\s*define\s+(\w+)\s+|(\w+)\s*(?::\s*\w+\s*)?=\s*){_NUMBER}\s*$")
+#: A definition whose value is one number: a macro, a name in Python, a declaration, a constant of an enumeration or a
+#: member in a list of initial values.
+_DEFINITION: Final = re.compile(
+    rf"^\s*(?:#\s*define\s+(\w+)\s+{_NUMBER}"
+    rf"|(?:(?:\w+\s+)+|enum\s*\{{\s*|\.)?(\w+)\s*(?::\s*\w+\s*)?=\s*{_NUMBER})\s*[,;]?\s*(?:\}}\s*;)?\s*$"
+)
 #: Members of a structure, or another declaration without a value.
 _NAMES: Final = r"\w+(?:\s*\[[^\]]*\])*(?:\s*:\s*\d+)?"
 _MEMBERS: Final = re.compile(rf"^\s*(?:\w+\s+)+[*\s]*({_NAMES}(?:\s*,[\s*]*{_NAMES})*)\s*;\s*$")
@@ -78,7 +82,7 @@ def of_definition(where: Where, value: float) -> Measured | None:
     match = _DEFINITION.match(code)
     if match is None:
         return None
-    name, said = match[1] or match[2], remark(comment)
+    name, said = match[1] or match[3], remark(comment)
     if said.amount is not None and abs(value) == abs(said.amount):
         said = UnitRemark(said.unit, said.unclear)
     found = stated(name, said)
@@ -91,7 +95,7 @@ def defined_number(e: Const) -> tuple[str, str]:
         return "", ""
     code, comment = _line(e.where.macro)
     match = _DEFINITION.match(code)
-    return (match[1] or match[2], comment) if match is not None else ("", "")
+    return (match[1] or match[3], comment) if match is not None else ("", "")
 
 
 def macro_name(where: Where) -> str:
@@ -133,11 +137,11 @@ def misnamed(files: Iterable[str]) -> Iterator[Misnamed]:
             match = _DEFINITION.match(code) if comment else None
             if match is None:
                 continue
-            name, said = match[1] or match[2], remark(comment)
+            name, said = match[1] or match[3], remark(comment)
             named = unit_of_name(name)
             if named is None or said.unit is None or not said.amount or said.unclear:
                 continue
-            text = match[3].replace(" ", "")
+            text = (match[2] or match[4]).replace(" ", "")
             value = float(int(text, 0)) if "0x" in text.lower() else float(text)
             ratio = value * named.ratio(said.unit) / said.amount
             if any(isclose(ratio, 10.0**power, rel_tol=_ROUNDED) for power in range(-9, 10) if power):

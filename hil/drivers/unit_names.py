@@ -110,17 +110,30 @@ _TEXTS: Final = {
 _LETTERS: Final = "VAWJCgsm"
 #: Ends that have other meanings: each with its unit, and the beginnings of words one of which the name must have too.
 _AMBIGUOUS: Final = {
-    "s": ("s", ("time", "timeout", "delay", "period", "interval", "duration", "elapsed", "wait", "uptime")),
-    "v": ("V", ("volt", "vout", "vin", "supply", "vref", "batt", "vbat")),
-    "a": ("A", ("current", "curr", "iout")),
-    "m": ("m", ("distance", "dist", "length", "height", "depth")),
-    "w": ("W", ("power",)),
-    "c": ("degree Celsius", ("temp", "hot", "cold", "warm")),
+    "s": ("s", (
+        "time", "timeout", "delay", "period", "interval", "duration", "elapsed", "wait", "uptime",
+        "zeit", "dauer", "frist", "tiempo", "duracion", "retardo", "plazo", "espera",
+    )),
+    "v": ("V", (
+        "volt", "vout", "vin", "supply", "vref", "batt", "vbat", "spannung", "versorgung", "akku", "tension", "bateria",
+    )),
+    "a": ("A", ("current", "curr", "iout", "strom", "corriente")),
+    "m": ("m", (
+        "distance", "dist", "length", "height", "depth", "abstand", "strecke", "laenge", "hoehe", "longitud", "altura",
+    )),
+    "w": ("W", ("power", "leistung", "potencia")),
+    "c": ("degree Celsius", ("temp", "hot", "cold", "warm", "heiss", "kalt")),
     "dc": ("decidegree Celsius", ("temp",)),
     "mc": ("millidegree Celsius", ("temp",)),
-    "ma": ("mA", ("i", "current", "curr", "iout", "imax", "load", "amp", "charge", "limit", "phase", "motor")),
-    "rad": ("rad", ("angle", "heading", "yaw", "pitch", "roll", "theta", "phi", "phase", "turn", "rotation", "tilt")),
-}
+    "ma": ("mA", (
+        "i", "current", "curr", "iout", "imax", "load", "amp", "charge", "limit", "phase", "motor", "strom",
+        "corriente",
+    )),
+    "rad": ("rad", (
+        "angle", "heading", "yaw", "pitch", "roll", "theta", "phi", "phase", "turn", "rotation", "tilt",
+        "winkel", "kurs", "drehung", "neigung", "angulo", "rumbo", "giro",
+    )),
+}  # fmt: skip
 #: Parts of a unit: how a comment or a name writes them.
 _PARTS: Final = {
     "tenth": 10.0, "tenths": 10.0, "hundredth": 100.0, "hundredths": 100.0, "thousandth": 1000.0,

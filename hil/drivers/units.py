@@ -25,7 +25,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from math import isclose, log10, pi
-from typing import Final
+from typing import Any, Final
 
 from emulator.c28x.ctypes import ArrayType, CType, FloatType, IntType, PointerType, StructType
 from emulator.c28x.declarations import UserDeclaration, declarations
@@ -97,6 +97,8 @@ _RATIO: Final = "ratio"
 _ALMOST: Final = 0.05
 #: A factor that is wrong by a power of ten from this one on cannot be meant as a part (a tenth, a percent).
 _NO_PART: Final = 3
+#: Longer lists of initial values are tables.
+_MOST_MEMBERS: Final = 500
 #: The last name in the text of an lvalue, without subscripts.
 _LAST: Final = re.compile(r"(\w+)\W*$")
 #: What stands behind a conversion: the name of a unit, and what follows up to the next conversion.
@@ -139,7 +141,8 @@ def misread_counts(modules: Iterable[Module], tick_us: int, chip: Chip) -> list[
 
 
 def _of_all(units: _Units, modules: list[Module]) -> list[UnitMismatch]:
-    return [found for module in modules for function in module.functions for found in units.of(function)]
+    found = [found for module in modules for function in module.functions for found in units.of(function)]
+    return [*found, *(found for module in modules for found in units.of_objects(module))]
 
 
 class _Counters:
@@ -279,6 +282,35 @@ class _Units:
             self._check_macro(s, report)
         return self._found
 
+    def of_objects(self, module: Module) -> list[UnitMismatch]:
+        """The objects at file scope that begin with a value of another unit."""
+        found: list[UnitMismatch] = []
+        for variable in module.variables if not module.brought else ():
+
+            def report(where: Where, message: str, what: str, rule: str, of: Variable = variable) -> None:
+                file = of.declaration.file
+                place = Place(where.file or file, where.line or of.declaration.line, "", module.c_file, where.column)
+                found.append(UnitMismatch(place, message, what, rule))
+
+            where = variable.declaration.where
+            if variable.initial and not isinstance(variable.ctype, StructType | ArrayType):
+                wanted = self._of_lvalue(LValue(variable.ctype, variable))
+                self._check_target(variable.initial[0], wanted, where, report, variable.declaration.name)
+            elif variable.initial:
+                self._check_members(variable, variable.initial, where, report)
+        return found
+
+    def _check_members(self, variable: Variable, values: list[Any], where: Where, report: Report) -> None:
+        """Check the initial values of a structure, or of an array."""
+        ctype = variable.ctype
+        if ctype.leaves != len(values) or len(values) > _MOST_MEMBERS:
+            return
+        for name, value in zip(_leaf_names(ctype, variable.declaration.name), values, strict=True):
+            known = isinstance(value, Expr) and name and name not in self._converted and _is_number(value.ctype)
+            wanted = stated(name, self._members.get(name, UnitRemark())) if known else None
+            if wanted is not None:
+                self._check_target(value, wanted, value.where if value.where.line else where, report, name)
+
     def _check_expression(self, e: Expr, where: Where, report: Report) -> None:
         match e:
             case Binary(op="+" | "-" as op, left=left, right=right) | Compare(op=op, left=left, right=right):
@@ -346,6 +378,8 @@ class _Units:
             case Declare(variable=variable, value=Expr() as value):
                 lvalue = LValue(variable.ctype, variable)
                 self._check_target(value, self._of_lvalue(lvalue), s.where, report, variable.declaration.name)
+            case Declare(variable=variable, value=list() as values):
+                self._check_members(variable, values, s.where, report)
 
     def _check_macro(self, s: Stmt, report: Report) -> None:
         """Check the argument of a macro whose name states its unit, as in `DEVICE_DELAY_US(time)`."""
@@ -651,6 +685,18 @@ def _is_number(ctype: CType) -> bool:
     while isinstance(ctype, ArrayType | PointerType):
         ctype = ctype.element if isinstance(ctype, ArrayType) else ctype.target
     return isinstance(ctype, IntType | FloatType)
+
+
+def _leaf_names(ctype: CType, name: str) -> list[str]:
+    """The name of the member, or of the array, that each scalar of a type is, in order; "": members overlap."""
+    match ctype:
+        case ArrayType(element=element, length=length):
+            return _leaf_names(element, name) * length
+        case StructType() if ctype.word_backed:
+            return [""] * ctype.leaves
+        case StructType(members=inner):
+            return [leaf for member in inner for leaf in _leaf_names(member.ctype, member.name)]
+    return [name]
 
 
 def _scales_itself(target: LValue, value: Expr) -> bool:

@@ -237,8 +237,9 @@ class _EntranceCheck:
         common = set(deeds[0]).intersection(*deeds[1:])
         here = {deed for s in self._on_the_way(entrance.function, entrance.around) if (deed := _deed(s)) is not None}
         here |= {deed for s in self._in_state(entrance) if (deed := _deed(s)) is not None}
-        for deed in common - here:
-            s = deeds[0][deed]
+        for deed, s in deeds[0].items():
+            if deed not in common - here:
+                continue
             message = f"the {len(same)} other entrances of this state do what line {s.line} does, this one does not"
             self._tell(entrance, "entrance-differs", message)
             return

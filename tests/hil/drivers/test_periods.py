@@ -65,6 +65,7 @@ def told(
     {"define": "SAMPLE_HZ 100000.0f", "use": "Speed = (way - Last) * SAMPLE_HZ;"},
     {"use": "Speed = (way - Last) * (GAIN / CONTROL_S);"},
     {"call": "if (Runs & 1) Meter(Way); else { Slow++; Meter(-Way); }"},
+    {"define": "OFF 0\nstatic const struct { float ki, dt_s; } Pi = { 2.0f, 0.001f };", "use": "Sum += way * Pi.dt_s;"},
 ])  # fmt: skip
 def test_a_period_that_is_wrong_by_a_power_of_ten_is_told(tmp_path: Path, given: dict[str, str]) -> None:
     assert told(tmp_path, **given) == [given.get("use", USE)]
@@ -132,6 +133,8 @@ def test_a_timer_that_is_slower_than_the_constant_it_is_set_by_is_told(
     {"define": "LOOP_US 100L", "use": "Sum += way * LOOP_US;"},
     # No power of ten; another time; a comparison; no period by its name.
     {"define": "CONTROL_S 0.0002f"},
+    {"define": "LOOP_HZ 10000.0f", "use": "Sum += way / (LOOP_HZ / 10.0f);"},
+    {"define": "OFF 0\nstatic const float ABTAST_S = 0.0001f;", "use": "Sum += way * ABTAST_S;"},
     {"define": "CONTROL_TAU_S 0.001f", "use": "Sum += (way - Sum) / CONTROL_TAU_S;"},
     {"define": "CONTROL_S 0.001f", "use": "if (way > CONTROL_S) Sum = way;"},
     {"define": "REST_S 0.001f", "use": "Speed = way / REST_S;"},

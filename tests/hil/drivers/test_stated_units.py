@@ -19,7 +19,7 @@ from hil.image import Build
     ("permille", "permille"),
     # Ends that mean other things too, with and without a word for the quantity.
     ("timeout_s", "s"), ("config_s", ""), ("temperatureDc", "decidegree Celsius"), ("BUS_DC", ""),
-    ("motorCurrent_A", "A"), ("PORT_A", ""), ("heading_rad", "rad"),
+    ("motorCurrent_A", "A"), ("PORT_A", ""), ("heading_rad", "rad"), ("winkel_rad", "rad"), ("tiempo_s", "s"),
     ("wheel_rad", ""), ("chargeMa", "mA"), ("PHASE_MA", "mA"), ("ma", ""),
     ("current_mA", "mA"), ("temp_dC", "decidegree Celsius"), ("pack_mA", ""), ("HOT_C", "degree Celsius"),
     ("PHASE_C", ""),
@@ -73,6 +73,7 @@ typedef struct {
     int16_t pair[2];        // mV
 } Pose;
 Pose pose;
+typedef struct { uint32_t from_us, to_ms; } Span;
 int16_t gapMm, gapCm;
 uint16_t tickMs;
 uint32_t stamp_us, gone_s;
@@ -107,6 +108,8 @@ MIXED = [
     ("gapMm = gapCm / 10;",
      "gapCm / 10 is gapCm (cm by its name) times 0.1, gapMm is in mm by its name: from cm to mm the factor is 10"),
     ("int16_t d = gapMm; gapCm = d;", "d is in mm by its value's name, gapCm in cm by its name"),
+    ("Span s = { POLL_MS, POLL_MS }; stamp_us = s.from_us;", "POLL_MS is in ms by its name, from_us in us by its name"),
+    ("static const Span s[2] = { { POLL_US, 3 }, { 7, POLL_MS } }; tickMs = s[1].to_ms;", ""),
     ("stamp_us = POLL_MS;", "POLL_MS is in ms by its name, stamp_us in us by its name"),
     ("stamp_us += tickMs;", "stamp_us is in us by its name, tickMs in ms by its name"),
     ("if (elapsed_us() > tickMs) tickMs = 0;", "elapsed_us(...) is in us by its name, tickMs in ms by its name"),
@@ -146,7 +149,7 @@ MIXED = [
 
 @pytest.mark.parametrize(("body", "message"), MIXED)
 def test_a_value_in_another_unit_is_told(tmp_path: Path, body: str, message: str) -> None:
-    assert told(tmp_path, f"{HEAD}void f(void)\n{{\n    {body}\n}}\n", "unit-by-name") == [message]
+    assert told(tmp_path, f"{HEAD}void f(void)\n{{\n    {body}\n}}\n", "unit-by-name") == ([message] if message else [])
 
 
 @pytest.mark.parametrize("body", [
@@ -275,6 +278,9 @@ def test_times_of_the_kernel_are_in_ticks(tmp_path: Path, times: tuple[str, str,
     ("#define LIMIT_MS 5  // 5 s", "LIMIT_MS is 5 in ms by its name, and 5 s in its comment"),
     ("#define HOT_TEMP_DC (85)  /* 85 degrees */",
      "HOT_TEMP_DC is 85 in decidegree Celsius by its name, and 85 degree in its comment"),
+    ("enum { LIMIT_MS = 5 }; // 5 s", "LIMIT_MS is 5 in ms by its name, and 5 s in its comment"),
+    ("static const uint16_t LIMIT_MS = 5; // 5 s", "LIMIT_MS is 5 in ms by its name, and 5 s in its comment"),
+    ("static const uint16_t LIMIT_MS = 5000; // 5 s", ""),
     ("#define LIMIT_MS 5000U // 5 s", ""),
     ("#define HOT_TEMP_DC 850 // 85.0 degrees, in tenths", ""),
     ("#define LIMIT_MS 5 // 20 ms, less the margin", ""),
@@ -282,7 +288,8 @@ def test_times_of_the_kernel_are_in_ticks(tmp_path: Path, times: tuple[str, str,
     ("#define LIMIT_MS 5 // write cycle: 5 s at most", ""),
 ])  # fmt: skip
 def test_a_name_and_a_comment_that_contradict_each_other_are_told(tmp_path: Path, line: str, message: str) -> None:
-    text = f"{line}\nint limit(void) {{ return {line.split()[1]}; }}\n"
+    name = next(word for word in ("LIMIT_MS", "HOT_TEMP_DC") if word in line)
+    text = f"#include <stdint.h>\n{line}\nint limit(void) {{ return {name}; }}\n"
     assert told(tmp_path, text, "unit-in-comment") == ([message] if message else [])
 
 
