@@ -123,7 +123,7 @@ def _operand(e: Expr, binds: int = 0) -> str:
 def children(e: Any) -> list[Any]:
     """The expressions, lvalues and subscripts directly below `e`."""
     found: list[Any] = []
-    for name in _INNER.get(type(e), ()):
+    for name in INNER.get(type(e), ()):
         value = getattr(e, name)
         found += [v for v in (value if isinstance(value, list) else (value,)) if isinstance(v, _NODES)]
     return found
@@ -138,7 +138,7 @@ def parts(e: Any) -> list[Any]:
 
 def _gather(e: Any, found: list[Any]) -> None:
     found.append(e)
-    for name in _INNER.get(type(e), ()):
+    for name in INNER.get(type(e), ()):
         value = getattr(e, name)
         if type(value) is list:
             for inner in value:
@@ -164,7 +164,7 @@ def _holds(hint: Any) -> bool:
 
 
 #: Kind of node -> its fields that can hold expressions or lvalues.  `Const` is left out: its field is only its origin.
-_INNER: Final = {
+INNER: Final = {
     kind: tuple(name for name, hint in get_type_hints(kind).items() if name not in _found(kind) and _holds(hint))
     for kind in vars(tree).values()
     if isinstance(kind, type) and issubclass(kind, (*_NODES, Stmt, RegisterAt)) and kind is not Const
@@ -177,7 +177,7 @@ _KINDS: Final = frozenset(
 )  # fmt: skip
 
 #: Kind of statement -> its fields that are part of the program.
-_OWN: Final = {
+STATEMENT_FIELDS: Final = {
     kind: tuple(f.name for f in fields(kind) if f.metadata != FOUND)
     for kind in vars(tree).values()
     if isinstance(kind, type) and issubclass(kind, Stmt)
@@ -320,7 +320,7 @@ def different(values: Iterable[Any]) -> list[Any]:
 def roots(s: Stmt) -> list[Any]:
     """The expressions and lvalues of a statement itself, each once, without its inner blocks."""
     found: list[Any] = []
-    for name in _OWN[type(s)]:
+    for name in STATEMENT_FIELDS[type(s)]:
         value = getattr(s, name)
         if type(value) is list:
             found += [part for part in different(value) if type(part) in _ROOTS]

@@ -220,9 +220,11 @@ From then on no interrupt is taken, or no other task runs, until something else 
 does the same; the check reports such a key (also of `Swi_disable` and `Task_disable`) if nothing in the function uses
 it and nothing else there switches on.
 
-A `continue` or `return` is reported if the DINT before it has its EINT on another way. It is not reported right after
-the DINT, in a loop that comes to an EINT first, or if a function on the way may switch on. Nothing is reported of a
-function that switches off only, and of the `return` of a start-up (`init`, `setup`, ... in its name).
+A `continue` or `return` is reported if the DINT before it has its EINT on another way. So are the intrinsics
+(`__disable_interrupts`), the functions of the kernel with a key, and functions of the program that only switch. It is
+not reported right after the DINT, in a loop that comes to an EINT first, if a function on the way may switch on, or if
+the caller gets the key. Nothing is reported of a function that switches off only, and of the `return` of a start-up or
+of a function that takes a lock (`init`, `setup`, `lock`, `take` ... in its name).
 
 **Fix:** one way out, and the EINT or the restore there.
 """, "BIOS, Hwi_disable, Hwi_restore; SPRU430, INTM",
@@ -410,7 +412,8 @@ The value is how long the high task waited, in microseconds.
 A Clock function posts whether or not the task is ready again. The count keeps every release, and later the task does
 them all at once: a control loop runs several times with the same input, frames are sent one over the other.
 
-The semaphore of a Clock function is reported at a count of two (one release is late, two are a queue). Any other
+The semaphore of a Clock function is reported at a count of two (one release is late, two are a queue; a function that
+posts four times in one call, once for each of four items, makes one release of four). Any other
 semaphore is reported if it was never empty for a second and still grows; a burst that is worked off is normal. The
 message says where the task is and which task has the CPU. The value is the largest count.
 

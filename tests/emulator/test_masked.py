@@ -12,6 +12,7 @@ from hil.drivers.check import DriverFiles, check_files
 BARE = """#include "F28x_Project.h"
 volatile Uint16 Late = 0, Seen = 0;
 static void Unmask(void) {{ EINT; }}
+static void Mask(void) {{ DINT; }}
 Uint16 {name}(Uint16 n)
 {{
     Uint16 i;
@@ -58,6 +59,9 @@ def told(folder: Path, text: str) -> list[str]:
     ("DINT; Seen++;\n if (Late)\n return 1;\n Late = 0; EINT;", "return 1;"),
     ("for (i = 0; i < n; i++) { DINT; Seen++;\n if (Late)\n continue;\n Late = 0; EINT; }", "continue;"),
     ("DINT; switch (n) { case 0: Late = 0;\n return 2;\n default: Late = 1; } EINT;", "return 2;"),
+    # By the intrinsics, with a key, by functions of the program.
+    ("i = __disable_interrupts(); Seen++;\n if (Late)\n return 1;\n Late = 0; __restore_interrupts(i);", "return 1;"),
+    ("Mask(); do { if (Late) break;\n return 1;\n } while (0); Unmask();", "return 1;"),
 ])  # fmt: skip
 def test_a_way_that_leaves_interrupts_off_is_told(tmp_path: Path, body: str, at: str) -> None:
     assert told(tmp_path, BARE.format(name="Work", body=body)) == [at]
@@ -78,6 +82,8 @@ def test_a_way_that_leaves_interrupts_off_is_told(tmp_path: Path, body: str, at:
     ("Work", "DINT; for (;;) { if (!Late) { Late = 1; EINT; break; } EINT; Seen++; DINT; } return n;"),
     ("Work", "DINT; do { Seen++; n++; EINT; } while (n < 3); return n;"),
     ("Work", "DINT; Seen++; if (n > 3 && (Unmask(), Late)) return 1; EINT;"),
+    ("Work", "i = __disable_interrupts(); Seen++; if (Late) return i; Late = 0; __restore_interrupts(i);"),
+    ("Take_It", "Mask(); Seen++; if (!Late) { Unmask(); return 0; } return 1;"),
     ("Sensor_Init", "DINT; Seen++; if (Late) return 1; Late = 0; EINT;"),
 ])  # fmt: skip
 def test_ways_that_switch_on_again_are_not_told(tmp_path: Path, name: str, body: str) -> None:
@@ -92,6 +98,8 @@ def test_ways_that_switch_on_again_are_not_told(tmp_path: Path, name: str, body:
     ("key = Hwi_disable(); Seen++; Hwi_enable();", False),
     ("key = Hwi_disable(); for (;;) Seen++;", False),
     ("Hwi_disable(); Seen++;", False),
+    ("key = Task_disable(); if (Seen > 3) { Seen++; return; } Task_restore(key);", True),
+    ("key = Task_disable(); if (Seen > 3) { Task_restore(key); return; } Task_restore(key);", False),
 ])  # fmt: skip
 def test_a_key_that_nothing_uses_is_told(tmp_path: Path, body: str, found: bool) -> None:
     assert told(tmp_path, BIOS % f"    {body}") == [body] * found

@@ -36,6 +36,7 @@ from emulator.c28x.passes.stamps import Stamps
 from emulator.c28x.passes.states import States
 from emulator.c28x.passes.stores import check_stores
 from emulator.c28x.passes.tables import check_tables
+from emulator.c28x.passes.targets import with_targets
 from emulator.c28x.passes.timer_clock import check_timer_clocks
 from emulator.c28x.passes.undone import check_undone
 from emulator.c28x.passes.unlimited_lines import check_unlimited_lines
@@ -89,9 +90,13 @@ def check(
                 check_names(function, unit, report, used, by_address=function.path in entered)
         for variable in module.variables:
             file_scope(variable, initialisers[variable], report)
-    states = States(modules, entries, stamps)
-    states.check(reports)
-    for module, report in reports.items():
+    whole = list(with_members(with_targets(modules)).values())
+    of_whole = {other: reports[module] for module, other in zip(modules, whole, strict=True)}
+    stamps_of_whole = Stamps(whole, entries)
+    stamps_of_whole.suspicions()
+    states = States(whole, entries, stamps_of_whole)
+    states.check(of_whole)
+    for module, report in of_whole.items():
         for function, test, state, label, why in unreachable_exits(states, module):
             report.report(
                 function, test.where, "state-stuck",
@@ -99,10 +104,9 @@ def check(
                 f"never true, for {why}",
                 object=state.declaration.path, declaration=state.declaration,
             )  # fmt: skip
-    check_begun_again(modules, reports)
-    whole = {other: reports[module] for module, other in with_members(modules).items()}
-    check_one_sided(whole, whole)
-    check_never_back(modules, reports)
+    check_begun_again(whole, of_whole)
+    check_one_sided(whole, of_whole)
+    check_never_back(whole, of_whole)
     check_tables(modules, reports)
     sides = sides_of(modules, reports)
     if sides is not None:
@@ -112,8 +116,8 @@ def check(
     check_dropped(modules, reports)
     check_likes(modules, reports)
     check_spans(modules, reports)
-    check_drained(modules, reports)
-    check_unlimited_lines(whole, whole)
+    check_drained(whole, of_whole)
+    check_unlimited_lines(whole, of_whole)
     check_undone(modules, reports)
     check_unread_inputs(modules, reports)
     check_entrances(modules, reports)

@@ -1,16 +1,18 @@
 """Static check of interrupts that are switched off: does every way switch them on again?
 
 Two things are certain from the source.  A key (`key = Hwi_disable();`) that nothing reads cannot be given to a restore.
-And a `continue` or `return` between a DINT and the EINT that follows it on another way leaves interrupts off.
+And a `continue` or `return` between a DINT and the EINT that follows it on another way leaves interrupts off.  The same
+is true of the other functions that switch off and on (`SWITCHES`), and of functions that only call these.
 Not reported: a function that switches off and never on (its caller does, or it is meant), a DINT right before the exit,
-a loop that comes to an EINT first, a way on which another function may switch on, the return of a start-up.
+a loop that comes to an EINT first, a way on which another function may switch on, the return of a start-up or of a
+function that takes a lock, a key that the caller gets.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from typing import Final
+from typing import Final, NamedTuple
 
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.tree import (
@@ -25,6 +27,7 @@ from emulator.c28x.tree import (
     Function,
     If,
     LeaveSwitch,
+    LValue,
     Return,
     Stmt,
     Switch,
@@ -38,10 +41,26 @@ KEYS: Final = {
     "Hwi_disable": frozenset({"Hwi_restore", "Hwi_enable"}), "Swi_disable": frozenset({"Swi_restore", "Swi_enable"}),
     "Task_disable": frozenset({"Task_restore", "Task_enable"}),
 }  # fmt: skip
-#: A start-up begins with interrupts off, and may give up with interrupts off.
-_START_UP: Final = re.compile("main|init|setup|config|start|open|begin|reset", re.IGNORECASE)
-OFF: Final = "DINT"
-ON: Final = "EINT"
+#: A start-up begins with interrupts off, and may give up with interrupts off; a lock that was taken stays taken.
+_START_UP: Final = re.compile("main|init|setup|config|start|open|begin|reset|lock|enter|acquire|take", re.IGNORECASE)
+
+
+class _Kind(NamedTuple):
+    """The functions that switch one thing off, and those that switch it on again."""
+
+    what: str
+    off: frozenset[str]
+    on: frozenset[str]
+
+
+SWITCHES: Final = (
+    _Kind(
+        "interrupts", frozenset({"DINT", "__disable_interrupts", "Hwi_disable"}),
+        frozenset({"EINT", "__enable_interrupts", "__restore_interrupts", "Hwi_restore", "Hwi_enable"}),
+    ),
+    _Kind("the Swis", frozenset({"Swi_disable"}), KEYS["Swi_disable"]),
+    _Kind("the tasks", frozenset({"Task_disable"}), KEYS["Task_disable"]),
+)  # fmt: skip
 
 
 def check_masked(function: Function, report: StaticReport) -> None:
@@ -50,17 +69,21 @@ def check_masked(function: Function, report: StaticReport) -> None:
     for name in KEYS.keys() & called:
         if not called & KEYS[name] and last_loop(function) is None:
             _check_key(function, name, report)
-    if {OFF, ON} <= called and not function.interrupt:
-        walk = _Walk()
+    reached = {name for call in _calls(within(function.body)) for name in _reached(call.function, set())}
+    for kind in SWITCHES if not function.interrupt else ():
+        if not (kind.off & reached and kind.on & reached):
+            continue
+        walk = _Walk(kind)
         walk.block(function.body, None)
         for leaving, off in walk.exits:
             word = "continue" if isinstance(leaving, Continue) else "return"
             if id(off) in walk.ended and not (word == "return" and _START_UP.search(function.name)):
                 message = (
-                    f"this {word} leaves interrupts off since the DINT in line {off.line}: an EINT follows on "
-                    "another way"
+                    f"this {word} leaves {kind.what} off since line {off.line}: they are switched on again on another "
+                    "way"
                 )
-                report.report(function, leaving.where, "interrupts-left-off", message, object="INTM")
+                about = "INTM" if kind is SWITCHES[0] else kind.what
+                report.report(function, leaving.where, "interrupts-left-off", message, object=about)
 
 
 def _check_key(function: Function, name: str, report: StaticReport) -> None:
@@ -87,18 +110,28 @@ def _calls(nodes: Iterable[object]) -> Iterator[Call]:
     return (p for p in nodes if isinstance(p, Call))
 
 
-def _switches_on(function: Function, seen: set[str]) -> bool:
-    """Whether a function of the firmware, or one that it calls, executes EINT."""
+def _reached(function: Function, seen: set[str]) -> set[str]:
+    """The name of a function, and those of the functions that it calls, directly or not."""
     if function.path in seen:
-        return False
+        return set()
     seen.add(function.path)
-    return function.name == ON or any(_switches_on(call.function, seen) for call in _calls(within(function.body)))
+    return {function.name}.union(*(_reached(call.function, seen) for call in _calls(within(function.body))))
+
+
+def _returned(function: Function) -> bool:
+    """Whether a function returns something, or stores it where a pointer says: then its caller may have a key."""
+    stored = any(
+        isinstance(s, Assign) and isinstance(s.target, LValue) and isinstance(s.target.root, Expr)
+        for s in statements(function.body)
+    )  # fmt: skip
+    return stored or any(isinstance(s, Return) and s.value is not None for s in statements(function.body))
 
 
 class _Walk:
-    """Follows a DINT along the ways through a function."""
+    """Follows a DINT, or what else switches off, along the ways through a function."""
 
-    def __init__(self) -> None:
+    def __init__(self, kind: _Kind) -> None:
+        self._kind = kind
         #: A way out, and the DINT that is in force there.
         self.exits: list[tuple[Continue | Return, Stmt]] = []
         #: Identities of the DINTs that an EINT ends on some way.
@@ -121,11 +154,11 @@ class _Walk:
                     reached, off = self._joined([(True, off), *(self.block(case, off) for _, case in cases)])
                 case While(body=turn) | For(body=turn):
                     off = self._step(s, off)
-                    first = next((_at(p) for p in turn if any(self._named(p, ON))), None)
+                    first = next((_at(p) for p in turn if any(self._named(p))), None)
                     self._around.append((off, first))
                     self.block(turn, off)
                     self._around.pop()
-                    if any(_switches_on(call.function, set()) for call in _calls(within([s]))):
+                    if any(self._switches_on(call.function) for call in _calls(within([s]))):
                         off = None  # on some ways through its turns, interrupts are on again
                 case Continue():
                     around, first = self._around[-1]
@@ -134,7 +167,7 @@ class _Walk:
                         self.exits.append((s, off))
                     return False, None
                 case Return():
-                    if off is not None and off is not before:
+                    if off is not None and off is not before and not self._gives_key(s, off):
                         self.exits.append((s, off))
                     return False, None
                 case Break():
@@ -150,16 +183,36 @@ class _Walk:
         """The DINT in force behind what a statement itself does."""
         for root in roots(s):
             for call in _calls(parts(root)):
-                if call.function.name == OFF:
+                if self._switches_off(call.function):
                     off = off or s
-                elif _switches_on(call.function, set()):
+                elif self._switches_on(call.function):
                     if off is not None:
                         self.ended.add(id(off))
                     off = None
         return off
 
-    def _named(self, s: Stmt, name: str) -> Iterator[Call]:
-        return (call for call in _calls(own_nodes(s)) if call.function.name == name)
+    def _named(self, s: Stmt) -> Iterator[Call]:
+        return (call for call in _calls(own_nodes(s)) if call.function.name in self._kind.on)
+
+    def _switches_on(self, function: Function) -> bool:
+        """Whether a function, or one that it calls, switches on."""
+        return not self._kind.on.isdisjoint(_reached(function, set()))
+
+    def _switches_off(self, function: Function) -> bool:
+        """Whether a function only switches off, without a loop, and gives its caller nothing."""
+        if function.name in self._kind.off:
+            return True
+        if _returned(function) or any(isinstance(s, While | For) for s in statements(function.body)):
+            return False
+        reached = _reached(function, set())
+        return not self._kind.off.isdisjoint(reached) and self._kind.on.isdisjoint(reached)
+
+    def _gives_key(self, s: Return, off: Stmt) -> bool:
+        """Whether the caller gets the key of what is off, by the result, a pointer or an object at file scope."""
+        key = assigned(off)
+        if key is None:
+            return isinstance(off, Assign)
+        return key.kind == "global" or (s.value is not None and key in variables(parts(s.value)))
 
     def _joined(self, ways: list[tuple[bool, Stmt | None]]) -> tuple[bool, Stmt | None]:
         """A DINT that is in force on some ways only is not followed further."""

@@ -4,8 +4,9 @@
     Link.lost++;
 
 A check that asks who writes an object, and who reads it, asks the same of `Link.lost` if only named accesses reach it:
-nobody takes the address of `Link` or copies it, each subscript is a constant, and no two members overlap.  Elements of
-arrays that are only accessed by constants count as members.  The trees that the checks get have a variable for each.
+nobody takes the address of `Link` or copies it, and no two members overlap.  Elements of arrays that are only accessed
+by constants count as members; an array in a structure that has other subscripts, or whose address is taken, is a member
+as a whole.  The trees that the checks get have a variable for each.
 """
 
 from __future__ import annotations
@@ -17,13 +18,12 @@ from itertools import pairwise
 from typing import Any, Final
 
 from emulator.c28x import tree
-from emulator.c28x.ctypes import ArrayType, FloatType, IntType, PointerType, StructType
+from emulator.c28x.ctypes import ArrayType, CType, FloatType, IntType, PointerType, StructType, is_word_backed
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     FOUND,
     AddressOf,
     Bits,
-    Declaration,
     Declare,
     Expr,
     Index,
@@ -33,7 +33,7 @@ from emulator.c28x.tree import (
     Stmt,
     Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import addressed, assigned, fixed_words, own_nodes, parts, statements
+from emulator.c28x.tree_queries import assigned, fixed_words, own_nodes, parts, statements
 
 #: A member: its offset in words, and its bits if it is a bit-field.
 _Member = tuple[int, Bits | None]
@@ -72,15 +72,17 @@ def _split(modules: list[Module]) -> dict[Variable, dict[_Member, Variable]]:
     uses: dict[Variable, dict[_Member, LValue] | None] = {
         v: {} for module in modules for v in module.variables
         if isinstance(v.ctype, StructType | ArrayType) and v.kind == "global" and v.address is None and not v.constant
-        and not v.escapes and v.declaration.name not in module.placed and not module.brought
+        and not (v.escapes and is_word_backed(v.ctype)) and v.declaration.name not in module.placed
+        and not module.brought
     }  # fmt: skip
     if not uses:
         return {}
     written: set[Variable] = set()
     for module in modules:
         for variable in module.variables:
-            for root in addressed(p for value in variable.initial or () for p in parts(value)):
-                uses.pop(root, None)
+            for p in (p for value in variable.initial or () for p in parts(value)):
+                if isinstance(p, AddressOf):
+                    _use(p, uses)
         for function in module.functions:
             for s in statements(function.body):
                 if (target := assigned(s)) is not None:
@@ -88,24 +90,56 @@ def _split(modules: list[Module]) -> dict[Variable, dict[_Member, Variable]]:
                 for p in own_nodes(s):
                     _use(p, uses)
     return {
-        variable: {member: _object(variable, member, lvalue) for member, lvalue in members.items()}
-        for variable, members in uses.items() if members and variable in written and _apart(members)
+        variable: {member: _object(variable, member, lvalue) for member, lvalue in _merged(members).items()}
+        for variable, members in uses.items() if members and variable in written and _apart(_merged(members))
     }  # fmt: skip
 
 
 def _use(p: Any, uses: dict[Variable, dict[_Member, LValue] | None]) -> None:
     """Take note of an access to a structure, or drop it."""
     match p:
-        case AddressOf(lvalue=LValue(root=Variable() as root)):
-            uses.pop(root, None)
+        case AddressOf(lvalue=LValue(root=Variable() as root) as lvalue):
+            if _array(lvalue) is None:
+                uses.pop(root, None)
         case LValue(root=Variable() as root) if (members := uses.get(root)) is not None:
             words = fixed_words(p)
+            array = _array(p)
+            if array is not None and (words is None or isinstance(p.ctype, ArrayType)):
+                members[array.words, None] = array
+                return
             if words is None or not isinstance(p.ctype, _SCALARS) or (p.bits is not None and p.bits.octets):
                 uses.pop(root, None)
                 return
             known = members.setdefault((words, p.bits), p)
             if known.ctype != p.ctype:
                 uses.pop(root, None)
+
+
+def _array(lvalue: LValue) -> LValue | None:
+    """The array, a member of a structure, in which an lvalue is, or that it is; None: there is none."""
+    assert isinstance(lvalue.root, Variable)
+    ctype: CType = lvalue.root.ctype
+    if not isinstance(ctype, StructType):
+        return None
+    leaf = first = 0
+    while isinstance(ctype, StructType):
+        inside = [m for m in ctype.members if m.offset <= lvalue.words - first < m.offset + m.ctype.words]
+        if ctype.word_backed or len(inside) != 1:
+            return None
+        leaf, first, ctype = leaf + inside[0].leaf, first + inside[0].offset, inside[0].ctype
+    if not isinstance(ctype, ArrayType):
+        return None
+    text = lvalue.text.partition("[")[0]
+    return LValue(ctype, lvalue.root, leaf, first, where=lvalue.where, text=text, volatile=lvalue.volatile)
+
+
+def _merged(members: dict[_Member, LValue]) -> dict[_Member, LValue]:
+    """Members without those that are elements of another one."""
+    arrays = [lvalue for lvalue in members.values() if isinstance(lvalue.ctype, ArrayType)]
+    return {
+        member: lvalue for member, lvalue in members.items()
+        if all(lvalue is a or not a.words <= member[0] < a.words + a.ctype.words for a in arrays)
+    }  # fmt: skip
 
 
 def _apart(members: dict[_Member, LValue]) -> bool:
@@ -120,16 +154,27 @@ def _apart(members: dict[_Member, LValue]) -> bool:
 def _object(variable: Variable, member: _Member, lvalue: LValue) -> Variable:
     """The object that stands for a member."""
     at = lvalue.leaf + sum(_leaves(index) for index in lvalue.indices)
-    start = variable.initial[at : at + 1] if variable.initial and member[1] is None else None
+    start = variable.initial[at : at + lvalue.ctype.leaves] if variable.initial and member[1] is None else None
+    ctype = lvalue.ctype
+    if member[1] is not None and isinstance(ctype, IntType):
+        ctype = replace(ctype, bits=member[1].width)
     declared = variable.declaration
-    declaration = Declaration(
-        lvalue.text or f"{declared.name}+{member[0]}", lvalue.ctype, declared.module, declared.file, declared.line,
-        declared.function, declared.column,
-    )  # fmt: skip
+    name = lvalue.text if lvalue.text.startswith(declared.name) else _path(variable, member[0])
+    declaration = replace(declared, name=name, ctype=lvalue.ctype)
     return Variable(
-        declaration, lvalue.ctype, "global", initialised=variable.initialised, initial=start,
-        volatile=variable.volatile or lvalue.volatile,
+        declaration, ctype, "global", escapes=isinstance(ctype, ArrayType), initialised=variable.initialised,
+        initial=start, volatile=variable.volatile or lvalue.volatile,
     )  # fmt: skip
+
+
+def _path(variable: Variable, words: int) -> str:
+    """The name of the member at a word of an object, whatever pointer led to it."""
+    names, ctype = [variable.declaration.name], variable.ctype
+    while isinstance(ctype, StructType):
+        member = next(m for m in ctype.members if m.offset <= words < m.offset + m.ctype.words)
+        names.append(member.name)
+        words, ctype = words - member.offset, member.ctype
+    return ".".join(name for name in names if name)
 
 
 def _leaves(index: Index) -> int:
@@ -163,10 +208,18 @@ class _Rewriting:
         if isinstance(node, Declare) and node.variable.kind == "temporary":
             self._keep(node)
         if isinstance(node, LValue) and isinstance(node.root, Variable) and node.root in self.split:
+            members = self.split[node.root]
             words = fixed_words(node)
-            assert words is not None
-            member = self.split[node.root][words, node.bits]
-            return LValue(node.ctype, member, where=node.where, text=node.text, volatile=node.volatile)
+            if words is not None and (words, node.bits) in members and not isinstance(node.ctype, ArrayType):
+                member = members[words, node.bits]
+                if not isinstance(member.ctype, ArrayType):
+                    return LValue(node.ctype, member, where=node.where, text=node.text, volatile=node.volatile)
+            array = _array(node)
+            assert array is not None
+            return replace(
+                node, root=members[array.words, None], leaf=node.leaf - array.leaf, words=node.words - array.words,
+                indices=self._node(node.indices),
+            )  # fmt: skip
         before = {name: getattr(node, name) for name in _FIELDS[type(node)]}
         after = {name: self._node(old) for name, old in before.items()}
         new = {name: value for name, value in after.items() if value is not before[name]}

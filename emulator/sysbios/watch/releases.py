@@ -3,7 +3,8 @@
 A release is a post from a Clock function.  It releases the task that pends on the semaphore.  A job lasts from the pend
 that takes the release to the next pend on the same semaphore.  The deadline is the period.  A task that waits without a
 timeout for a message, an event or another semaphore that nobody had filled has no job: it waits for its next order,
-while the Clock function goes on posting.
+while the Clock function goes on posting.  Posts of one call of a Clock function are one release: if it puts four items
+into a queue, it posts four times.
 """
 
 from __future__ import annotations
@@ -58,6 +59,9 @@ class SemaphoreState:
     #: The release whose job runs; whether a later release has come before this job was done.
     job: Release | None = None
     late: bool = False
+    #: The Clock whose function posted last and when it is due next, and the number of its posts in that call.
+    posted_in: tuple[ClockObject, int] | None = None
+    burst: int = 1
     #: The cycle since when the count has not been 0.
     since: int | None = None
     piled: Finding | None = None
@@ -109,6 +113,10 @@ class Releases:
         if not isinstance(timer, ClockObject) or not timer.period:
             return
         source.period = timer.period * self._threads.kernel.clocks.tick_period_us * CYCLES_PER_US
+        if source.posted_in == (timer, timer.due):
+            source.burst += 1
+            return
+        source.posted_in, source.burst = (timer, timer.due), 1
         if source.consumer is not None and self._waits_for_order(source.consumer, semaphore):
             # The job of the last release ended before this wait, and this post begins none.
             source.job, source.late = None, False
@@ -127,7 +135,7 @@ class Releases:
             return
         if source.since is None:
             source.since = now
-        if count <= max(1, source.initial) or count <= source.most:
+        if count <= max(source.burst, source.initial) or count <= source.most:
             return
         grows = now - source.since
         forgotten = (
@@ -147,7 +155,7 @@ class Releases:
             return
         if source.consumer is None:
             source.consumer = thread
-            if semaphore.count > 1 and source.period:
+            if semaphore.count > source.burst and source.period:
                 self._report_miss(semaphore, source, thread)
                 if source.missed is not None:
                     source.missed.count = semaphore.count - 1

@@ -15,6 +15,14 @@ enum DOOR {{ SHUT, OPENING, WIDE }};
 volatile enum DOOR Door = SHUT;
 volatile Uint16 Now, Seen, Rest, Level = 100, Pulls, Goal = 40, Ends, Pushed;
 typedef struct {{ Uint16 value; Uint32 taken; }} SAMPLE;
+typedef struct {{ enum DOOR state; Uint16 rest; }} GATE;
+GATE Gate = {{SHUT, 0}};
+static void Run(GATE *gate)
+{{
+    if (gate->state == SHUT && Pushed) gate->state = WIDE;
+    if (gate->state == WIDE) {{ {gate}
+        if (gate->rest == 0) gate->state = SHUT; else gate->rest--; }}
+}}
 SAMPLE Last;
 volatile Uint32 Millis;
 static Uint16 Pushed_Now(void) {{ return Pushed; }}
@@ -37,9 +45,9 @@ void main(void)
 RULES = ("state-stuck", "stepped-over", "stamp-backwards")
 
 
-def told(folder: Path, tick: str = "", turn: str = "", start: str = "") -> list[tuple[str, str]]:
+def told(folder: Path, tick: str = "", turn: str = "", start: str = "", gate: str = "") -> list[tuple[str, str]]:
     """Rule and line of what is told of a program."""
-    text = PROGRAM.format(tick=tick, turn=turn, start=start)
+    text = PROGRAM.format(tick=tick, turn=turn, start=start, gate=gate)
     (folder / "door.c").write_text(text, encoding="utf-8")
     wanted = DriverFiles([folder / "door.c"], calls=1, board=load("bare"), seconds=0.002)
     lines = text.splitlines()
@@ -91,6 +99,16 @@ def test_a_state_that_is_left_only_to_come_back_is_told(first: str, stuck: bool,
     )
     found = told(tmp_path, tick, "if (Pushed_Now()) Door = OPENING;")
     assert found == [("state-stuck", "if (Rest < 20) Rest = 20;")] * stuck
+
+
+@pytest.mark.parametrize(("gate", "found"), [
+    ("gate->rest = 20;", [("state-stuck", "if (gate->state == WIDE) { gate->rest = 20;")]),
+    ("if (Seen) gate->rest = 20;", []),
+])  # fmt: skip
+def test_a_state_in_a_structure_that_a_pointer_gives_is_one_too(
+    gate: str, found: list[tuple[str, str]], tmp_path: Path
+) -> None:  # fmt: skip
+    assert told(tmp_path, "Pushed = Now & 1;", "Seen = Now & 7; Run(&Gate);", gate=gate) == found
 
 
 RAMP = "if (Level != 250) Level += {0};\n else {{ Level = 250; Door = WIDE; }}"

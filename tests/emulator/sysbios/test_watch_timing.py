@@ -199,6 +199,14 @@ def test_a_burst_that_is_worked_off_is_no_pile_up() -> None:
     assert found(two_tasks("", burst, "pass", clocks="every(postA, 5, 5)"), 60) == set()
 
 
+@pytest.mark.parametrize(("work", "rules"), [("pass", set()), ("DelayUs(1500)", {"semaphore-pile-up"})])
+def test_a_clock_function_may_post_once_for_each_item(work: str, rules: set[str]) -> None:
+    """Four items each 5 ms are one release; they pile up only if the next four come before these are done."""
+    function = "def four() -> void:\n    i: int16\n    for i in range(4):\n        Semaphore_post(semA)\n"
+    source = two_tasks(function, work, "pass", clocks="every(four, 5, 5)")
+    assert found(source, 60) & {"deadline", "semaphore-pile-up"} == rules
+
+
 def test_a_semaphore_of_resources_does_not_pile_up() -> None:
     source = two_tasks(
         "pool: Semaphore_Handle",

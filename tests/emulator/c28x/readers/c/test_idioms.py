@@ -106,11 +106,12 @@ int main(void)
 
 _MEMBERS = """#include "F2837xS_Device.h"
 typedef struct { Uint16 lost, sent, late; } LINK;
-static LINK Link, Copied, Pointed;
+static LINK Link, Copied, Pointed, Passed;
 static struct { Uint16 on : 1; Uint16 bright : 4; } Lamp = { 1, 7 };
 static Uint16 Errors[3];
 Uint16 In, Out;
 static void Count(LINK *link) { link->lost++; }
+static Uint16 Of(const LINK *link) { return link->sent; }
 int main(void)
 {
     LINK here;
@@ -128,8 +129,10 @@ int main(void)
         if (In == 7) Copied.lost++; else Copied.lost = 0;
         here = Copied;
         Out = here.lost;
-        if (In == 8) Pointed.sent++; else Pointed.sent = 0;
+        if (In == 8) Pointed.sent++; else Pointed.sent = 0;   // told: one-sided
         Count(&Pointed);
+        if (In == 9) Passed.sent++; else Passed.sent = 0;
+        Out += Of(&Passed) + Of(&Copied);
     }
 }
 """

@@ -1,0 +1,265 @@
+"""The trees of a whole program in which a pointer that always points to one object is another name of it.
+
+    static void Step(PUMP *p) { if (p->rest > 0) ... }      if (pump.rest > 0) ...
+    ... Step(&pump);
+
+Checks of a whole program know objects by their names.  A parameter that only ever gets `&pump`, a local that is set
+once, a pointer at file scope that keeps its first value: what they point to has a name, and these checks get trees with
+it.  The trees are for reading only: functions and statements without such a pointer are those of the program itself.
+
+A pointer stays as it is if its address is taken, if it is computed or gets two addresses, or if its function is called
+by a pointer.  The address of an object that only such pointers got is gone from the trees: nothing else reaches it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from copy import copy
+from dataclasses import replace
+from typing import Any
+
+from emulator.c28x.ctypes import ArrayType, PointerType
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    AddressOf,
+    Assign,
+    Call,
+    Compare,
+    Convert,
+    Declare,
+    Expr,
+    Function,
+    FunctionRef,
+    If,
+    Load,
+    Logic,
+    LValue,
+    Not,
+    Null,
+    Stmt,
+    Variable,
+    While,
+)  # fmt: skip
+from emulator.c28x.tree_queries import INNER, STATEMENT_FIELDS, addressed, bare, own_nodes, roots, statements
+
+#: The object to which a pointer points: a variable at file scope, and the offset in it in leaves and words.
+Target = tuple[Variable, int, int]
+
+
+def with_targets(modules: Iterable[Module]) -> list[Module]:
+    """The modules of a whole program, with the names of what known pointers point to."""
+    modules = list(modules)
+    functions = [function for module in modules for function in module.functions]
+    view = _View(functions, [v for module in modules for v in module.variables], _Pointers(functions))
+    return [view.module(module) for module in modules]
+
+
+class _Pointers:
+    """The pointers of a program that point to one object at file scope, as long as it runs."""
+
+    def __init__(self, functions: list[Function]) -> None:
+        taken: set[Variable] = set()
+        #: Each pointer with all that it may get; None: with anything.
+        self._gets: dict[Variable, list[Expr] | None] = {}
+        by_address: set[str] = set()
+        called: list[Call] = []
+        for function in functions:
+            for s in statements(function.body):
+                nodes = own_nodes(s)
+                taken |= addressed(nodes)
+                by_address |= {p.function.path for p in nodes if isinstance(p, FunctionRef)}
+                called += [p for p in nodes if isinstance(p, Call)]
+                match s:
+                    case Assign(target=LValue(root=Variable(ctype=PointerType()) as pointer), value=value):
+                        self._add(pointer, value)
+                    case Declare(variable=Variable(ctype=PointerType()) as pointer, value=Expr() as value):
+                        self._add(pointer, value)
+        parameters = {f.path: f.parameters for f in functions}
+        for call in called:
+            for pointer, value in zip(parameters.get(call.function.path, ()), call.arguments, strict=False):
+                self._add(pointer, value)
+        for function in functions:
+            if function.path in by_address:
+                taken.update(function.parameters)
+        for pointer in taken & self._gets.keys():
+            self._gets[pointer] = None
+        self._known: dict[Variable, Target | None] = {}
+
+    def _add(self, pointer: Variable, value: Expr) -> None:
+        values = self._gets.setdefault(pointer, [])
+        if values is not None:
+            values.append(value)
+
+    def target(self, pointer: Variable) -> Target | None:
+        """What a pointer points to; None: more than one object, or something else."""
+        if pointer not in self._known:
+            self._known[pointer] = None  # it may point to what it is made of itself
+            self._known[pointer] = self._only(pointer)
+        return self._known[pointer]
+
+    def _only(self, pointer: Variable) -> Target | None:
+        if not isinstance(pointer.ctype, PointerType):
+            return None
+        values = self._gets.get(pointer, [])
+        if values is None:
+            return None
+        first = pointer.initial if pointer.kind == "global" and pointer.initial is not None else []
+        targets = {self.of(value) for value in (*first, *values) if not isinstance(bare(value), Null)}
+        return targets.pop() if len(targets) == 1 else None
+
+    def of(self, value: Expr) -> Target | None:
+        """The object to which an expression points."""
+        match bare(value):
+            case AddressOf(lvalue=LValue(indices=[], bits=None) as lvalue):
+                return self.place(lvalue)
+            case Load(lvalue=LValue(root=Variable() as pointer, indices=[], words=0)):
+                return self.target(pointer)
+        return None
+
+    def place(self, lvalue: LValue) -> Target | None:
+        """The object at file scope that an lvalue is in, also through a pointer that is known."""
+        root = lvalue.root
+        if isinstance(root, Variable):
+            return (root, lvalue.leaf, lvalue.words) if root.kind == "global" and root.address is None else None
+        target = self.of(root)
+        return (target[0], target[1] + lvalue.leaf, target[2] + lvalue.words) if target is not None else None
+
+
+class _View:
+    """Writes the trees anew, with the names of targets."""
+
+    def __init__(self, functions: list[Function], objects: list[Variable], pointers: _Pointers) -> None:
+        self._pointers = pointers
+        self._parameters = {f.path: f.parameters for f in functions}
+        #: What something reaches by its address, and what known pointers point to.
+        reached: set[Variable] = set()
+        pointed: set[Variable] = set()
+        for function in functions:
+            for s in statements(function.body):
+                for root in roots(s):
+                    self._look(root, s, reached, pointed)
+        for v in objects:
+            for value in v.initial or () if pointers.target(v) is None else ():
+                if isinstance(value, AddressOf):
+                    self._look(value, None, reached, pointed)
+        #: Each object to which only known pointers point, and what it is in these trees.
+        self._named = {v: replace(v, escapes=False) for v in pointed - reached}
+
+    def _look(self, e: Any, s: Stmt | None, reached: set[Variable], pointed: set[Variable]) -> None:
+        """Find what a part of a statement reaches by an address."""
+        inner: list[Any] = []
+        match e:
+            case LValue(root=Expr() as root, indices=indices) if (target := self._pointers.of(root)) is not None:
+                pointed.add(target[0])
+                inner = list(indices)
+            case Compare(left=left, right=right) if isinstance(bare(left), Null) or isinstance(bare(right), Null):
+                inner = self._asked([left, right])
+            case Not(operand=operand):
+                inner = self._asked([operand])
+            case Logic(operands=operands):
+                inner = self._asked(operands)
+            case Expr() if isinstance(s, If | While) and self._pointers.of(e) is not None:
+                return
+            case Call(function=Function(path=path), arguments=arguments, extra=extra):
+                parameters = self._parameters.get(path, [])
+                for number, argument in enumerate(arguments):
+                    given = parameters[number] if number < len(parameters) else None
+                    target = self._pointers.target(given) if given is not None else None
+                    if target is None:
+                        inner.append(argument)
+                    else:
+                        pointed.add(target[0])
+                inner += extra
+            case AddressOf(lvalue=lvalue) if (target := self._pointers.place(lvalue)) is not None:
+                if not self._defines(s, e):
+                    reached.add(target[0])
+                inner = list(lvalue.indices)
+            case Load(lvalue=LValue(root=Variable() as pointer)) if target := self._pointers.target(pointer):
+                if not self._defines(s, e):
+                    reached.add(target[0])
+            case _:
+                for name in INNER.get(type(e), ()):
+                    value = getattr(e, name)
+                    inner += value if isinstance(value, list) else [value]
+        for part in inner:
+            self._look(part, s if isinstance(e, Convert) else None, reached, pointed)
+
+    def _asked(self, operands: list[Expr]) -> list[Expr]:
+        """The operands of a test without known pointers: whether these are null says nothing of their targets."""
+        return [operand for operand in operands if self._pointers.of(operand) is None]
+
+    def _defines(self, s: Stmt | None, e: Expr) -> bool:
+        """Whether a statement gives an address to a pointer that is known."""
+        match s:
+            case (
+                Assign(target=LValue(root=Variable() as pointer), value=value)
+                | Declare(variable=pointer, value=Expr() as value)
+            ) if bare(value) is e:  # fmt: skip
+                return self._pointers.target(pointer) is not None
+        return False
+
+    # Writing
+
+    def module(self, module: Module) -> Module:
+        """A module with functions that are written anew."""
+        written = copy(module)
+        written.functions = [self._function(function) for function in module.functions]
+        written.variables = [self._named.get(v, v) for v in module.variables]
+        return written
+
+    def _function(self, function: Function) -> Function:
+        body = self._node(function.body, STATEMENT_FIELDS)
+        return function if body is function.body else replace(function, body=body)
+
+    def _node(self, e: Any, fields: Mapping[type, tuple[str, ...]]) -> Any:
+        """A node written anew; itself if nothing in it changes."""
+        match e:
+            case list():
+                new = [self._node(x, fields) for x in e]
+                return e if all(a is b for a, b in zip(e, new, strict=True)) else new
+            case (labels, body) if isinstance(body, list):  # of a switch
+                new = self._node(body, fields)
+                return e if new is body else (labels, new)
+            case LValue():
+                place = self._pointers.place(e)
+                if place is None or place[0] not in self._named:
+                    place = None
+                if place is not None:
+                    root, leaf, words = place
+                    e = replace(e, root=self._named[root], leaf=leaf, words=words, volatile=e.volatile or root.volatile)
+            case Call(function=Function(path=path), arguments=arguments) if path in self._parameters:
+                pointers = self._parameters[path]
+                given = [
+                    self._name(pointers[n], value) if n < len(pointers) else value for n, value in enumerate(arguments)
+                ]
+                if any(a is not b for a, b in zip(given, arguments, strict=True)):
+                    e = replace(e, arguments=given)
+            case (
+                Assign(target=LValue(root=Variable() as pointer), value=value)
+                | Declare(variable=pointer, value=Expr() as value)
+            ) if (name := self._name(pointer, value)) is not value:  # fmt: skip
+                written = copy(e)
+                written.value, written.nodes = name, None
+                return written
+        changed = {}
+        for attribute in fields.get(type(e)) or INNER.get(type(e), ()):
+            old = getattr(e, attribute)
+            anew = old if isinstance(old, int | str | None) else self._node(old, fields)
+            if anew is not old:
+                changed[attribute] = anew
+        if not changed:
+            return e
+        other = copy(e)
+        for attribute, anew in changed.items():
+            setattr(other, attribute, anew)
+        if isinstance(other, Stmt):
+            other.nodes = None
+        return other
+
+    def _name(self, pointer: Variable, value: Expr) -> Expr:
+        """What a pointer gets; without an address, if the pointer is another name of its target, which is no array."""
+        target = self._pointers.target(pointer)
+        match bare(value):
+            case AddressOf(lvalue=LValue(ctype=ArrayType())):
+                return value
+        return Null(value.ctype, where=value.where) if target is not None and target[0] in self._named else value
