@@ -385,26 +385,6 @@ def compared(functions: Iterable[Function]) -> set[Variable]:
     return found
 
 
-def limited(functions: Iterable[Function]) -> set[Variable]:
-    """The unsigned variables that the source limits: a larger value is replaced by the limit."""
-    found: set[Variable] = set()
-    for function in functions:
-        for s in statements(function.body):
-            match s:
-                case If(test=Compare(op=">" | ">=", left=left, right=limit), then=then):
-                    pass
-                case If(test=Compare(op="<" | "<=", left=limit, right=left), then=then):
-                    pass
-                case _:
-                    continue
-            match _as_it_is(left):
-                case Load(lvalue=LValue(root=Variable() as root, indices=[]), ctype=IntType(signed=False)):
-                    given = [x.value for x in then if isinstance(x, Assign | Return) and isinstance(x.value, Expr)]
-                    if any(_same(value, limit) for value in given):
-                        found.add(root)
-    return found
-
-
 #: A scalar by what holds it, whichever object that is: the object itself or the structure, and the offset in words.
 NamedScalar = tuple[Variable | StructType, int]
 
@@ -430,6 +410,39 @@ def fixed_words(lvalue: LValue) -> int | None:
             return None
         words += at.value * index.words
     return words
+
+
+def limited(functions: Iterable[Function]) -> set[NamedScalar]:
+    """The unsigned scalars that the source limits: a larger value is replaced by the limit."""
+    found: set[NamedScalar] = set()
+    for function in functions:
+        for larger, limit, chosen in _choices(function.body):
+            match _as_it_is(larger):
+                case Load(lvalue=lvalue, ctype=IntType(signed=False)) if any(_same(value, limit) for value in chosen):
+                    if (scalar := named_scalar(lvalue)) is not None:
+                        found.add(scalar)
+    return found
+
+
+def _choices(body: list[Stmt]) -> Iterator[tuple[Expr, Expr, list[Expr]]]:
+    """The branches of comparisons by order: the larger side there, the smaller one, and the values that are taken."""
+    for s in statements(body):
+        match s:
+            case If(test=Compare() as test, then=then, otherwise=otherwise):
+                for branch, holds in ((then, True), (otherwise, False)):
+                    given = [x.value for x in branch if isinstance(x, Assign | Return) and isinstance(x.value, Expr)]
+                    yield from _sides(test, given, holds=holds)
+        for p in own_nodes(s):
+            match p:
+                case Conditional(test=Compare() as test, then=value, otherwise=other):
+                    yield from _sides(test, [value], holds=True)
+                    yield from _sides(test, [other], holds=False)
+
+
+def _sides(test: Compare, chosen: list[Expr], *, holds: bool) -> Iterator[tuple[Expr, Expr, list[Expr]]]:
+    if test.op in ("<", "<=", ">", ">="):
+        left_larger = (test.op in (">", ">=")) == holds
+        yield (test.left, test.right, chosen) if left_larger else (test.right, test.left, chosen)
 
 
 def made_float(functions: Iterable[Function]) -> set[NamedScalar]:

@@ -90,8 +90,8 @@ reported despite the cast. A capture of an eCAP (32 bits) that goes to a `Uint16
 other registers, and differences of captures, may be cut on purpose.
 
 A test says which values are meant. So `if (n <= 100000L) period = (Uint16) n;` is reported before the program runs: the
-test lets more through than the type holds. It is not reported if the branch uses the value otherwise too, as for its
-upper word.
+test lets more through than the type holds. So is `if (n > 99999L) return;` before the conversion. It is not reported if
+the value is used otherwise too, as for its upper word.
 
 **Fix:** make the object `long`, or limit the value before the assignment.
 """,
@@ -114,7 +114,8 @@ division, a shift to the right or a comparison by order does not. These wraps ar
 * a sum of samples that is divided later (at the addition that wraps); also a global or `static` one that is taken and
   then begins again at 0, and through copies; not if it is masked or compared for equality, as check sums are;
 * the step of a loop whose test compares the object (a count that goes down by two misses 0);
-* the step of an object that is limited above (below 0 it wraps and becomes the limit);
+* the step of an object that is limited above (below 0 it wraps and becomes the limit); not a step by 1, because a ring
+  or a digit goes down from 0 to its limit in that way;
 * a difference of two 16-bit numbers that goes into a `long`, if one of them has wrapped;
 * a sum or product of two constants, before the program runs: `400u * 195u` is 12464, because `unsigned int` has 16
   bits.
@@ -191,10 +192,10 @@ are kept of a difference of 32 bits, and become a float (`(Uint16) (count - befo
 time since a stamp is below 0.
 
 A word that came in octets (`int32_t rpm = data[0] | data[1] << 8;`), from a buffer or a union has no sign either. It is
-reported if its highest bit is set, and the object that takes it gets nothing else and is compared by order with a
-number below -1 (`rpm >= -3000`): so negative numbers are expected, and none can come. The same holds for an octet that
-a wider object takes, and for two sides of a comparison by order that both get signed numbers only by casts to unsigned
-(`words[n] > (Uint16) limit`).
+reported if its highest bit is set, and the object that takes it, also as the result of a function, gets nothing else
+and is compared by order with a number below -1 (`rpm >= -3000`): so negative numbers are expected, and none can come. The
+same holds for an octet that a wider object takes, and for two sides of a comparison by order that both get signed
+numbers only by casts to unsigned (`words[n] > (Uint16) limit`).
 
 So is a word of three octets that becomes a signed number of 32 bits (`(int32) (high << 16 | middle << 8 | low)`), if it
 steps from just above 0 to just below 16777216, and the program looks nowhere at bit 23.
@@ -239,9 +240,9 @@ In `torque | percent << 16 | info << 24` a percent of 500 sets bits of `info`, f
 `torque` is worse: it is widened with its sign, so that all bits above it are 1.
 
 The finding is made while the program runs, where a bit of one field meets a bit of another one that a constant shifts
-further to the left. It is not made for two terms of the same object (`x | x << 1`), constants, masks (`x & ~0xF0`),
-registers, and flags (an object that some statement ORs into); nor for a word of two terms of which one is shifted by
-less than four bits.
+further to the left, or where the sign of a negative number reaches a constant (`3UL << 24 | (Uint32) speed`). It is not
+made for two terms of the same object (`x | x << 1`), other constants, masks (`x & ~0xF0`), registers, and flags (an
+object that some statement ORs into); nor for a word of two terms of which one is shifted by less than four bits.
 
 **Fix:** mask each field to its width, and convert signed numbers to `Uint16` first: `(Uint32)(Uint16)torque`.
 """,

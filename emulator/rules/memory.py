@@ -55,10 +55,12 @@ real project may choose another order, so the neighbour may be another one on yo
         """
 Most of the time all is well. With a word that nobody expected, the program reads behind the end of the table.
 
-`Steps[word & 7]` needs eight elements, `mixture[n % 15]` fifteen. A table with seven or five is too short, or the
-number is wrong: of `mixture[5][3]`, `sizeof mixture / sizeof mixture[0][0]` is 15, and the rows are 5.
+`Steps[word & 7]` and `Steps[(word & 0x70) >> 4]` need eight elements, `mixture[n % 15]` fifteen. A table with seven or
+five is too short, or the number is wrong: of `mixture[5][3]`, `sizeof mixture / sizeof mixture[0][0]` is 15, and the
+rows are 5.
 
-An index that is counted, and set back too late, is such a one too: `at++; if (at > 5) at = 0;` for a table of five.
+An index that is counted, and set back too late, is such a one too: `at++; if (at > 5) at = 0;` for a table of five, or
+`at = at < 5 ? at + 1 : 0;`, or down: `if (at == 0) at = 5; else at--;`.
 
 The check follows the index through objects that get only remainders, masks, constants and such counts, and through
 results of functions. Not reported: an index by which the program decides anything else (`if (word == 7) return;`),
@@ -164,8 +166,9 @@ later.
         """
 The program writes a text or a table, and the content does not change.
 
-String literals and constants are in flash. The CPU executes the store, and nothing changes: no trap, no flag. On a PC
-the page is protected and the program ends. A cast that removes `const` hides the defect from the compiler.
+String literals and objects that are `const` are in flash. The CPU executes the store, and nothing changes: no trap, no
+flag. On a PC the page is protected and the program ends. A cast that removes `const` hides the defect from the
+compiler.
 
 **Fix:** copy the text into an array first: `char label[8] = "idle";`.
 """,

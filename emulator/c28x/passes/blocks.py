@@ -7,12 +7,12 @@ that is a whole object is checked at run time, when it is copied.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Final
 
 from emulator.c28x.ctypes import ArrayType, FloatType, IntType, PointerType
 from emulator.c28x.passes.formats import format_of, shortest
-from emulator.c28x.tree import AddressOf, Call, Const, Convert, Expr, LValue, String, Variable
+from emulator.c28x.tree import AddressOf, Call, Const, Convert, Expr, Load, LValue, String, Variable
 from emulator.c28x.tree_queries import bare, calls, source_text
 
 #: Function -> how many of its arguments are blocks; its last argument is their length in words.
@@ -25,8 +25,11 @@ _WRITERS: Final = ("sprintf", "System_sprintf", "strcpy")
 _MAGNITUDES: Final = ("abs", "labs", "llabs")
 
 
-def check_blocks(e: Call, report: Callable[[str, str, str], None]) -> None:
-    """Report arguments of a call that do not fit the function: `report(rule, message, object)`."""
+def check_blocks(e: Call, report: Callable[[str, str, str], None], fixed: Mapping[Variable, Const]) -> None:
+    """Report arguments of a call that do not fit the function: `report(rule, message, object)`.
+
+    `fixed`: the locals that hold one constant only.
+    """
     name, arguments = e.function.name, e.arguments
     if not e.function.extern or not arguments:
         return
@@ -46,12 +49,12 @@ def check_blocks(e: Call, report: Callable[[str, str, str], None]) -> None:
         _check_text(e, report)
         return
     if name in _TEXTS:
-        block, most = (bare(arguments[i]) for i in _TEXTS[name])
+        block, most = bare(arguments[_TEXTS[name][0]]), _constant(arguments[_TEXTS[name][1]], fixed)
         if isinstance(most, Const) and most.text == "sizeof pointer":
             text = source_text(block)
             report("sizeof-pointer", f"{name} of {text} takes {most.value} characters, the size of a pointer", text)
         return
-    length = bare(arguments[-1])
+    length = _constant(arguments[-1], fixed)
     if name not in _BLOCKS or not isinstance(length, Const):
         return
     blocks = [bare(argument) for argument in arguments[: _BLOCKS[name]]]
@@ -65,6 +68,15 @@ def check_blocks(e: Call, report: Callable[[str, str, str], None]) -> None:
             text = source_text(block)
             message = f"{name} takes {length.value} words at {text}, a member with {left} words from there"
             report("memcpy-outside", message, text)
+
+
+def _constant(e: Expr, fixed: Mapping[Variable, Const]) -> Expr:
+    """An argument without conversions; in place of a local that holds one constant only, the constant."""
+    match bare(e):
+        case Load(lvalue=LValue(root=Variable() as variable, indices=[])) as load:
+            return fixed.get(variable, load)
+        case other:
+            return other
 
 
 def _check_text(e: Call, report: Callable[[str, str, str], None]) -> None:

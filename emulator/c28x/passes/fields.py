@@ -1,8 +1,8 @@
 """Fields of one word: an OR of objects that constants shift to the left, whose bits must not meet.
 
 A pair can meet if the bounds of its lower field leave it bits above its place.  No fields are: masks (`x & ~0xF0`),
-flags (an object that some statement ORs into), registers, constants, two terms at the same place, and two terms of the
-same object (`x | x << 1`).
+flags (an object that some statement ORs into), registers, two terms at the same place, and two terms of the same object
+(`x | x << 1`).  A constant is one only for a negative number that is widened below it.
 """
 
 from __future__ import annotations
@@ -59,6 +59,7 @@ def meeting(e: Binary, flags: Set[NamedScalar], assigned: LValue | None) -> list
     terms = or_terms(e)
     shifts = [shift_of(term) for term in terms]
     several = len(set(shifts) - {0}) > 1
+    shifts = [shift or _place(term) for shift, term in zip(shifts, terms, strict=True)]
     pairs: list[tuple[int, int]] = []
     for lower, low in enumerate(shifts):
         if not any(shift > low for shift in shifts) or not _number(terms[lower], flags, assigned):
@@ -66,10 +67,29 @@ def meeting(e: Binary, flags: Set[NamedScalar], assigned: LValue | None) -> list
         for upper, high in enumerate(shifts):
             if (
                 high > low and (several or high >= _FIELD) and _bits(terms[lower]) & _bits(terms[upper])
+                and (not isinstance(bare(terms[upper]), Const) or _extended(terms[lower], low, high))
                 and not _objects(terms[lower]) & _objects(terms[upper])
             ):  # fmt: skip
                 pairs.append((lower, upper))
     return pairs
+
+
+def _place(term: Expr) -> int:
+    """The lowest bit of a constant term above the lower word; 0: there is none."""
+    match bare(term):
+        case Const(value=int(value)) if value > 0 and not value & 0xFFFF:
+            return (value & -value).bit_length() - 1
+    return 0
+
+
+def _extended(term: Expr, low: int, high: int) -> bool:
+    """Whether only the sign of a number reaches from bit `low` to bit `high`, where a constant is.
+
+    A number that is large enough may have that bit, so that an OR with a constant only makes sure of it.
+    """
+    number = bare(bare(term).left) if low and isinstance(bare(term), Binary) else bare(term)
+    ctype = number.ctype
+    return isinstance(ctype, IntType) and ctype.signed and ctype.bits + low <= high and bounds_of(number)[0] < 0
 
 
 def _loads(term: Expr, target: LValue) -> bool:

@@ -151,7 +151,7 @@ class Guards:
     """Makes the decisions for one function.
 
     `watch`: the image is watched; `ieee`: float division follows IEEE; `room`: path of an array -> its length, instead
-    of that of its type; `compared`: variables that occur in a comparison or a subscript; `limited`: unsigned variables
+    of that of its type; `compared`: variables that occur in a comparison or a subscript; `limited`: unsigned scalars
     that some function limits; `made_float`: unsigned scalars that some function makes floats of; `in_a_range`: scalars
     that some function compares by order with a constant; `stamps`: the suspicions of pass `stamps`; `pulses`: the
     result of pass `pulses`; `regulators`, `words`: those of passes `wind_up` and `signs`; `flags`: scalars that hold
@@ -160,9 +160,9 @@ class Guards:
 
     def __init__(
         self, function: Function, *, watch: bool, ieee: bool, room: Mapping[str, int], compared: Set[Variable],
-        limited: Set[Variable], made_float: Set[NamedScalar], in_a_range: Set[NamedScalar], stamps: Mapping[int, str],
-        pulses: Mapping[int, str], regulators: Mapping[int, RegulatorPart], words: Mapping[int, SignedWord],
-        flags: Set[NamedScalar], numbers: Set[NamedScalar], sums: Set[int],
+        limited: Set[NamedScalar], made_float: Set[NamedScalar], in_a_range: Set[NamedScalar],
+        stamps: Mapping[int, str], pulses: Mapping[int, str], regulators: Mapping[int, RegulatorPart],
+        words: Mapping[int, SignedWord], flags: Set[NamedScalar], numbers: Set[NamedScalar], sums: Set[int],
     ) -> None:  # fmt: skip
         self.function = function
         self.watch = watch
@@ -243,7 +243,7 @@ class Guards:
                         self.sum_value(target, value)
                     self.leaves_for_all(target.root, value)
                     if not target.indices:
-                        self.limited_later(target.root, value)
+                        self.limited_later(named_scalar(target), value)
                         self.float_later(target, value)
                         self.cut_capture(target, value)
                     self.check_access(target)
@@ -263,7 +263,7 @@ class Guards:
                     self.value(value)
             case Declare(variable=variable, value=Expr() as value):
                 self.value(value)
-                self.limited_later(variable, value)
+                self.limited_later((variable, 0), value)
             case Evaluate(value=value) | Return(value=Expr() as value):
                 self.value(value)
             case If(test=test):
@@ -330,9 +330,9 @@ class Guards:
             site = self.site(value.ctype, source_text(value), text=register_text(target), bound=high)
             value.leaving = Guard("quantity", site)
 
-    def limited_later(self, root: Variable | Expr, value: Expr) -> None:
-        """Check a value of a variable that is limited as unsigned: a negative number would become the largest."""
-        if isinstance(root, Variable) and root in self.limited:
+    def limited_later(self, scalar: NamedScalar | None, value: Expr) -> None:
+        """Check a value of a scalar that is limited as unsigned: a negative number would become the largest."""
+        if scalar in self.limited:
             self.not_negative(value, "is limited")
 
     def float_later(self, target: LValue, value: Expr) -> None:
@@ -393,8 +393,9 @@ class Guards:
                 root in self.averaged and root not in variables(parts(e))
             ):
                 self.unwrapped(e, "unsigned-wrap", "is divided or widened further down")
-            case Variable() as root, Binary(op="+" | "-", ctype=IntType(signed=False), left=Load(lvalue=stepped)) if (
-                root in self.limited and stepped == target
+            case _, Binary(op="+" | "-", ctype=IntType(signed=False), left=Load(lvalue=stepped), right=by) if (
+                stepped == target and named_scalar(target) in self.limited
+                and not (isinstance(by, Const) and by.value == 1)  # down from 0 to the limit: a ring, a digit
             ):
                 self.unwrapped(e, "unsigned-wrap", "is limited")
             case _, Binary() if _of_stamps(target, e):
@@ -432,6 +433,7 @@ class Guards:
                 taken_for = FunctionType("function", e.ctype, tuple(a.ctype for a in arguments))
                 e.guard = Guard("callable", self.site(taken_for, source_text(target), at=e.where))
                 self.all_in(e)
+                self.float_arguments(arguments)
             case _:
                 self.all_in(e)
 
@@ -498,6 +500,11 @@ class Guards:
     def unwrapped(self, e: Expr, rule: str, then: str) -> None:
         """Decide for a value that must be the mathematical one: check an unsigned result that can differ from it."""
         ctype = e.ctype
+        if isinstance(e, Conditional):
+            self.unwrapped(e.then, rule, then)
+            self.condition(e.test)
+            self.unwrapped(e.otherwise, rule, then)
+            return
         if not isinstance(ctype, IntType) or ctype.signed or not _computed(e) or _shifted_out(e):
             self.value(e)
             return
@@ -646,18 +653,23 @@ class Guards:
 
     def call(self, e: Call) -> None:
         self.all_in(e)
-        for argument in e.arguments:
-            match argument:
-                case Convert(guard=Guard(kind="float-to-int") as guard, explicit=False, operand=given):
-                    guard.kind = "float-to-int" if _rounded(given) else "float-argument"
+        self.float_arguments(e.arguments)
         for parameter, argument in zip(e.function.parameters, e.arguments, strict=False):
-            self.limited_later(parameter, argument)
+            self.limited_later((parameter, 0), argument)
         if not e.function.extern or not self.watch:
             return
         for argument in (*e.arguments, *e.extra):
             if isinstance(argument.ctype, FloatType):
                 text = f"{e.function.name}({source_text(argument)})"
                 argument.leaving = Guard("float-out", self.site(argument.ctype, text, at=argument.where))
+
+    @staticmethod
+    def float_arguments(arguments: Iterable[Expr]) -> None:
+        """Let the conversions of float arguments report lost fractions, too; not those that are rounded."""
+        for argument in arguments:
+            match argument:
+                case Convert(guard=Guard(kind="float-to-int") as guard, explicit=False, operand=given):
+                    guard.kind = "float-to-int" if _rounded(given) else "float-argument"
 
     # Conversions
 
@@ -710,8 +722,9 @@ class Guards:
         if id(e) in self.stamps:
             e.guard = Guard("past", self.site(target, source_text(operand), at=e.where))
             return
-        if e.explicit and not is_character(target) and loses_high_bits(operand, target):
-            e.guard = Guard("narrowed", self.site(target, source_text(operand), at=e.where, kind="cast"))
+        if (e.explicit or not target.signed) and not is_character(target) and loses_high_bits(operand, target):
+            kind = "cast" if e.explicit else ""
+            e.guard = Guard("narrowed", self.site(target, source_text(operand), at=e.where, kind=kind))
         if not target.signed or e.explicit:
             return
         if _mixed(operand, target):

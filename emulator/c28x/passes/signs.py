@@ -4,7 +4,8 @@
     if (rpm >= -3000 && rpm <= 3000) ...
 
 A word that is composed of octets, or read from a buffer or a union, is unsigned.  It has a sign for its reader if the
-object that takes it is compared by order with a negative number, and never gets anything else.  A comparison with 0 or
+object that takes it, also as the result of a function, is compared by order with a negative number, and never gets
+anything else.  A comparison with 0 or
 -1 says nothing: it may belong to a test of the range.
 
 The second form is a comparison by order in which a cast makes a signed number unsigned, and the other side is an object
@@ -32,6 +33,7 @@ from emulator.c28x.passes.stamps import Key, key_of
 from emulator.c28x.tree import (
     Assign,
     Binary,
+    Call,
     Compare,
     Const,
     Convert,
@@ -41,6 +43,7 @@ from emulator.c28x.tree import (
     Function,
     Load,
     LValue,
+    Return,
     Variable,
 )
 from emulator.c28x.tree_queries import (
@@ -95,12 +98,12 @@ def _widened(functions: list[Function]) -> dict[int, SignedWord]:
                     lost.add((variable, 0))
     found: dict[int, SignedWord] = {}
     for named, values in given.items():
-        words = [_word(value) for value in values if not isinstance(bare(value), Const)]
+        words = [_word(value) or _returned(value) for value in values if not isinstance(bare(value), Const)]
         if named in lost or None in words or (isinstance(named[0], Variable) and named[0].kind == "parameter"):
             continue
         for word in words:
             assert word is not None
-            low, high = bounds_of(word)
+            low, high = bounds_of(_results(word)[0] if isinstance(word, Call) else word)
             if low >= 0 and high > 0xFF:
                 found[id(word)] = SignedWord(0x7FFF, asked[named])
             elif low >= 0 and high == 0xFF:
@@ -138,6 +141,42 @@ def _word(e: Expr) -> Expr | None:
     return e if not ctype.signed or (low >= 0 and high == 0xFF) else None
 
 
+def _returned(e: Expr) -> Call | None:
+    """The call that an expression is, without conversions, if its function returns nothing but words of one range.
+
+    The running code looks at the result there, and not in the function: others may call it for words without a sign.
+    """
+    while isinstance(e, Convert):
+        if isinstance(e.ctype, IntType) and e.ctype.bits == 16:
+            return None  # here the highest bit may become a sign
+        e = e.operand
+    words = _results(e) if isinstance(e, Call) else []
+    return e if isinstance(e, Call) and words and len({bounds_of(word) for word in words}) == 1 else None
+
+
+def _results(call: Call) -> list[Expr]:
+    """The words without a sign that the function of a call returns; none if it returns anything else."""
+    body = call.function.body
+    given: dict[Variable, list[Expr]] = {}
+    for s in statements(body):
+        match s:
+            case Assign(target=LValue(root=Variable(kind="local") as variable), value=value):
+                given.setdefault(variable, []).append(value)
+            case Declare(variable=variable, value=Expr() as value):
+                given.setdefault(variable, []).append(value)
+    words: list[Expr | None] = []
+    for s in statements(body):
+        match s:
+            case Return(value=Load(lvalue=LValue(root=Variable(in_memory=False) as variable, indices=[]))) if (
+                variable in given
+            ):
+                words += [_word(value) for value in given[variable]]
+            case Return(value=Expr() as value):
+                words.append(_word(value))
+    found = [word for word in words if word is not None]
+    return found if len(found) == len(words) else []
+
+
 def _compared(functions: list[Function]) -> dict[int, SignedWord]:
     """The sides of comparisons by order of two numbers that casts have made unsigned."""
     pairs: list[tuple[Compare, Expr, Load, Key]] = []
@@ -169,12 +208,12 @@ def _compared(functions: list[Function]) -> dict[int, SignedWord]:
 
 
 def _shift_registers(functions: list[Function]) -> dict[int, SignedWord]:
-    """The signed objects, where they are shifted to the right, that an exclusive or shows to be shift registers."""
+    """The signed scalars, where they are shifted to the right, that an exclusive or shows to be shift registers."""
     found: dict[int, SignedWord] = {}
     for function in functions:
         mixed = {
-            s.target.root: polynomial for s in statements(function.body)
-            if isinstance(s, Assign) and isinstance(s.target, LValue) and isinstance(s.target.root, Variable)
+            named: polynomial for s in statements(function.body)
+            if isinstance(s, Assign) and isinstance(s.target, LValue) and (named := named_scalar(s.target)) is not None
             for p in parts(s.value) if (polynomial := _polynomial(p, s.target)) is not None
         }  # fmt: skip
         nodes = list(within(function.body)) if mixed else []
@@ -182,10 +221,10 @@ def _shift_registers(functions: list[Function]) -> dict[int, SignedWord]:
         for p in nodes:
             match p:
                 case Binary(
-                    op=">>", ctype=IntType(signed=True),
-                    left=Load(ctype=IntType() as ctype, lvalue=LValue(root=Variable() as root)) as register,
-                ) if root in mixed and id(p) not in masked:  # fmt: skip
-                    use = f"{source_text(p)} copies its sign; {mixed[root]:#x} needs all {ctype.bits} bits"
+                    op=">>", ctype=IntType(signed=True), left=Load(ctype=IntType() as ctype, lvalue=lvalue) as register
+                ) if (named := named_scalar(lvalue)) in mixed and id(p) not in masked:
+                    assert named is not None
+                    use = f"{source_text(p)} copies its sign; {mixed[named]:#x} needs all {ctype.bits} bits"
                     found[id(register)] = SignedWord(ctype.high, use, "shifted-sign")
     return found
 

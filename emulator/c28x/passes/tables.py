@@ -3,6 +3,8 @@
     static const STEP Steps[7] = ...;
     Steps[Word() & 7]
     Steps[at];  at++;  if (at > 7) at = 0;
+    Steps[at];  if (at < 7) at++; else at = 0;
+    Steps[(word & 0x0FFF) >> 8]
 
 The check follows such an index through objects that get nothing but remainders, masks, constants and steps behind which
 a test sets them back, and through the results of functions.  What the program compares, or decides by, may have been
@@ -11,7 +13,7 @@ tested: it is left alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final, NamedTuple
 
 from emulator.c28x.ctypes import IntType
@@ -89,6 +91,8 @@ class _Indices:
         for function in functions:
             for block in all_blocks(function.body):
                 self._counts(block)
+            for s in statements(function.body):
+                self._chooses(s)
         for function in functions:
             for parameter in function.parameters:
                 self._given[parameter, 0] = [None]
@@ -106,13 +110,44 @@ class _Indices:
             for later in block[number + 1 :]:
                 match later:
                     case If(test=Compare() as test, then=then, otherwise=[]) if (
-                        (high := _highest(test, target)) is not None and any(_sets_back(t, target) for t in then)
-                    ):  # fmt: skip
+                        (high := _highest(test, target, _BEHIND)) is not None
+                        and any(_sets_back(t, target) for t in then)
+                    ):
                         self._steps[id(value)] = _Reach(high, test)
                         self._ends.add(id(test))
                         break
                 if blocks(later) or any(isinstance(p, LValue) and p == target for p in own_nodes(later)):
                     break
+
+    def _chooses(self, s: Stmt) -> None:
+        """Take the step by 1 of a branch whose other branch sets the scalar to a constant."""
+        match s:
+            case If(test=test, then=[Assign(target=LValue() as target, value=then)], otherwise=[Assign() as other]):
+                otherwise = other.value if other.target == target else None
+            case Assign(target=LValue() as target, value=value):
+                match bare(value):
+                    case Conditional(test=test, then=then, otherwise=otherwise):
+                        pass
+                    case _:
+                        return
+            case _:
+                return
+        if named_scalar(target) is None or not isinstance(otherwise, Expr):
+            return
+        compare = bare(test)
+        stepped, constant = (then, otherwise) if constant_of(otherwise) is not None else (otherwise, then)
+        back = constant_of(constant)
+        if not isinstance(compare, Compare) or back is None:
+            return
+        more = _WHERE_TRUE if stepped is then else _WHERE_FALSE
+        if _is_step(target, stepped) and (high := _highest(compare, target, more)) is not None:
+            self._steps[id(stepped)] = _Reach(high, compare)
+        elif _is_step(target, stepped, "-") and _stops_at_0(compare, target, goes_on=stepped is then):
+            self._steps[id(stepped)] = _Reach(0, None)
+            self._steps[id(constant)] = _Reach(back, compare)
+        else:
+            return
+        self._ends.add(id(compare))
 
     def _take(self, function: Function, s: Stmt) -> None:
         match s:
@@ -148,7 +183,8 @@ class _Indices:
                         continue
                     if texts is None:
                         texts = _tested_texts(function)
-                    if not (isinstance(reach.by, Binary) and reach.by.op == "&") or not texts & _read(index.expr):
+                    masked = isinstance(reach.by, Binary) and reach.by.op in ("&", ">>")
+                    if not masked or not texts & _read(index.expr):
                         self._report(function, s, lvalue, index.expr, index.bound, reach, report)
 
     @staticmethod
@@ -182,6 +218,13 @@ class _Indices:
                 return _Reach(min(count - 1, interval(e, {})[1]), e)
             case Binary(op="&", left=left, right=Const(value=int(mask))) if mask > 0 and not mask & mask + 1:
                 return _Reach(min(mask, _most(left)), e)
+            case Binary(op=">>", left=left, right=Const(value=int(count))) if count > 0:
+                match bare(left):
+                    case Binary(op="&", right=Const(value=int(mask))) if mask > 0:
+                        field = mask >> count
+                        return _Reach(min(field, _most(left) >> count), e) if not field & field + 1 else None
+            case Conditional(test=test, then=then, otherwise=otherwise) if id(bare(test)) in self._ends:
+                return self._furthest([then, otherwise], depth)
             case Load(lvalue=lvalue) if (scalar := named_scalar(lvalue)) is not None and scalar not in self._tested:
                 return self._furthest(self._given.get(scalar, []), depth + 1)
             case Call(function=function):
@@ -194,10 +237,10 @@ class _Indices:
         return max(known, key=lambda reach: reach.high) if known and len(known) == len(values) else None
 
 
-def _is_step(target: LValue, value: Expr) -> bool:
-    """Whether a value is that of a named scalar and 1 more.  (`n++` keeps the old value in a temporary.)"""
+def _is_step(target: LValue, value: Expr, op: str = "+") -> bool:
+    """Whether a value is that of a named scalar and 1 more (`op`: or 1 less).  (`n++` keeps it in a temporary.)"""
     match bare(value):
-        case Binary(op="+", left=left, right=right) if constant_of(right) == 1:
+        case Binary(op=found, left=left, right=right) if found == op and constant_of(right) == 1:
             old = bare(left)
         case _:
             return False
@@ -209,12 +252,27 @@ def _is_step(target: LValue, value: Expr) -> bool:
     return old.lvalue == target
 
 
-def _highest(test: Compare, target: LValue) -> int | None:
+#: How the largest value of a count follows from the constant of a test: what the test adds to it, by its operator.
+_BEHIND: Final = {">": 0, ">=": -1, "==": -1}  # the count is stepped, and where the test is true it is set back
+_WHERE_TRUE: Final = {"<": 0, "<=": 1, "!=": 0}  # the count is stepped where the test is true
+_WHERE_FALSE: Final = {">=": 0, ">": 1, "==": 0}
+
+
+def _highest(test: Compare, target: LValue, more: Mapping[str, int]) -> int | None:
     """The largest value of a count that a test of it lets through; None: the test is about something else."""
     left, limit = bare(test.left), constant_of(test.right)
-    if not isinstance(left, Load) or left.lvalue != target or limit is None:
+    if not isinstance(left, Load) or left.lvalue != target or limit is None or test.op not in more:
         return None
-    return {">": int(limit), ">=": int(limit) - 1, "==": int(limit) - 1}.get(test.op)
+    return int(limit) + more[test.op]
+
+
+def _stops_at_0(test: Compare, target: LValue, *, goes_on: bool) -> bool:
+    """Whether a test ends a count down at 0.  `goes_on`: where it is true, the count goes on."""
+    left, limit = bare(test.left), constant_of(test.right)
+    if not isinstance(left, Load) or left.lvalue != target:
+        return False
+    ends = {(">", 0), ("!=", 0), (">=", 1)} if goes_on else {("<=", 0), ("==", 0), ("<", 1)}
+    return (test.op, limit) in ends
 
 
 def _sets_back(s: Stmt, target: LValue) -> bool:

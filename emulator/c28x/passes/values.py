@@ -141,6 +141,7 @@ class ValueChecks(ConstantChecks):
         #: The values of counters after their loops.
         self.ends = CounterEndValues(function.body)
         self.doubtful = maybe_negative(function)
+        self.fixed = fixed_locals(function)
         #: Identities of results that are cast to their own type: a wrap is intended.
         self.meant: set[int] = set()
         #: Identities of assignments in a branch to objects that the other branch assigns too: `x = x` is allowed there.
@@ -387,7 +388,7 @@ class ValueChecks(ConstantChecks):
                     self.given(argument)
                 if isinstance(e, Call):
                     check_format(e, self.to.double, self.report_here)
-                    check_blocks(e, self.report_here)
+                    check_blocks(e, self.report_here, self.fixed)
             case Const():
                 self.folded(e)
             case Convert(ctype=FloatType(), operand=Binary(op="/", right=Const(value=int(b))) as quotient):
@@ -652,6 +653,21 @@ def maybe_negative(function: Function) -> set[Variable]:
         if found == doubtful:
             return locals_ & doubtful
         doubtful = found
+
+
+def fixed_locals(function: Function) -> dict[Variable, Const]:
+    """The locals to which one statement gives a constant, and no other statement anything."""
+    given: dict[Variable, list[Expr | None]] = {}
+    for s in statements(function.body):
+        match s:
+            case Assign(target=LValue(root=Variable(kind="local", in_memory=False) as variable), value=value):
+                given.setdefault(variable, []).append(value)
+            case Declare(variable=variable, value=Expr() as value) if not variable.in_memory:
+                given.setdefault(variable, []).append(value)
+            case For(counter=variable):
+                given.setdefault(variable, []).append(None)
+    once = {variable: bare(v[0]) for variable, v in given.items() if len(v) == 1 and v[0] is not None}
+    return {variable: value for variable, value in once.items() if isinstance(value, Const)}
 
 
 def negative(e: Expr, doubtful: set[Variable]) -> bool:

@@ -19,6 +19,7 @@ from tests.emulator.c28x.specimens import (
     driver_arithmetic,
     driver_control,
     driver_data,
+    idioms,
     indices,
     integers,
     octets,
@@ -33,7 +34,7 @@ from tests.emulator.c28x.specimens import (
 from tests.emulator.c28x.workshop import HEADER, Workshop
 
 _PAIRS = (
-    uninitialised, indices, pointers, integers, octets, divisions, counters, regulators,
+    uninitialised, indices, pointers, integers, octets, divisions, counters, idioms, regulators,
     static_flow, static_names, static_values, static_waiting,
 )  # fmt: skip
 _DRIVERS = (

@@ -27,6 +27,9 @@ def told(body: str) -> bool:
         "if (70000UL >= u) period = (Uint16)u;",
         "if (n >= 0 && n <= 40000L) angle = (int16)n;",
         "if (wide < 100000L) period = (Uint16)wide; else period = 1;",
+        "if (n < 0 || n > 99999L) return; period = (Uint16)n;",
+        "if (!(n <= 99999L)) { in = 1; return; } in = 2; Set((Uint16)n);",
+        "while (in) { if (u >= 70000UL) break; period = (Uint16)u; }",
     ],
 )
 def test_a_limit_above_what_the_type_holds_is_told(body: str) -> None:
@@ -50,6 +53,12 @@ def test_a_limit_above_what_the_type_holds_is_told(body: str) -> None:
         "if (n <= 100000L) period = (Uint16)(n / 10);",
         "if (n <= 100000L) period = (Uint16)(n & 0xFF);",
         "if (n > 100000L) return; period = (Uint16)u;",
+        "if (n < 0 || n > 65535L) return; period = (Uint16)n;",
+        "if (n > 99999L) return; if (n > 60000L) return; period = (Uint16)n;",
+        "if (n > 99999L) return; period = (Uint16)n; in = (Uint16)(n >> 16);",
+        "in = n / 65536L; if (n > 99999L) return; period = (Uint16)n;",
+        "if (n < 0 && n > 99999L) return; period = (Uint16)n;",
+        "if (n > 99999L) in = 1; period = (Uint16)n;",  # it goes on
     ],
 )
 def test_what_the_type_holds_or_the_branch_divides_is_silent(body: str) -> None:

@@ -38,6 +38,12 @@ def told(body: str, more: str = "") -> bool:
         ("return row[at];", "void Next(void) { at = at + 1; if (at >= 6) at = 0; }"),
         ("return row[at];", "void Next(void) { at++; if (at == 6) at = 0; }"),
         ("return row[ring.at];", "void Next(void) { ring.at++; in = 2; if (ring.at > 5) ring.at = 0; }"),
+        ("return row[at];", "void Next(void) { at = at < 5 ? at + 1 : 0; }"),
+        ("return row[at];", "void Next(void) { at = at == 5 ? 0 : at + 1; }"),
+        ("return row[ring.at];", "void Next(void) { if (ring.at >= 5) ring.at = 0; else ring.at++; }"),
+        ("return row[at];", "void Next(void) { if (at == 0) at = 5; else at--; }"),
+        ("return row[at];", "void Next(void) { at = at > 0 ? at - 1 : 5; }"),
+        ("return row[(n & 0x70) >> 4];", ""),
         ("return row[at] + (at == place);", "void Next(void) { rows[at++] = in; if (at > 5) at = 0; }"),
     ],
 )
@@ -49,6 +55,15 @@ def test_an_index_that_may_be_too_high_is_told(body: str, more: str) -> None:
     ("body", "more"),
     [
         ("return row[n % 5];", ""),
+        ("return row[at];", "void Next(void) { at = at < 4 ? at + 1 : 0; }"),
+        ("return row[at];", "void Next(void) { at = at >= 4 ? 0 : at + 1; }"),
+        ("return row[at];", "void Next(void) { if (at == 4) at = 0; else at++; }"),
+        ("return row[at];", "void Next(void) { if (at == 0) at = 4; else at--; }"),
+        ("return row[at - 1];", "void Next(void) { at = at > 1 ? at - 1 : 5; }"),
+        ("return row[at];", "void Next(void) { if (at < 5) { rows[at] = row[at]; at++; } else at = 0; }"),
+        ("return at == 5 ? 0 : row[at];", "void Next(void) { at = at < 5 ? at + 1 : 0; }"),
+        ("return row[(n & 0x50) >> 4];", ""),  # a mask with gaps
+        ("if ((n & 0x70) > 0x40) return 0; return row[(n & 0x70) >> 4];", ""),
         ("return table[n & 3][n % 3];", ""),
         ("return table[n % (sizeof table / sizeof table[0])][0];", ""),
         ("return row[n >> 14 & 7];", ""),  # two bits
