@@ -247,6 +247,10 @@ def write(place: Pointer, value: Any) -> None:
             Array(place)[:] = value
         else:
             raise TypeError(f"{value!r} is no {target}: give its {target.length} values")
+    elif place.obj is not None and place.obj.readonly:  # what the chip cannot change, a programmer of its flash can
+        place.obj.readonly = False
+        place.store(c_value(value, target, memory))
+        place.obj.readonly = True
     else:
         place.store(c_value(value, target, memory))
 

@@ -193,8 +193,8 @@ time since a stamp is below 0.
 
 A word that came in octets (`int32_t rpm = data[0] | data[1] << 8;`), from a buffer or a union has no sign either. It is
 reported if its highest bit is set, and the object that takes it, also as the result of a function, gets nothing else
-and is compared by order with a number below -1 (`rpm >= -3000`): so negative numbers are expected, and none can come. The
-same holds for an octet that a wider object takes, and for two sides of a comparison by order that both get signed
+and is compared by order with a number below -1 (`rpm >= -3000`): so negative numbers are expected, and none can come.
+The same holds for an octet that a wider object takes, and for two sides of a comparison by order that both get signed
 numbers only by casts to unsigned (`words[n] > (Uint16) limit`).
 
 So is a word of three octets that becomes a signed number of 32 bits (`(int32) (high << 16 | middle << 8 | low)`), if it
