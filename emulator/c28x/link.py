@@ -161,7 +161,7 @@ class Linked:
             raise SourceError.at(where, f"{message}, RAM and flash of the chip {MEMORY_WORDS}")
         memory, at = self.runtime.memory, variable.address
         obj = memory.place(variable.declaration) if at is None else memory.name_address(variable.declaration, at)
-        # A constant is in flash.  (Its address is that of its place among the other objects: see `place`.)
+        # A constant is in flash.  CHOICE: its address is among those of the other objects, in the order of the source.
         obj.readonly = variable.constant and not variable.volatile and variable.initial is not None
         self.objects[variable.declaration.path] = obj
         name = object_name(variable)

@@ -87,7 +87,9 @@ def _extended(term: Expr, low: int, high: int) -> bool:
 
     A number that is large enough may have that bit, so that an OR with a constant only makes sure of it.
     """
-    number = bare(bare(term).left) if low and isinstance(bare(term), Binary) else bare(term)
+    number = bare(term)
+    if low and isinstance(number, Binary):
+        number = bare(number.left)
     ctype = number.ctype
     return isinstance(ctype, IntType) and ctype.signed and ctype.bits + low <= high and bounds_of(number)[0] < 0
 
