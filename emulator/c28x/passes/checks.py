@@ -96,14 +96,13 @@ def check(
     stamps_of_whole.suspicions()
     states = States(whole, entries, stamps_of_whole)
     states.check(of_whole)
-    for module, report in of_whole.items():
-        for function, test, state, label, why in unreachable_exits(states, module):
-            report.report(
-                function, test.where, "state-stuck",
-                f"{function.path} never leaves {state.declaration.name} = {label} by itself: {source_text(test)} is "
-                f"never true, for {why}",
-                object=state.declaration.path, declaration=state.declaration,
-            )  # fmt: skip
+    for module, function, test, state, label, why in unreachable_exits(states, whole):
+        of_whole[module].report(
+            function, test.where, "state-stuck",
+            f"{function.path} never leaves {state.declaration.name} = {label} by itself: {source_text(test)} is "
+            f"never true, for {why}",
+            object=state.declaration.path, declaration=state.declaration,
+        )  # fmt: skip
     check_begun_again(whole, of_whole)
     check_one_sided(whole, of_whole)
     check_never_back(whole, of_whole)

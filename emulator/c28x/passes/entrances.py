@@ -108,6 +108,14 @@ class _EntranceCheck:
             body = loop.body if function is main and loop is not None else function.body
             for s, around in _with_blocks(body, ()):
                 self._look(function, s, around, entrances)
+        every = [(f, s) for f in functions for s in statements(f.body)]
+        self._counted = {place for _, s in every if (place := _counted(s)) is not None}
+        self._stamped = {place for _, s in every if (place := _stamped(s, self._counted)) is not None}
+        #: Integer -> the statements that set it, and do not count it, while the program is under way.
+        self._set: dict[Place, list[Stmt]] = {}
+        for f, s in every:
+            if f in self._later and (place := _written(s)) is not None and _counted(s) is None:
+                self._set.setdefault(place, []).append(s)
         asked = {state for state, _ in self._handled}
         self._entrances = [each for each in entrances if each.state in asked and each.function in self._later]
 
@@ -205,10 +213,8 @@ class _EntranceCheck:
         for s in self._in_state(entrance):
             if isinstance(s, If):
                 found.update(_compared_times(s))
-        counted = {place for f in self._functions for s in statements(f.body) if (place := _counted(s)) is not None}
-        stamps = {place for f in self._functions for s in statements(f.body) if (place := _stamped(s, counted))}
         for place, text in found.items():
-            if place != entrance.state and (place in counted or place in stamps):
+            if place != entrance.state and (place in self._counted or place in self._stamped):
                 yield place, text
 
     def _begins(self, entrance: _Entrance, time: Place) -> bool:
@@ -218,12 +224,8 @@ class _EntranceCheck:
     def _is_begun(self, entrance: _Entrance, time: Place) -> bool:
         """Whether a time is set on the way, in the state, or anywhere but at entrances."""
         at_entrances = {id(s) for each in self._entrances if each.state == entrance.state for s in each.block}
-        for function in self._functions:
-            if function not in self._later:
-                continue
-            for s in statements(function.body):
-                if _written(s) == time and _counted(s) is None and id(s) not in at_entrances:
-                    return True
+        if any(id(s) not in at_entrances for s in self._set.get(time, ())):
+            return True
         way = self._on_the_way(entrance.function, entrance.around)
         return any(_written(s) == time and _counted(s) is None for s in way)
 

@@ -44,10 +44,12 @@ from emulator.c28x.tree import (
 from emulator.c28x.tree_queries import addressed, assigned_variables, bare, blocks, statements, within
 
 
-def unreachable_exits(states: States, module: Module) -> Iterator[tuple[Function, Compare, Variable, int, str]]:
+def unreachable_exits(
+    states: States, modules: Iterable[Module]
+) -> Iterator[tuple[Module, Function, Compare, Variable, int, str]]:  # fmt: skip
     """States that are never left, each with its function, the test of the exit, the object, its value, and why."""
     future = _Future(states)
-    for f in module.functions:
+    for owner, f in ((module, f) for module in modules for f in module.functions):
         taken = addressed(within(f.body))
         for body in (f.body, *(block for s in statements(f.body) for block in blocks(s))):
             for n, s in enumerate(body):
@@ -57,7 +59,7 @@ def unreachable_exits(states: States, module: Module) -> Iterator[tuple[Function
                         if clock:
                             for test, state, label in future.behind(body[n + 1 :], now, clock, taken):
                                 why = f"it was read from {_clock_name(clock)} before {now.declaration.name}"
-                                yield f, test, state, label, why
+                                yield owner, f, test, state, label, why
 
 
 class _Future:

@@ -33,7 +33,7 @@ from emulator.c28x.tree import (
     Stmt,
     Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import assigned, fixed_words, own_nodes, parts, statements
+from emulator.c28x.tree_queries import assigned, fixed_words, own_nodes, parts, statements, variables, within
 
 #: A member: its offset in words, and its bits if it is a bit-field.
 _Member = tuple[int, Bits | None]
@@ -57,7 +57,10 @@ def with_members(modules: Iterable[Module]) -> dict[Module, Module]:
     for module in modules:
         other = copy(module)
         rewriting = _Rewriting(split)
-        other.functions = [replace(f, body=rewriting.body(f.body)) for f in module.functions]
+        other.functions = [
+            f if split.keys().isdisjoint(variables(within(f.body))) else replace(f, body=rewriting.body(f.body))
+            for f in module.functions
+        ]  # fmt: skip
         other.variables = [v for variable in module.variables for v in _instead(variable, split)]
         found[module] = other
     return found
