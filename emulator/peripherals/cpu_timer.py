@@ -224,11 +224,14 @@ class CpuTimer:
         self._next_check = None
 
     def _write_TCR(self, word: int, lanes: int = ALL) -> None:
-        self._clock.cancel(self._next_check)
-        self._next_check = None
         self._sync()
+        running = self._running()
         self._tcr.store(word, lanes & LOW)
-        self._next_underflow = None
+        if word & TRB or not self._tcr.value & TIF or self._running() is not running:
+            # Else TIF is still the one that was seen: `TCR &= ~TIF` clears nothing.
+            self._clock.cancel(self._next_check)
+            self._next_check = None
+            self._next_underflow = None
         if word & TRB:
             self._tim.value = self._prd.value
             self._psc = self._reload()
