@@ -27,6 +27,7 @@ from hil.drivers.roles import Roles
 from hil.drivers.sources import ArrivalWatch
 from hil.drivers.stale import AgeWatch, watched
 from hil.drivers.stated_rates import wrong_rates
+from hil.drivers.thrown_away import thrown_away
 from hil.drivers.units import misread_counts
 from hil.drivers.used_sources import buses, cut_off, receives_characters, silent_sources
 from hil.drivers.waiting import (
@@ -258,9 +259,10 @@ def _run(
     gyro = mentions_gyro(sorted(build.files))
     chosen = [image.board.register("InputXbarRegs", f"INPUT{n}SELECT").value for n in INPUT_TRIPINS]
     trips = [image.board.pins[pin] for pin in chosen if pin < len(image.board.pins)]
+    thrown = thrown_away(build.modules) if any(f.rule == "data-lost" for f in found) else frozenset()
     rated = tuple(
         replace(finding, how="generated")
-        if alone
+        if alone or (finding.rule == "data-lost" and finding.object in thrown)
         or (waits_for_others(finding, roles, ended_parties) and not waits_for_tasks(finding, roles))
         or (not board_named and (of_unused_part(finding, starts, selects, gyro=gyro) or of_open_trip(finding, trips)))
         else finding
