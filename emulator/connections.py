@@ -122,6 +122,7 @@ class Connections:
         blocks = (*self._chip.blocks.values(), self._chip.vectors.registers)
         self._source = RegisterWrites(modules, blocks)
         self._adc_triggers()
+        self._polled_conversions()
         self._adc_inputs()
         self._interrupts()
         self._kept_out()
@@ -234,10 +235,12 @@ class Connections:
                 if self._value(f"{block}.ADCINTSOCSEL{n // 8 + 1}", f"SOC{n}"):
                     continue  # an ADCINT triggers it instead
                 register = f"{block}.ADCSOC{n}CTL"
+                trigsel = self._value(register, "TRIGSEL")
                 place = self._wanting(register, "TRIGSEL")
+                if place is None and trigsel:  # a value that the source does not show
+                    place = self._source.last(*_split(register))
                 if place is None:
                     continue
-                trigsel = self._value(register, "TRIGSEL")
                 trigger, missing = self._no_trigger(trigsel)
                 if missing and missing.field in ("SOCAEN", "SOCBEN") and self._other_soc_is_unused(trigsel):
                     other = "SOCB" if trigger.startswith("SOCA") else "SOCA"
@@ -249,6 +252,23 @@ class Connections:
                 if missing:
                     waits = f"{register}.TRIGSEL waits for {trigger}, which never occurs"
                     self._report(place, waits, missing, f"{register}.TRIGSEL")
+
+    def _polled_conversions(self) -> None:
+        """Flags of an ADC that the program polls, and that nothing can set: their SOC is never started."""
+        for letter, lines in ADC_PIE.items():
+            block, register = f"Adc{letter.lower()}Regs", "ADCINTFLG"
+            selects = {k: f"{block}.ADCINTSEL{'1N2' if k < 3 else '3N4'}" for k in range(1, 5)}
+            enabled = [k for k, select in selects.items() if self._value(select, f"INT{k}E")]
+            for k in enabled:
+                # A read of the whole register means the flag if it is the only one that is enabled.
+                read = {(block, register, f"ADCINT{k}"), *([(block, register, "")] if enabled == [k] else ())}
+                polled = self._source.reads.get((block, register))
+                if not polled or read.isdisjoint(self._source.read_fields) or self._chip.pie.enabled(*lines[k - 1]):
+                    continue
+                missing = self._no_conversion(letter, k)
+                if missing is not None:
+                    flag = f"{block}.{register}.ADCINT{k}"
+                    self._report(polled[-1], f"{flag} is polled and never set", missing, flag)
 
     def _other_soc_is_unused(self, trigsel: int) -> bool:
         """Whether the ePWM's other SOC occurs and starts nothing: then the TRIGSEL probably means that one."""
@@ -1391,17 +1411,18 @@ class Connections:
     def _compares_for_nobody(self) -> None:
         """Computed values of a compare that switches nothing.
 
-        The other compare switches the output instead, or its actions only set it, or only clear it.
+        The other compare switches the output instead, or its actions only set it, or only clear it.  Or no output
+        switches at it, and one does at the other compare, which only the start-up sets.
         """
         if any(self._writes(f"EPwm{n}Regs.EPWMXLINK") for n in range(1, EPWM_COUNT + 1)):
             return  # a value written to one ePWM also goes to another
-        for _, name, compare, _ in self._epwms():
+        for n, name, compare, _ in self._epwms():
             x, other = compare[-1], "AB"[compare[-1] == "A"]
             action = f"{name}.AQCTL{x}"
             computed = any(write.values is None for write in self._source.writes[name, compare])
             crossed = any(self._value(action, f"C{other}{way}") for way in "UD")
             paired = self._value(f"{name}.DBCTL", "OUT_MODE")
-            constant = self._constant_output(name, x)
+            constant = self._constant_output(name, x) or self._left_at_start(n, compare)
             if not computed or not (crossed or constant) or paired or (name, compare) in self._source.reads:
                 continue
             choices = {choice for choice, (of, _) in COMPARES.items() if of == compare}
@@ -1418,6 +1439,17 @@ class Connections:
                 self._report(
                     self._source.last(name, compare), f"the values of {name}.{compare} change nothing", missing, action
                 )  # fmt: skip
+
+    def _left_at_start(self, n: int, compare: str) -> str:
+        """Why nothing switches at a compare: an output does at the other one, which keeps the value of the start-up."""
+        name, other = f"EPwm{n}Regs", "CMPB" if compare == "CMPA" else "CMPA"
+        events = [f"C{other[-1]}{way}" for way in "UD"]
+        switched = [action for o in "AB" for event in events if self._value(action := f"{name}.AQCTL{o}", event)]
+        if not switched or not self.started_up or not self._chip.epwm[n].acts_on_pin or (
+            self._source.later(name, other)
+        ):  # fmt: skip
+            return ""
+        return f"{switched[0]} switches at {other}, which keeps the value that the start-up gives it"
 
     def _compares_never_set(self) -> None:
         """Outputs that switch at a compare which no statement writes, where the program writes the other compare."""

@@ -2,23 +2,22 @@
 
 Only functions that can run count: `main`, interrupt routines, and all functions that these call or name (a task, an
 entry of a table).  A parameter has the values that its calls pass.  A pointer to a block points to the blocks that the
-calls name, if it is a parameter, or those that it is set to, as a local or in a table that nobody changes.
+program puts there (`object_values.py`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from functools import reduce
+from functools import cached_property, reduce
 from itertools import product
 from operator import or_
 from typing import Final
 
-from emulator.c28x.ctypes import CType, IntType
+from emulator.c28x.ctypes import BlockType, CType, IntType, PointerType
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module, library_headers
 from emulator.c28x.tree import (
-    AddressOf,
     Assign,
     Binary,
     Call,
@@ -26,13 +25,12 @@ from emulator.c28x.tree import (
     Conditional,
     Const,
     Convert,
-    CopyStruct,
-    Declare,
     Expr,
     Function,
     FunctionRef,
     Load,
     LValue,
+    PointerAdd,
     RegisterAddress,
     RegisterAt,
     RegisterLoad,
@@ -43,8 +41,9 @@ from emulator.c28x.tree import (
     Variable,
     Where,
 )
-from emulator.c28x.tree_queries import assigned, bare, blocks, last_loop, own_nodes, parts, statements, within
+from emulator.c28x.tree_queries import bare, blocks, last_loop, own_nodes, parts, statements, within
 from emulator.chip import ECAP_INPUT, XINT_INPUT
+from emulator.object_values import ObjectValues
 from emulator.peripherals.dma import CHANNELS, CHINTE, CONTINUOUS, ONESHOT, PERINTE, RUN
 from emulator.registers.cell import Cell
 from emulator.registers.core import Block
@@ -128,23 +127,17 @@ class RegisterWrites:
         self.read_fields: set[tuple[str, str, str]] = set()
         #: Function -> the places of its calls, with the arguments.
         self.calls: dict[str, list[tuple[Place, list[Expr]]]] = {}
-        modules = list(modules)
+        modules, register_blocks = list(modules), list(register_blocks)
         own = {f.path: f for module in modules for f in module.functions}
         reached = self._reached(modules, own)
         library = _of_libraries(modules)
         #: The statements that every start-up runs and that cannot run after it.
-        self._over = self._of_start_up(own) - self._behind_start_up(modules, own)
+        self._later = self._behind_start_up(modules, own)
+        self._over = self._of_start_up(own) - self._later
         #: Functions that others call.
         self._called: set[str] = set()
-        self._given: dict[Variable, list[Expr]] = {}
-        self._free: set[Variable] = set()
-        #: What locals are set to.  Objects at file scope that the program stores to, or takes the address of.
-        self._set_to: dict[Variable, list[Expr]] = {}
-        self._stored: set[Variable] = set()
-        for f in own.values():
-            self._read_stores(f)
-        #: Parameters that their function assigns to.
-        self._changed = {v for f in reached for s in statements(f.body) if (v := assigned(s)) is not None}
+        self._objects = ObjectValues(own.values(), reached)
+        self._register_blocks = register_blocks
         for f in reached:
             self._read_calls(f)
         for f in reached:
@@ -153,6 +146,7 @@ class RegisterWrites:
         by_address = list(ByAddress(own, library, self).accesses(entries))
         if by_address:
             self._read_by_address(by_address, register_blocks)
+        self._read_unclear(modules, reached, register_blocks)
         for name, fields in _FUNCTIONS.items():
             for place, arguments in self.calls.get(name, ()):
                 for (block, register, mask), what in fields:
@@ -164,6 +158,14 @@ class RegisterWrites:
                         self.writes.setdefault((block, register), []).append(Write(mask, values, place))
                     else:
                         self.pointed.setdefault(register, []).append(Write(mask, values, place))
+
+    @cached_property
+    def _addresses(self) -> dict[tuple[str, str], int]:
+        """(block, register) -> its address; without a register that of the block."""
+        return {
+            (block.name, name): address for block in self._register_blocks
+            for name, address in (("", block.base), *((cell.name, cell.address) for cell in block))
+        }  # fmt: skip
 
     def _reached(self, modules: list[Module], own: dict[str, Function]) -> list[Function]:
         """The functions that can run, in the order of the source."""
@@ -225,32 +227,14 @@ class RegisterWrites:
                 waiting += [own[path] for path in called if path in own and path not in seen]
         return found
 
-    def _read_stores(self, f: Function) -> None:
-        for s in statements(f.body):
-            match s:
-                case Declare(variable=variable, value=Expr() as value):
-                    self._set_to.setdefault(variable, []).append(value)
-                case Assign(target=LValue(root=Variable() as variable), value=value):
-                    self._set_to.setdefault(variable, []).append(value)
-                    self._stored.add(variable)
-                case CopyStruct(target=LValue(root=Variable() as variable)):
-                    self._stored.add(variable)
-            for part in own_nodes(s):
-                if isinstance(part, AddressOf) and isinstance(part.lvalue.root, Variable):
-                    self._stored.add(part.lvalue.root)
-
     def _read_calls(self, f: Function) -> None:
         for s in statements(f.body):
             for part in own_nodes(s):
-                if isinstance(part, FunctionRef):
-                    self._free |= set(part.function.parameters)
-                elif isinstance(part, Call):
+                if isinstance(part, Call):
                     where = part.where if part.where.line else s.where
                     if part.function is not f:
                         self._called.add(part.function.path)
                     self.calls.setdefault(part.function.name, []).append((_place(f, where), part.arguments))
-                    for parameter, value in zip(part.function.parameters, part.arguments, strict=False):
-                        self._given.setdefault(parameter, []).append(value)
 
     def _read_accesses(self, f: Function, of_library: bool) -> None:
         for s in statements(f.body):
@@ -274,31 +258,7 @@ class RegisterWrites:
 
     def _blocks(self, register: RegisterRef | RegisterAt) -> list[str] | None:
         """The blocks whose register an access can mean; None if a pointer can point to any."""
-        return [register.block] if isinstance(register, RegisterRef) else self._pointed_at(register.block)
-
-    def _pointed_at(self, pointer: Expr, deep: int = 4) -> list[str] | None:
-        """The blocks that a pointer can point to, from the calls that pass it; None if that is not known."""
-        pointer = bare(pointer)
-        if isinstance(pointer, RegisterAddress):
-            return None if pointer.register else [pointer.block]
-        values: list[Expr] = []
-        match pointer:
-            case Load(lvalue=LValue(root=Variable(kind="parameter") as variable, indices=[])):
-                if variable not in self._free and variable not in self._changed and not variable.in_memory:
-                    values = self._given.get(variable, [])
-            case Load(lvalue=LValue(root=Variable(kind="local") as variable, indices=[])):
-                if not variable.in_memory:
-                    values = self._set_to.get(variable, [])
-            case Load(lvalue=LValue(root=Variable(kind="global", initial=list() as initial) as variable) as lvalue):
-                if variable not in self._stored:
-                    values = [initial[at] for at in _leaves(lvalue, len(initial))]
-        found: list[str] = []
-        for value in values if deep else ():
-            named = self._pointed_at(value, deep - 1)
-            if named is None:
-                return None
-            found += [block for block in named if block not in found]
-        return found or None
+        return [register.block] if isinstance(register, RegisterRef) else self._objects.blocks(register.block)
 
     def _read_by_address(self, accesses: Iterable[AddressedAccess], register_blocks: Iterable[Block]) -> None:
         #: Word address -> the register there, and by how many bits the word stands up in it.
@@ -331,6 +291,36 @@ class RegisterWrites:
                         self.pointed.setdefault(cell.name, []).append(write.moved(up, cell.bits))
             elif access.write:
                 self.anywhere.append(unknown)
+
+    def _read_unclear(
+        self, modules: list[Module], reached: list[Function], register_blocks: Iterable[Block]
+    ) -> None:  # fmt: skip
+        """Writes through pointers of which nothing is known: to registers behind any whose address is taken."""
+        initial = [value for module in modules for variable in module.variables for value in variable.initial or ()]
+        nodes = [*within(s for f in reached for s in f.body), *(part for value in initial for part in parts(value))]
+        taken = set[int]()
+        of_any = False  # an address in a block that is not known
+        for part in nodes:
+            if isinstance(part, PointerAdd) or (isinstance(part, RegisterAddress) and part.register):
+                values = self.values(part)
+                taken |= values or set()
+                of_any = of_any or (values is None and _in_block(part))
+        behind = [
+            (block.name, cell.name) for block in register_blocks for cell in block
+            if any(block.base <= address < cell.address + cell.bits // 16 for address in taken)
+        ]  # fmt: skip
+        for f in reached if behind or of_any else ():
+            for s in statements(f.body):
+                if not isinstance(s, Assign) or not isinstance(s.target, LValue) or not isinstance(s.target.root, Expr):
+                    continue
+                pointer = s.target.root
+                if isinstance(bare(pointer).ctype, IntType) or self.values(pointer) or self._objects.known(pointer):
+                    continue
+                unknown = Write(-1, None, _place(f, s.where))
+                if of_any:
+                    self.anywhere.append(unknown)
+                for register in behind:
+                    self.from_here_on.setdefault(register, []).append(unknown)
 
     def _words(
         self, access: AddressedAccess, base: int, at: dict[int, tuple[Cell, int]]
@@ -392,6 +382,14 @@ class RegisterWrites:
         match e:
             case Const(value=int() as value):
                 return frozenset((value,))
+            case RegisterAddress(block=block, register=register):
+                address = self._addresses.get((block, register))
+                return None if address is None else frozenset((address,))
+            case PointerAdd(pointer=pointer, index=index, negative=False, ctype=PointerType(target=target)):
+                one, other = self.values(pointer, known, deep), self.values(index, known, deep)
+                if one is None or other is None or len(one) * len(other) > _MOST:
+                    return None
+                return frozenset(a + b * target.words for a, b in product(one, other))
             case Convert(operand=operand):
                 return _of_type(e.ctype, self.values(operand, known, deep))
             case Unary(op="~", operand=operand):
@@ -411,17 +409,12 @@ class RegisterWrites:
                 if variable.ctype == e.ctype and not variable.in_memory:
                     return known[variable]
             case Load(lvalue=LValue(root=Variable(constant=True, initial=list() as initial), bits=None) as lvalue):
-                return self._of_table(lvalue, initial, known, deep)
-            case Load(lvalue=LValue(root=Variable(kind="parameter") as variable, indices=[])) if deep:
-                if variable in self._free or variable.in_memory or variable.ctype != e.ctype:
-                    return None
-                found: set[int] = set()
-                for given in self._given.get(variable, ()):
-                    values = self.values(given, deep=deep - 1)
-                    if values is None or len(found) > _MOST:
-                        return None
-                    found |= values
-                return frozenset(found) or None
+                chosen = self._of_table(lvalue, initial, known, deep)
+                return self._of_all(self._objects.contents(lvalue) or (), deep) if chosen is None and deep else chosen
+            case Load(lvalue=LValue(root=Expr() | Variable(kind="global"), bits=None) as lvalue) if deep:
+                return self._of_all(self._objects.contents(lvalue) or (), deep)  # constants, and pointers
+            case Load(lvalue=LValue(root=Variable() as variable, indices=[], bits=None)) if deep and variable.plain:
+                return self._of_all(self._objects.of_plain(variable), deep) if variable.ctype == e.ctype else None
         if e.bounds is not None and e.bounds[0] == e.bounds[1]:
             return frozenset((e.bounds[0],))
         return None
@@ -439,6 +432,16 @@ class RegisterWrites:
             if of is None:
                 return None
             found |= of
+        return frozenset(found) or None
+
+    def _of_all(self, expressions: Iterable[Expr], deep: int) -> Values:
+        """The values of all these expressions; None if one of them is unknown, or there is none."""
+        found = set[int]()
+        for one in expressions:
+            values = self.values(one, deep=deep - 1)
+            if values is None or len(found) > _MOST:
+                return None
+            found |= values
         return frozenset(found) or None
 
     def of(self, block: str, register: str, mask: int) -> list[Write]:
@@ -459,6 +462,11 @@ class RegisterWrites:
             for write in (*self.of(block, register, mask), *pointed, *above, *self.anywhere)
             if not again or write.place not in self._over
         )
+
+    def later(self, block: str, register: str) -> bool:
+        """Whether some assignment to a register can run after the start-up."""
+        unclear = self.pointed.get(register) or self.from_here_on.get((block, register)) or self.anywhere
+        return bool(unclear) or any(write.place in self._later for write in self.writes.get((block, register), ()))
 
     def giving(self, block: str, register: str, mask: int, word: int) -> Place | None:
         """The last assignment that can give the bits of `mask` the values that they have in `word`.
@@ -485,12 +493,12 @@ class RegisterWrites:
         return max(at_start or places, key=lambda place: (place.file, place.line), default=None)
 
 
-def _leaves(lvalue: LValue, count: int) -> list[int]:
-    """The scalars of an object with `count` of them that an lvalue can mean, whatever its subscripts are."""
-    found = [lvalue.leaf]
-    for index in lvalue.indices:
-        found = [at for first in found for at in range(first, count, index.leaves)]
-    return found
+def _in_block(e: Expr) -> bool:
+    """Whether an expression is the address of a register in the block that a pointer points to."""
+    if not isinstance(e, PointerAdd):
+        return False
+    pointer = bare(e.pointer).ctype
+    return isinstance(pointer, PointerType) and isinstance(pointer.target, BlockType)
 
 
 def _of_libraries(modules: list[Module]) -> set[str]:

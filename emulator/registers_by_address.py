@@ -1,5 +1,7 @@
 """The registers that a program accesses by a number: `HWREGH(base + ADC_O_CTL1) |= 0x80U`, the way of TI's driverlib.
 
+Or by a pointer to a register, which is a number too: `*ier |= 4`, with `ier = &PieCtrlRegs.PIEIER3.all`.
+
 Which register that is follows from what the calls pass.  So each function is followed for the arguments that it gets,
 beginning with those functions that nobody in the program calls: `main`, interrupt routines, tasks.  The place of an
 access is the statement that decides which register is meant: a call in the user's source, not a line of the library.
@@ -150,10 +152,12 @@ class _FollowedCall:
         self._known: Known = dict(zip(f.parameters, arguments, strict=False))
         #: Variable -> the numbers of the parameters that its value depends on.
         self._from = {parameter: frozenset((n,)) for n, parameter in enumerate(f.parameters)}
-        #: Pointers that a number was converted to.
-        self._numbers: set[Variable] = set()
-        #: What was last assigned to a local, as far as it is known.
-        self._sum_of: dict[Variable, Sums] = {}
+        #: Pointers that a number was converted to, and those to registers, whose addresses are known numbers.
+        self._numbers = {
+            v for v, values in self._known.items() if isinstance(v.ctype, PointerType) and _at_registers(values)
+        }
+        #: What was last assigned to a local or parameter, as far as it is known.
+        self._sum_of: dict[Variable, Sums] = {v: (values, True) for v in self._numbers if (values := self._known[v])}
         self.accesses: AddressedAccesses = []
         self._walk(f.body)
 
@@ -185,7 +189,8 @@ class _FollowedCall:
                         self._known |= dict.fromkeys(changed)
                         self._sum_of = {v: known for v, known in self._sum_of.items() if v not in changed}
                 case While() | For():
-                    self._loop(s)
+                    if isinstance(s, For) or not self._turn_by_turn(s):
+                        self._loop(s)
                 case Return() | Break() | Continue() | Jump():
                     return
 
@@ -229,6 +234,27 @@ class _FollowedCall:
                 self._walk(block)
         # A `break` may have left it in any turn.
         self._known, self._sum_of = self._known | unknown, sums
+
+    def _turn_by_turn(self, s: While) -> bool:
+        """Follow a loop whose test is known before each of a few turns; False: nothing was followed."""
+        changed = assigned_variables([s])
+        if changed.isdisjoint(variables(parts(s.test))):
+            return False
+        before, count = (dict(self._known), dict(self._sum_of)), len(self.accesses)
+        for turn in range(_TURNS + 1):
+            can, may_end = self._taken(s.test) if s.first or turn else (True, False)
+            if not can:
+                # A `break` may have left it in any turn.
+                self._known |= dict.fromkeys(changed)
+                self._sum_of = {v: known for v, known in before[1].items() if v not in changed or _only_stepped(v, s)}
+                return True
+            if may_end:
+                break
+            for block in blocks(s):
+                self._walk(block)
+        self._known, self._sum_of = before
+        del self.accesses[count:]
+        return False
 
     def _taken(self, test: Expr) -> tuple[bool, bool]:
         """Whether a test can be true, and whether it can be false."""
@@ -305,7 +331,7 @@ class _FollowedCall:
             case Load(lvalue=LValue(root=Variable() as variable, indices=[])) if variable in self._numbers:
                 return True
             case e:
-                return isinstance(e.ctype, IntType)
+                return isinstance(e.ctype, IntType) or _at_registers(self._values(pointer))
 
     def _sums(self, e: Expr) -> Sums:
         """The values of an address, or of that part of the sum that is known."""
@@ -321,7 +347,14 @@ class _FollowedCall:
                 return _sum(self._sums(pointer), self._sums(index), e.ctype.target.words)
             case Load(lvalue=LValue(root=Variable(kind="local") as variable, indices=[])):
                 return self._sum_of.get(variable, NOTHING)[0], False
+            case Load(lvalue=LValue(root=Variable() as variable, indices=[])) if variable in self._sum_of:
+                return self._sum_of[variable][0], False
         return frozenset((0,)), False
+
+
+def _at_registers(values: Values) -> bool:
+    """Whether known addresses are those of registers: the source writes no other address of an object as a number."""
+    return values is not None and 0 not in values
 
 
 def _only_stepped(variable: Variable, loop: Stmt) -> bool:

@@ -197,7 +197,8 @@ connections are checked:
 
 * ADC trigger: `TRIGSEL` selects an ePWM whose counter does not count (`TBCLKSYNC`, `CTRMODE`, `TBPRD`), which sends no
   trigger (`SOCAEN`, `SOCAPRD`), or which sends it at a compare value that the counter never reaches. Or it selects a
-  CPU timer that does not run. `INTxSEL` selects a SOC that has no trigger, and no statement starts it.
+  CPU timer that does not run. `INTxSEL` selects a SOC that has no trigger, and no statement starts it, for an
+  interrupt or for a program that polls the flag.
 * Interrupts: `PIEIER` enables an interrupt whose source is not enabled, or an external interrupt whose pin was never
   selected (`INPUTxSELECT`). Or it enables a line without a routine, while another line of the group has a routine and
   is not enabled. Or the interrupt of a routine in the vector table has come, and no statement enables its line. Or
@@ -215,8 +216,9 @@ connections are checked:
   outputs, and one of them has no pin. Its delays are set, and it is bypassed (`OUT_MODE = 0`). A compare value is above
   the period, so the output never changes there (one above the period means 100 % and is right). A compare register is
   never loaded from its shadow (`LOADAMODE = 3`), or its values change nothing, because its output switches at the other
-  compare, or its actions only set the output or only clear it. An output switches at a compare that no statement
-  writes, and the program writes the other one. A trip that the program forces changes no output (`TZA = 3`). A one-shot
+  compare, or its actions only set the output or only clear it, or no output switches at it, while one does at the
+  other compare, which only the start-up sets. An output switches at a compare that no statement writes, and the program
+  writes the other one. A trip that the program forces changes no output (`TZA = 3`). A one-shot
   trip came in the moment when `TZSEL` chose its input, because this was still low (out of reset it is GPIO0), and no
   statement after the start-up clears `OST`.
 * DAC: it gets codes and drives no pin.
@@ -233,9 +235,10 @@ connections are checked:
 * Pins: the program sets and clears a pin that no statement makes an output. The chip itself drives a pin, and the input
   qualification of the pin needs longer pulses.
 
-The check is made at the end of a run. It reports a setting only if no statement of the program could set it. A program
-that starts its timer on an order that did not come in this run is not reported. The start-up runs once: a setting
-that it makes and takes back is missing.
+The check is made at the end of a run. It reports a setting only if no statement of the program could set it, also
+through pointers to registers, to blocks, or to structures that hold these. A program that starts its timer on an order
+that did not come in this run is not reported. The start-up runs once: a setting that it makes and takes back is
+missing.
 
 **Fix:** set the register that the finding names, or remove what waits for the event.
 """,
@@ -474,6 +477,9 @@ A new word arrived while the one before was still waiting, so one of them is los
 * 16 characters came to an SCI FIFO that the program had used and then held in reset (`RXFIFORESET`).
 
 The hardware sets an overflow flag in most of these cases, and the program does not look at it.
+
+A program that only sends on an SPI loses what comes back. If it never reads `SPIRXBUF`, it is not told. If it uses none
+of the words that it reads, the finding of `hil check` is a note.
 
 **Fix:** read in time (interrupt, FIFO), or wait for room (`BUFFULL_FLAG`, `TXRDY`, FIFO level) before a write.
 """,

@@ -113,15 +113,63 @@ class Writer:
         return f"~{one}"
 
 
+#: Two ways to each register: by its block, and by a pointer to it.  A handle holds the first.
+POINTERS = """#include <string.h>
+#include "F28x_Project.h"
+typedef volatile struct EPWM_REGS *Pwm;
+typedef struct { Uint16 number; Pwm r; } Handle;
+static Handle Handles[3] = {{1, &EPwm1Regs}, {2, &EPwm3Regs}, {3, &EPwm5Regs}};
+static Pwm Chosen = &EPwm1Regs;
+static volatile Uint16 *const Table[] = {&EPwm1Regs.TBPRD, &EPwm3Regs.TBPRD, &EPwm5Regs.AQCTLA.all};
+static volatile Uint16 *Kept = &EPwm5Regs.TBPRD;
+static Pwm pick(Uint16 n)
+{
+    switch (n & 3u) { case 0: return &EPwm1Regs; case 1: return &EPwm3Regs; }
+    return n & 4u ? Chosen : &EPwm5Regs;
+}
+static void put(volatile Uint16 *p, Uint16 v) { *p = v; }
+static void set(Handle *h, Uint16 v) { h->r->TBPRD = v; }
+static void give(Handle *h, Pwm r) { h->r = r; }
+static void fill(volatile Uint16 *p, Uint16 n, Uint16 v) { while (n--) *p++ = v; }
+static void all(Pwm *list, Uint16 n, Uint16 v) { Uint16 i; for (i = 0; i < n; i++) list[i]->AQCTLB.all = v; }
+static void any(void *p, Uint16 v) { ((Handle *)p)->r->TBPRD = v; }
+"""
+
+
+def program_with_pointers(rng: random.Random) -> str:
+    """`void main(void)` with random statements that write through pointers, and that set these."""
+    k, v = (lambda: rng.randrange(3)), (lambda: f"{rng.randrange(0x1000)}u")
+    block = lambda: rng.choice((f"pick({v()})", "&EPwm3Regs", "Chosen", f"Handles[{k()}].r", "h->r"))   # noqa: E731
+    handle = lambda: rng.choice((f"&Handles[{k()}]", "h", "&own"))   # noqa: E731
+    register = lambda: rng.choice((f"Table[{k()}]", f"Table[{v()} % i]", "Kept", f"&({block()})->TBPRD"))   # noqa: E731
+    statements = (
+        lambda: f"set({handle()}, {v()});", lambda: f"give({handle()}, {block()});", lambda: f"any({handle()}, {v()});",
+        lambda: f"Chosen = {block()};", lambda: f"({block()})->TBPRD = {v()};", lambda: f"put({register()}, {v()});",
+        lambda: f"Kept = {register()};", lambda: f"*Kept = {v()};", lambda: f"h = &Handles[{k() % 2}]; h++;",
+        lambda: f"Handles[{k()}] = Handles[{k()}];", lambda: f"own = Handles[{k()}];",
+        lambda: f"memcpy(&Handles[{k()}], {handle()}, sizeof(Handle));",
+        lambda: f"fill(&({block()})->AQCTLA.all, {1 + k()}, {v()});",
+        lambda: f"list[0] = {block()}; list[1] = {block()}; all(list, 2, {v()});",
+        lambda: f"for (i = 3; i--; ) set(&Handles[i], {v()}); i = 3;",
+        lambda: f"for (h = Handles; h < Handles + 3; h++) h->r->AQCTLA.all = {v()}; h = &Handles[{k()}];",
+    )  # fmt: skip
+    body = "".join(f"    {rng.choice(statements)()}\n" for _ in range(rng.randint(1, 8)))
+    return (
+        f"{POINTERS}void main(void)\n{{\n    Uint16 i = 3;\n    Handle *h = Handles, own = {{4, &EPwm1Regs}};\n"
+        f"    Pwm list[2];\n{body}}}\n"
+    )
+
+
 def covers(write: Write, word: int, lanes: int) -> bool:
     """Whether an assignment can be the write of `lanes` of `word`: it agrees in those of them that it sets."""
     bits = write.mask & lanes
     return write.values is None or any(value & bits == word & bits for value in write.values)
 
 
-@given(st.integers(0, 2**32))
-def test_each_write_of_a_run_is_one_that_was_foreseen(seed: int) -> None:
-    text = Writer(random.Random(seed)).program()
+@given(st.integers(0, 2**32), st.booleans())
+def test_each_write_of_a_run_is_one_that_was_foreseen(seed: int, by_pointers: bool) -> None:
+    rng = random.Random(seed)
+    text = program_with_pointers(rng) if by_pointers else Writer(rng).program()
     chip = CChip(text)
     blocks = [chip.chip.blocks[f"EPwm{n}Regs"] for n in (1, 3, 5)]
     seen: list[tuple[str, str, int, int]] = []
