@@ -7,7 +7,10 @@
 A flag does not count.  If the routine runs twice before `main` looks, two elements are in the ring and one is taken:
 the other one stays there until the next comes, and from then on the ring is never empty.
 
-Silent if `main` compares the two indices anywhere, or counts what is in the ring: then it can know.
+The test may also be a wait (`while (!arrived) ;`), or lead away (`if (!arrived) continue;`).
+
+Silent if `main` compares the two indices anywhere, or counts what is in the ring: then it can know.  Silent too if the
+routine asks for the flag, and then may wait for `main`, or if `main` sets it itself as long as there is more.
 """
 
 from __future__ import annotations
@@ -29,11 +32,23 @@ from emulator.c28x.tree import (
     If,
     Load,
     LValue,
+    Not,
     Stmt,
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import assigned, bare, below, blocks, last_loop, own_nodes, parts, statements
+from emulator.c28x.tree_queries import (
+    all_blocks,
+    assigned,
+    bare,
+    below,
+    blocks,
+    last_loop,
+    leaves,
+    own_nodes,
+    parts,
+    statements,
+)
 
 
 def check_drained(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
@@ -49,14 +64,17 @@ def check_drained(modules: Iterable[Module], reports: dict[Module, StaticReport]
         return
     outside = [f for f in below([main.path], own) if f not in inside]
     flags = {v for f in inside for s in statements(f.body) if (v := _set(s, others=False)) is not None}
+    flags -= {v for f in outside for s in statements(f.body) if (v := _set(s, others=False)) is not None}
+    flags -= {
+        p.root for f in inside for s in statements(f.body) if isinstance(s, If | While) for p in parts(s.test)
+        if _is_object(p)
+    }  # fmt: skip
     for ring, index in filled:
         if any(_compares(f, index) for f in outside):
             continue
         for function in outside:
-            for s in statements(function.body):
-                if not isinstance(s, If) or (flag := _tested(s.test, flags)) is None:
-                    continue
-                body = list(_once(s.then, own, frozenset({function.path})))
+            for s, flag, behind in _found_set(function, flags):
+                body = list(_once(behind, own, frozenset({function.path})))
                 cleared = any(_set(x, others=True) is flag for x in body)
                 taken = {v for x in body if (v := _stepped(x)) is not None and v is not index}
                 if cleared and any(_reads(x, ring, taken) for x in body):
@@ -68,7 +86,6 @@ def check_drained(modules: Iterable[Module], reports: dict[Module, StaticReport]
                     owners[function].report(
                         function, s.where, "one-for-many", message, object=name.path, declaration=name
                     )  # fmt: skip
-
 
 
 def _stepped(s: Stmt) -> Variable | None:
@@ -105,9 +122,35 @@ def _set(s: Stmt, *, others: bool) -> Variable | None:
     return None
 
 
+def _found_set(function: Function, flags: set[Variable]) -> Iterator[tuple[Stmt, Variable, list[Stmt]]]:
+    """The tests and the waits for flags, each with the flag and the statements that run when it is set."""
+    for block in all_blocks(function.body):
+        for number, s in enumerate(block):
+            match s:
+                case If(test=test, then=then):
+                    if (flag := _tested(test, flags)) is not None:
+                        yield s, flag, then
+                    elif (flag := _not_set(test, flags)) is not None and leaves(then):
+                        yield s, flag, block[number + 1 :]
+                case While(test=test) if (flag := _not_set(test, flags)) is not None:
+                    yield s, flag, block[number + 1 :]
+
+
+def _not_set(test: Expr, flags: set[Variable]) -> Variable | None:
+    """The flag that a test wants not to be set."""
+    match test:
+        case Not(operand=operand):
+            return _tested(operand, flags)
+        case Compare(op="==", left=left, right=right) if constant_of(right) == 0:
+            return _tested(left, flags)
+    return None
+
+
 def _tested(test: Expr, flags: set[Variable]) -> Variable | None:
     """The flag that a test asks for."""
-    if isinstance(test, Compare) and constant_of(test.right) is not None:
+    if isinstance(test, Compare) and (number := constant_of(test.right)) is not None:
+        if test.op == "==" and number == 0:
+            return None
         test = test.left
     flag = named(test)
     return flag if flag in flags else None

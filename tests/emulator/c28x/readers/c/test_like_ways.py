@@ -320,6 +320,8 @@ ONE = "if (arrived) { arrived = 0; Take(); }"
 @pytest.mark.parametrize(("turn", "around"), [
     (ONE, "& (SIZE - 1)"), (ONE, "% SIZE"), ("if (arrived != 0) { Last = ring[out++]; arrived = 0; }", "& 15"),
     ("if (arrived == 1 ) { arrived = 0; if (Last != 3) { Take(); } }", "% 16"),
+    ("while (!arrived) ; arrived = 0; Take();", "& 15"),
+    ("if (arrived == 0) continue; arrived = 0; Take();", "& 15"),
 ])  # fmt: skip
 def test_one_element_for_a_flag_is_told(tmp_path: Path, turn: str, around: str) -> None:
     text = RING.format(turn=turn, around=around, flag="arrived = 1;")
@@ -331,6 +333,9 @@ def test_one_element_for_a_flag_is_told(tmp_path: Path, turn: str, around: str) 
     ("if (out != in) Take();", "arrived = 1;"),
     ("if (arrived) { arrived = 0; Take(); } else if (((in - out) & 15) > 0) Take();", "arrived = 1;"),
     ("if (held) { held--; Take(); }", "held++;"),
+    # It says itself that there is more; or the routine waits until the flag is cleared.
+    ("if (arrived) { arrived = 0; Take(); if (held) arrived = 1; }", "arrived = 1;"),
+    ("if (arrived) { arrived = 0; Take(); }", "if (arrived) return; arrived = 1;"),
     ("if (arrived) { Uint16 i; arrived = 0; for (i = 0; i < 8; i++) Take(); }", "if (in == 8) arrived = 1;"),
 ])  # fmt: skip
 def test_a_ring_that_is_emptied_is_silent(tmp_path: Path, turn: str, flag: str) -> None:
