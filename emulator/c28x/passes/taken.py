@@ -4,6 +4,9 @@
     mean = Sum / 8;
     Pulses = 0;
 
+    speed = wheel->pulses * 6;
+    wheel->pulses = 0;
+
 Together they read and change the object, as `Pulses = 0 * Pulses` does: what an interrupt adds between them is lost.
 Only assignments, declarations and calls stand between the two.  After a test of the object (`if (Flags)`) they
 acknowledge a flag, which is right for a flag that is only set.
@@ -13,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from emulator.c28x.ctypes import PointerType
 from emulator.c28x.tree import (
     Assign,
     Const,
@@ -28,9 +32,9 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import bare, blocks, calls, parts
+from emulator.c28x.tree_queries import assigned, bare, blocks, calls, parts
 
-#: An object at file scope, and the offset of a word in it.
+#: An object at file scope, or a pointer, and the offset of a word in the object or behind the pointer.
 _Word = tuple[Variable, int]
 
 
@@ -50,8 +54,11 @@ def _mark(body: list[Stmt], tested: frozenset[Variable]) -> None:
         if values is None or any(map(calls, values)):
             read.clear()
         read |= {word for value in values or () for word in _words(value) if word[0] not in tested}
+        moved = assigned(s)
         if cleared is not None:
             read.discard(cleared)
+        elif moved is not None and isinstance(moved.ctype, PointerType):
+            read = {word for word in read if word[0] is not moved}
     for s in body:
         if not (inner_blocks := blocks(s)):
             continue
@@ -90,4 +97,8 @@ def _word(lvalue: LValue) -> _Word | None:
     match lvalue:
         case LValue(root=Variable(kind="global") as root, indices=[], words=words):
             return root, words
+        case LValue(root=Expr() as pointer, indices=[], words=words):
+            match bare(pointer):
+                case Load(lvalue=LValue(root=Variable() as root, indices=[], words=0)):
+                    return root, words
     return None

@@ -390,7 +390,7 @@ def _writes(function: Function) -> Iterator[Word]:
 
 
 def _combined(function: Function, shared: set[str]) -> Iterator[frozenset[Word]]:
-    """The words that each operation of a function combines.
+    """The words that each operation of a function combines, also by copies of them or of the whole structure.
 
     The body of a loop is left out if its test reads a shared object again: the loop checks what it has read.
     """
@@ -407,6 +407,8 @@ def _combined(function: Function, shared: set[str]) -> Iterator[frozenset[Word]]
                 given.setdefault(root, []).append(_word(bare(value)))
             case For(variable=LValue(root=Variable() as root)):
                 given.setdefault(root, []).append(None)
+            case CopyStruct(target=LValue(root=Variable() as root), source=source) if root.kind != "global":
+                given.setdefault(root, []).append(_word(source) if source.ctype == root.ctype else None)
     copies = {variable: words[0] for variable, words in given.items() if len(words) == 1 and words[0] is not None}
     for statement in _once(function.body, shared):
         for expression in own_nodes(statement):
@@ -418,8 +420,9 @@ def _leaves(expression: Any, copies: dict[Variable, Word]) -> Iterator[Word]:
     for part in parts(expression):
         if isinstance(part, Load):
             word = _word(part)
-            if word is None and isinstance(part.lvalue.root, Variable):
-                word = copies.get(part.lvalue.root)
+            if word is None and isinstance(part.lvalue.root, Variable) and not part.lvalue.indices:
+                copy = copies.get(part.lvalue.root)
+                word = (copy[0], copy[1] + part.lvalue.words) if copy is not None else None
             if word is not None:
                 yield word
 
