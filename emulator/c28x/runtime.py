@@ -1214,8 +1214,9 @@ class Runtime:
         name = dict(site.check.constants).get(value)
         if name is not None:
             self.hit(site, "no-case", f"{site.name} is {name}, which has no case: {site.check.text}", value)
-        elif not site.check.constants and value > site.check.word and value not in NOBODY:
-            named = f"{site.check.word} to {site.check.bound}"
+        elif (not site.check.constants or site.check.word) and value > site.check.word and value not in NOBODY:
+            least, most = site.check.word, site.check.bound
+            named = f"{least} to {most}" if least != most else f"up to {most - 1}"
             message = f"{site.name} is {value}, no constant of its enumeration ({named}): it has no case"
             self.hit(site, "no-case", message, value)
             self.caseless[site.check.where] = self.findings.generation

@@ -195,8 +195,8 @@ For one value the switch does nothing, or keeps an old result.
 There are two forms:
 
 * The value is no constant of the enumeration: a remainder that is one too large, or a number that came over a line and
-  was cast. Numbers below the first constant, and all ones (0xFF, 0xFFFF), often mean "none" and are not reported.
-  Enumerations of flags are not reported.
+  was cast. A last constant that counts the others by its name (`DIR_COUNT`) needs no case. Numbers below the first
+  constant, and all ones (0xFF, 0xFFFF), often mean "none" and are not reported. Enumerations of flags are not reported.
 * The value is a constant of the enumeration without a case. Many switches leave constants out on purpose. So this is
   reported only if the list of cases seems meant to be complete: every case sets the same object, and one case sets it
   to the value that it has before the switch.

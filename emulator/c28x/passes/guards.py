@@ -40,7 +40,8 @@ Kinds of guards:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Set
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping, Set
 from dataclasses import replace
 from typing import Any, Final
 
@@ -145,6 +146,9 @@ QUANTITIES: Final = frozenset((
 def is_character(ctype: object) -> bool:
     """Whether a type is one of the three character types."""
     return isinstance(ctype, IntType) and ctype.name in CHARACTERS
+
+#: The name of a last constant that counts the others: `DIR_COUNT`, `NUM_MODES`, `MODE_N`.
+_COUNT: Final = re.compile(r"count|(?<![a-z])num|max|size|total|last|end$|_n$|^n_|anzahl|numero", re.IGNORECASE)
 
 
 class Guards:
@@ -300,7 +304,8 @@ class Guards:
 
         If it has all constants: a value above the first constant that has no case is not one of the enumeration.  If it
         has not: a constant without a case is reported only if all cases set the same object, and one of them to the
-        value that it already has.  Then the list of cases was intended to be complete.
+        value that it already has.  Then the list of cases was intended to be complete.  A last constant that only
+        counts the others (`DIR_COUNT`) needs no case; a value above it is none of them.
         """
         if s.left is None or not isinstance(s.subject.ctype, IntType):
             return
@@ -308,9 +313,14 @@ class Guards:
         labels = [value for values, _ in s.cases for value in values or ()]
         if s.complete and labels and not flags(labels):
             s.guard = Guard("case", self.site(s.subject.ctype, named, bound=max(labels), word=min(labels)))
-        elif id(s) in self.kept:
-            site = self.site(s.subject.ctype, named, text=self.kept[id(s)], constants=tuple(s.left.items()))
-            s.guard = Guard("case", site)
+        elif labels:
+            most = max(s.left) if counts_others(s.left, labels) and not flags(labels) else 0
+            text, constants = self.kept.get(id(s), ""), tuple(s.left.items())
+            if text or most:
+                site = self.site(
+                    s.subject.ctype, named, text=text, constants=constants if text else (), bound=most, word=most
+                )
+                s.guard = Guard("case", site)
 
     def leaves_for_all(self, root: Variable | Expr, value: Expr) -> None:
         """Check a float that is stored where others see it."""
@@ -838,6 +848,11 @@ def flags(values: Iterable[int]) -> bool:
     """Whether constants are flags, to be combined: 1, 2, 4 ..."""
     listed = set(values)
     return 4 in listed and 3 not in listed and all(value & value - 1 == 0 for value in listed)
+
+
+def counts_others(left: Mapping[int, str], labels: Collection[int]) -> bool:
+    """Whether the only constant of an enumeration that is no case is the last one, and its name says that it counts."""
+    return list(left) == [max(labels) + 1] and _COUNT.search(left[max(labels) + 1]) is not None
 
 
 def kept_objects(body: list[Stmt]) -> dict[int, str]:

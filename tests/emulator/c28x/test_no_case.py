@@ -130,6 +130,16 @@ def Speed(mode: int16) -> int16:
     assert [f.rule for f in shop.findings] == told
 
 
+@pytest.mark.parametrize(("last", "mode", "told"), [
+    ("MODES_COUNT", 4, ["no-case"]), ("MODES_COUNT", 3, ["no-case"]), ("MODES_COUNT", 2, []), ("BROKEN", 4, []),
+    ("MODES_COUNT", 255, []),
+])  # fmt: skip
+def test_a_last_constant_that_counts_the_others_needs_no_case(last: str, mode: int, told: list[str]) -> None:
+    source = PAIRS[0].correct.replace("FAST = 2", f"FAST = 2\n    {last} = 3").replace("turn % 3", "turn")
+    shop, _ = run(Pair("", "", (("Speed", (mode,)),), "", ""), source)
+    assert [f.rule for f in shop.findings] == told
+
+
 @pytest.mark.parametrize("value", [-1, 255])
 def test_a_number_that_says_none_is_not_told(value: int) -> None:
     calls = (("Speed", (value,)),)
