@@ -12,6 +12,7 @@ from functools import wraps
 from sys import intern
 from typing import Any, Final
 
+from emulator.c28x.ctypes import CHAR, ArrayType
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked
 from emulator.c28x.memory import Pointer
@@ -130,7 +131,8 @@ def _pointer_text(pointer: Pointer) -> str:
     obj = pointer.obj
     if obj is None:
         return f"{pointer.offset:#x}"
-    if obj.readonly:
+    ctype = obj.declaration.ctype
+    if obj.readonly and isinstance(ctype, ArrayType) and ctype.element == CHAR:
         return repr("".join(chr(code & 0xFFFF) for code in obj.data[pointer.offset : -1] if isinstance(code, int)))
     offset = f"+{pointer.offset}" if pointer.offset else ""
     return f"&{obj.declaration.path}{offset}"
