@@ -1,18 +1,21 @@
 """Static check of differences: an object minus its own copy is always 0, and their quotient always 1.
 
 `last = now; speed = now - last;` stores before it subtracts.  The check follows copies through the statements of a
-block, and into the branches of an `if`.
+block, and into the branches of an `if`: of objects, members, elements, and what a local pointer leads to.
 """
 
 from __future__ import annotations
 
 from typing import Final
 
+from emulator.c28x.ctypes import IntType
 from emulator.c28x.passes.report import StaticReport
-from emulator.c28x.passes.values import volatile
+from emulator.c28x.passes.values import may_be_volatile, volatile
 from emulator.c28x.tree import (
     Assign,
     Binary,
+    Const,
+    Convert,
     CopyStruct,
     Declare,
     Evaluate,
@@ -30,7 +33,9 @@ from emulator.c28x.tree_queries import (
     OBSERVABLE,
     bare,
     blocks,
+    fixed_words,
     own_nodes,
+    parts,
     runs_function,
     source_text,
     statements,
@@ -65,7 +70,17 @@ def _are_copies(e: Binary, copies: _Copies) -> bool:
     if not isinstance(left, Load) or not isinstance(right, Load):
         return False
     both = left.lvalue, right.lvalue
-    return any(both in ((a, b), (b, a)) for a, b in copies)
+    return any(both in ((a, b), (b, a)) and _differ_by_nothing(e, a, b) for a, b in copies)
+
+
+def _differ_by_nothing(e: Binary, a: LValue, b: LValue) -> bool:
+    """Whether the result is that of equal numbers: copies of another sign are equal in their own width only."""
+    if a.ctype == b.ctype:
+        return True
+    match a.ctype, e.ctype:
+        case IntType(bits=bits), IntType(bits=computed):
+            return e.op != "/" and computed == bits
+    return False
 
 
 def _copies_within(s: Stmt, copies: _Copies) -> _Copies:
@@ -86,45 +101,82 @@ def _copies_within(s: Stmt, copies: _Copies) -> _Copies:
 def _copies_after(s: Assign | Declare | Evaluate, copies: _Copies) -> _Copies:
     """The copies that are valid after a statement."""
     called = any(isinstance(part, OBSERVABLE) for part in own_nodes(s))
-    written = _written(s)
-    target: LValue | None = None
-    match s:
-        case Assign(target=LValue() as target):
-            pass
-        case Declare(variable=variable):
-            target = LValue(variable.ctype, variable)
-    left = _kept(copies, written, called=called)
+    target = _written(s)
+    left = _kept(copies, target, called=called)
     value = s.value
     match value:
+        case Convert(ctype=IntType(bits=bits), operand=Load(ctype=IntType(bits=same)) as inner) if bits == same:
+            value = inner
+    match value:
         case Load(lvalue=source) if target is not None and _plain(target) and _plain(source):
-            if source.root is not written and not called:
+            if not called and not _touches(target, source):
                 left.append((target, source))
     return left
 
 
-def _kept(copies: _Copies, written: Variable | Expr | None, *, called: bool) -> _Copies:
-    """The copies that a write to an object, or (an expression) through a pointer, and a call leave."""
-    if isinstance(written, Expr):
-        return []
-    return [pair for pair in copies if not any(end.root is written or (called and _reached(end)) for end in pair)]
+def _kept(copies: _Copies, written: LValue | None, *, called: bool) -> _Copies:
+    """The copies that a write, and a call, leave."""
+    return [
+        pair for pair in copies
+        if not any((written is not None and _touches(written, end)) or (called and _reached(end)) for end in pair)
+    ]  # fmt: skip
 
 
-def _written(s: Stmt) -> Variable | Expr | None:
-    """The object that a statement itself writes, or the pointer that it writes through."""
+def _touches(written: LValue, end: LValue) -> bool:
+    """Whether a write may change an object, or which object an lvalue designates."""
+    root = written.root
+    if any(isinstance(p, LValue) and p is not end and p.root is root for p in parts(end)):
+        return True
+    if isinstance(root, Variable) and isinstance(end.root, Variable):
+        return root is end.root and not _apart(written, end)
+    if isinstance(root, Variable):
+        return root.kind == "global" or root.in_memory
+    if isinstance(end.root, Variable):
+        return _reached(end)
+    return root != end.root or not _apart(written, end)
+
+
+def _apart(one: LValue, other: LValue) -> bool:
+    """Whether two scalars of one object are two of its members."""
+    same = one.indices == other.indices  # an element, whichever it is
+    first, second = (one.words, other.words) if same else (fixed_words(one), fixed_words(other))
+    if first is None or second is None or one.bits is not None or other.bits is not None:
+        return False
+    return first + one.ctype.words <= second or second + other.ctype.words <= first
+
+
+def _written(s: Stmt) -> LValue | None:
+    """What a statement itself writes."""
     match s:
-        case Assign(target=LValue(root=root)) | CopyStruct(target=LValue(root=root)) | For(variable=LValue(root=root)):
-            return root
+        case Assign(target=LValue() as target) | CopyStruct(target=target) | For(variable=target):
+            return target
         case Declare(variable=variable):
-            return variable
+            return LValue(variable.ctype, variable)
     return None
 
 
 def _plain(lvalue: LValue) -> bool:
-    """Whether an lvalue is one named scalar that only statements change."""
-    root = lvalue.root
-    return isinstance(root, Variable) and not lvalue.indices and not volatile(lvalue) and lvalue.ctype.leaves == 1
+    """Whether an lvalue is one scalar that only statements change, and that only statements can move."""
+    if volatile(lvalue) or lvalue.ctype.leaves != 1:
+        return False
+    outer = lvalue.root if isinstance(lvalue.root, Expr) else None
+    if outer is not None and may_be_volatile(outer):
+        return False
+    designators = [outer, *(index.expr for index in lvalue.indices)]
+    return all(_fixed(e) for e in designators if e is not None)
+
+
+def _fixed(e: Expr) -> bool:
+    """Whether an expression is a constant, or a local that no pointer leads to."""
+    match bare(e):
+        case Const():
+            return True
+        case Load(lvalue=LValue(root=Variable() as root, indices=[])):
+            return root.plain
+    return False
 
 
 def _reached(lvalue: LValue) -> bool:
     """Whether a called function could change an object."""
-    return isinstance(lvalue.root, Variable) and (lvalue.root.kind == "global" or lvalue.root.in_memory)
+    root = lvalue.root
+    return isinstance(root, Expr) or root.kind == "global" or root.in_memory

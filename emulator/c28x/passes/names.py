@@ -44,6 +44,7 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
     OBSERVABLE,
+    addressed,
     bare,
     blocks,
     different,
@@ -74,12 +75,14 @@ class Liveness:
         self.function = function
         self.to = report
         self.tracked = {v for v in (*function.parameters, *function.locals) if not v.in_memory}
+        copied, reached = _copied(function.body), addressed(within(function.body))
         #: Structures and arrays that only statements of the function reach.  A store to a part does not kill them.
         self.whole = {
             v
             for v in (*function.parameters, *function.locals)
-            if isinstance(v.ctype, StructType | ArrayType) and v.in_memory and not v.escapes and not v.volatile
-        }
+            if isinstance(v.ctype, StructType | ArrayType) and v.in_memory and not v.volatile
+            and (not v.escapes or (v in copied and v not in reached))
+        }  # fmt: skip
         #: Identity of each statement -> the variables that it uses itself.
         self.used = {id(s): frozenset(read(s)) for s in statements(function.body)}
         self.read_anywhere = {v for used in self.used.values() for v in used}
@@ -209,6 +212,13 @@ class Liveness:
         """`arg = arg;` marks a parameter as unused.  (`ValueChecks` reports it if `arg` hides a file object.)"""
         itself = isinstance(s.value, Load) and s.value.lvalue == s.target
         return itself and variable.kind == "parameter"
+
+
+def _copied(body: list[Stmt]) -> set[Variable]:
+    """The structures that statements copy as a whole: these have an address, but nothing keeps it."""
+    copies = [s for s in statements(body) if isinstance(s, CopyStruct)]
+    found = {side.root for s in copies for side in (s.target, s.source) if isinstance(side.root, Variable)}
+    return {v for v in found if isinstance(v.ctype, StructType) and not v.ctype.word_backed}
 
 
 def _bodies(body: list[Stmt]) -> Iterator[list[Stmt]]:

@@ -7,13 +7,16 @@ may have read the value.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
+from emulator.c28x.ctypes import PointerType, StructType
 from emulator.c28x.passes.report import StaticReport
-from emulator.c28x.passes.values import volatile
+from emulator.c28x.passes.values import may_be_volatile, volatile
 from emulator.c28x.tree import (
     Assign,
+    Call,
     Const,
     Declare,
     Evaluate,
@@ -32,6 +35,9 @@ from emulator.c28x.tree_queries import OBSERVABLE, bare, blocks, calls, parts, r
 #: Blocks in which a second write to the same field is a second event: it sends, sets, clears or acknowledges.
 _EVENTS = ("Sci", "Spi", "I2c", "Mcb", "Can", "Usb", "Gpio", "Pie", "Lin")
 
+#: Registers of other blocks that act when they are written.
+_ACTS: Final = re.compile(r"CLR|FRC|CLEAR|FORCE|ACK|^TCR$|^TSC|LDR|CTL$")
+
 #: If more cases than this end with a break, a single case that does not is suspicious.
 LEAST_ENDED: Final = 2
 
@@ -44,7 +50,7 @@ def check_stores(function: Function, report: StaticReport) -> None:
             ended = sum(bool(body) and not isinstance(body[-1], FallThrough) for _, body in s.cases)
             for (_, body), (_, following) in zip(s.cases, s.cases[1:], strict=False):
                 if body and isinstance(end := body[-1], FallThrough):
-                    _falls(function, body[:-1], following, report)
+                    _falls(function, body[:-1], following, report, said=end.said)
                     if not end.said:
                         only = len(falling) == 1 and ended > LEAST_ENDED
                         _check_fall_through(function, body[:-1], following, report, only=only)
@@ -71,12 +77,19 @@ def _twice(s: Assign, again: Assign, following: Stmt) -> bool:
     return again is following and isinstance(other, Const) and isinstance(value, Const) and value.value != other.value
 
 
-def _falls(function: Function, body: list[Stmt], following: list[Stmt], report: StaticReport) -> None:
-    """Report stores of a case that are overwritten by the case to which it falls through."""
+def _falls(
+    function: Function, body: list[Stmt], following: list[Stmt], report: StaticReport, *, said: bool
+) -> None:  # fmt: skip
+    """Report stores of a case that are overwritten by the case to which it falls through.
+
+    `said`: a comment says that it does.  Then a register may be meant to have the first value for a moment.
+    """
     for i, s in enumerate(body):
         if not isinstance(s, Assign):
             continue
-        again = _overwritten(s.target, [*body[i + 1 :], *following])
+        if said and not isinstance(s.target, LValue) and s.target.field is None:
+            continue
+        again = _overwritten(s.target, [*body[i + 1 :], *following], in_cases=True)
         if again is not None and any(again is later for later in following):
             text = s.target.text if isinstance(s.target, LValue) else source_text(again.value)
             first = f"{_name(s)} is set to {source_text(s.value)}"
@@ -97,6 +110,13 @@ def _check_fall_through(
         report.report(function, body[-1].where, "case-falls", message, object=source_text(again.value))
         return
     match body, following:
+        case [Evaluate(value=Call() as one_call)], [Evaluate(value=Call() as other_call), *_] if (
+            only and one_call.function.path == other_call.function.path
+            and all(isinstance(bare(a), Const) for a in (*one_call.arguments, *other_call.arguments))
+        ):  # fmt: skip
+            text = source_text(one_call)
+            message = f"the next case calls {one_call.function.name} with other numbers, and no comment says so: "
+            report.report(function, body[-1].where, "case-falls", message + "a break is missing", object=text)
         case [Assign(target=LValue() as one, value=value)], [Assign(target=LValue() as other, value=same), *_] if (
             only and value == same and one != other and not isinstance(bare(value), Const)
         ):
@@ -115,30 +135,47 @@ def _name(s: Assign) -> str:
 
 
 def _seen_by_others(target: LValue) -> bool:
-    """Whether a target is a file-scope object, or a member of one, that is not volatile."""
-    return isinstance(target.root, Variable) and target.root.kind == "global" and not volatile(target)
+    """Whether a target is a file-scope object, a member of one, or one that a pointer leads to; not volatile."""
+    if volatile(target):
+        return False
+    if isinstance(target.root, Variable):
+        return target.root.kind == "global"
+    pointer = target.root.ctype
+    to_structure = isinstance(pointer, PointerType) and isinstance(pointer.target, StructType)
+    return to_structure and not may_be_volatile(target.root)
 
 
-def _overwritten(target: LValue | RegisterRef | RegisterAt, following: Iterable[Stmt]) -> Assign | None:
-    """The statement that writes `target` again before anything can have read it."""
+def _overwritten(
+    target: LValue | RegisterRef | RegisterAt, following: Iterable[Stmt], *, in_cases: bool = False
+) -> Assign | None:  # fmt: skip
+    """The statement that writes `target` again before anything can have read it.
+
+    `in_cases`: in the case to which another one falls through; what a pointer writes there cannot have asked for it.
+    """
     if isinstance(target, LValue):
         if volatile(target) or any(isinstance(p, OBSERVABLE) for p in parts(target)):
             return None
-    elif not isinstance(target, RegisterRef) or not _setting(target):
+    elif not isinstance(target, RegisterRef) or not _setting(target, whole=in_cases):
         return None
     for s in following:
         if not isinstance(s, Assign | Declare) or _looks_at(s, target):
             return None
         if isinstance(s, Assign) and s.target == target:
             return s
-        if isinstance(s, Assign) and (not isinstance(s.target, LValue) or _moves(s.target, target)):
+        if isinstance(s, Assign) and not isinstance(s.target, LValue) and not in_cases:
+            return None
+        if isinstance(s, Assign) and isinstance(s.target, LValue) and _moves(s.target, target, in_cases=in_cases):
             return None
     return None
 
 
-def _setting(register: RegisterRef) -> bool:
-    """Whether a register field holds a number until it is written again."""
-    return register.field is not None and register.field.width > 1 and not register.block.startswith(_EVENTS)
+def _setting(register: RegisterRef, *, whole: bool) -> bool:
+    """Whether a register field (`whole`: or a register) holds a number until it is written again."""
+    if register.block.startswith(_EVENTS):
+        return False
+    if register.field is not None:
+        return register.field.width > 1
+    return whole and not _ACTS.search(register.register)
 
 
 def _looks_at(s: Stmt, target: LValue | RegisterRef) -> bool:
@@ -154,8 +191,11 @@ def _looks_at(s: Stmt, target: LValue | RegisterRef) -> bool:
     return isinstance(s, Evaluate)
 
 
-def _moves(written: LValue, target: LValue | RegisterRef) -> bool:
+def _moves(written: LValue, target: LValue | RegisterRef, *, in_cases: bool) -> bool:
     """Whether a write may change which object `target` designates, or a part of that object."""
-    if not isinstance(target, LValue) or isinstance(written.root, Expr):
-        return True
+    if not isinstance(target, LValue):
+        return not in_cases
+    if isinstance(written.root, Expr):
+        designators = [p for p in parts(target) if isinstance(p, LValue) and p is not target]
+        return not in_cases or any(isinstance(p.root, Expr) or not p.root.plain for p in designators)
     return any(isinstance(p, LValue) and p.root is written.root for p in parts(target))

@@ -163,10 +163,11 @@ def _counts_besides(function: Function, length: Variable) -> bool:
 
 def _ends(s: Stmt, character: Variable) -> bool:
     """Whether a statement tests just a character."""
-    if not isinstance(s, If):
-        return False
-    used = {p.root for p in parts(s.test) if isinstance(p, LValue)}
-    return used == {character} and not any(isinstance(p, Call | RegisterLoad) for p in parts(s.test))
+    match s:
+        case If(test=test) | Switch(subject=test):
+            used = {p.root for p in parts(test) if isinstance(p, LValue)}
+            return used == {character} and not any(isinstance(p, Call | RegisterLoad) for p in parts(test))
+    return False
 
 
 def _sets_back(s: Stmt, length: Variable) -> bool:

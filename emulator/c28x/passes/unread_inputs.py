@@ -11,7 +11,7 @@ result, a post-processing block, any pointer to the results.  The check needs a 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -20,6 +20,7 @@ from emulator.c28x.passes.state_values import constant_of
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     Assign,
+    Binary,
     Call,
     Expr,
     Function,
@@ -43,6 +44,8 @@ _PORTS: Final = re.compile(r"GPIO_[rR]eadPort\w*$")
 #: Registers that give a pin to a peripheral, or to the wake-up.
 _LENDS: Final = re.compile(r"MUX|LPMSEL")
 _DRIVES: Final = re.compile(r"GP[A-F](DIR|DAT|SET|CLEAR|TOGGLE)$")
+#: All pins of a port.
+_WHOLE: Final = 0xFFFFFFFF
 _PIN_FIELD: Final = re.compile(r"GPIO(\d+)$")
 _SOC: Final = re.compile(r"Adc([a-d])Regs\.ADCSOC(\d+)CTL$")
 _RESULT: Final = re.compile(r"Adc([a-d])ResultRegs\.ADCRESULT(\d+)$")
@@ -81,7 +84,9 @@ def _pins(function: Function, s: Stmt, pins: _Inputs) -> None:
     """Note what a statement does with pins."""
     target = s.target if isinstance(s, Assign) else None
     number = constant_of(s.value) if isinstance(s, Assign) else None
-    if isinstance(target, RegisterRef):
+    if isinstance(target, RegisterRef) and isinstance(s, Assign) and target.field is None:
+        _port(function, s, target, pins)
+    elif isinstance(target, RegisterRef):
         pin = _pin(target)
         if pin is not None and number == 0 and target.register.endswith("DIR"):
             pins.set_up.setdefault(pin, (function, s))
@@ -90,12 +95,16 @@ def _pins(function: Function, s: Stmt, pins: _Inputs) -> None:
         elif re.fullmatch(r"INPUT\d+SELECT", target.register):
             pins.used |= {number} if number is not None else set()
             pins.all_used |= number is None
+    changes = isinstance(s, Assign) and isinstance(s.target, RegisterRef) and _changed_pins(s, s.target) is not None
+    masked = {id(side): mask for p in own_nodes(s) for side, mask in _masked(p)}
     for p in own_nodes(s):
         match p:
             case RegisterLoad(register=RegisterRef() as ref) if re.fullmatch(r"GP[A-F]DAT", ref.register):
                 pin = _pin(ref)
-                pins.used |= {pin} if pin is not None else set()
-                pins.all_used |= pin is None
+                if pin is not None:
+                    pins.used.add(pin)
+                elif not changes:
+                    pins.used |= _pins_of(ref.register, masked.get(id(p), _WHOLE))
             case RegisterAddress(block=block) if block.startswith("Gpio"):
                 pins.all_used = True
             case RegisterLoad(register=RegisterAt(name=name)) if re.fullmatch(r"GP[A-F]DAT", name):
@@ -114,6 +123,49 @@ def _pins(function: Function, s: Stmt, pins: _Inputs) -> None:
                     pins.all_used = True
                 elif not _SETS_UP.match(name):
                     pins.used |= {each for each in given if each is not None}
+
+
+def _port(function: Function, s: Assign, target: RegisterRef, pins: _Inputs) -> None:
+    """Note what a write of a whole register does with pins: `GPADIR.all &= ~(1UL << 5)`, `GPASET.all = 1UL << 5`."""
+    if _LENDS.search(target.register) and target.block.startswith("Gpio"):
+        pins.all_used |= constant_of(s.value) != 0
+        return
+    if not _DRIVES.match(target.register):
+        return
+    changed = _changed_pins(s, target)
+    if changed is None:
+        given = constant_of(s.value)
+        pins.used |= _pins_of(target.register, _WHOLE if given is None else given)
+    elif changed[1] or not target.register.endswith("DIR"):
+        pins.used |= _pins_of(target.register, changed[0])
+    else:
+        for pin in sorted(_pins_of(target.register, changed[0])):
+            pins.set_up.setdefault(pin, (function, s))
+
+
+def _changed_pins(s: Assign, target: RegisterRef) -> tuple[int, bool] | None:
+    """The bits of a register that a statement sets (True) or clears in it; None: it gives it another value."""
+    match bare(s.value):
+        case Binary(op="|" | "&" as op, left=left, right=right):
+            old, mask = bare(left), constant_of(right)
+            if isinstance(old, RegisterLoad) and old.register == target and mask is not None:
+                return (mask & _WHOLE, True) if op == "|" else (~mask & _WHOLE, False)
+    return None
+
+
+def _masked(p: object) -> Iterator[tuple[Expr, int]]:
+    """The operands of an expression that it masks with a constant, each with the mask."""
+    if isinstance(p, Binary) and p.op == "&":
+        for side, other in ((p.left, p.right), (p.right, p.left)):
+            mask = constant_of(other)
+            if mask is not None:
+                yield bare(side), mask
+
+
+def _pins_of(register: str, mask: int) -> set[int | str]:
+    """The pins of a port whose bits are in a mask: of `GPBDAT`, GPIO32 to GPIO63."""
+    first = 32 * "ABCDEF".index(register[2])
+    return {first + bit for bit in range(32) if mask >> bit & 1}
 
 
 def _pin(ref: RegisterRef) -> int | None:

@@ -210,15 +210,154 @@ int main(void)
 """
 
 
+_COPIES = """#include "F2837xS_Device.h"
+typedef struct { int now, old, speed; } AXIS;
+AXIS Axes[3], Main;
+int Speed, Index;
+volatile AXIS Shared;
+#define KEEP(a) ((a).old = (a).now)
+static void By_Pointer(AXIS *a) { a->old = a->now; a->speed = 1; Speed = a->now - a->old; }    // told: own-copy
+static void Element(int i) { KEEP(Axes[i]); Axes[i].speed = Axes[i].now - Axes[i].old; }       // told: own-copy
+static void Sign(unsigned u) { int s = u; Speed = u - s; }                                    // told: own-copy
+static void Wide(unsigned u) { int s = u; Speed = ((long)u - (long)s) >> 8; }
+static void Other(int i) { KEEP(Axes[i]); i++; Speed = Axes[i].now - Axes[i].old; }
+static void Moved(int i) { KEEP(Axes[i]); Axes[Index].now = 3; Speed = Axes[i].now - Axes[i].old; }
+static void Alias(AXIS *a, AXIS *b) { a->old = a->now; b->now = 3; Speed = a->now - a->old; }
+static void Watched(volatile AXIS *a) { a->old = a->now; Speed = a->now - a->old; }
+static void Right(AXIS *a, int now) { a->old = a->now; a->now = now; Speed = a->now - a->old; }
+int main(void)
+{
+    for (;;) {
+        By_Pointer(&Main); Element(Index); Sign(Speed); Wide(Speed); Other(0); Moved(1); Alias(&Main, &Axes[2]);
+        Watched(&Shared); Right(&Main, Speed++); Index = Speed & 1;
+    }
+}
+"""
+
+_STORES = """#include "F2837xS_Device.h"
+typedef struct { Uint16 raw, mean, most; } CHANNEL;
+CHANNEL Channels[3];
+Uint16 In, Out;
+static void Level(Uint16 v) { DacaRegs.DACVALS.all = v; }
+static void Twice(CHANNEL *c, Uint16 v)
+{
+    c->mean = (c->mean + v) >> 1;                       // told: dead-store
+    c->mean = v;
+    c->raw = v;
+    c->raw = c->raw >> 1;
+}
+static void Limit(Uint16 i)
+{
+    CHANNEL c = Channels[i], d = Channels[i];
+    if (c.raw > c.most) c.raw = c.most;                 // told: dead-store
+    if (d.raw > d.most) d.raw = d.most;
+    Channels[i] = d;
+}
+static void Choose(Uint16 kind, Uint16 *red, Uint16 *green)
+{
+    switch (kind) {
+    case 1: *red = 100; *green = 0;                     // told: case-falls
+    case 2: *red = 0; *green = 100; break;
+    case 3: EPwm1Regs.CMPA.all = 300UL << 16;           // told: case-falls
+    case 4: EPwm1Regs.CMPA.all = 900UL << 16; break;
+    case 5: EPwm1Regs.CMPA.all = 0; // fall through
+    case 6: EPwm1Regs.CMPA.all = 100; break;
+    case 7: EPwm1Regs.TZCLR.all = 1;
+    default: EPwm1Regs.TZCLR.all = 4; break;
+    }
+    switch (kind) {
+    case 1: Level(100); break;
+    case 2: Level(2000);                                // told: case-falls
+    case 3: Level(4000); break;
+    case 4: Level(4095); break;
+    default: Level(0); break;
+    }
+}
+int main(void) { for (;;) { Twice(&Channels[1], In++); Limit(In & 1); Choose(In & 7, &Out, &In); } }
+"""
+
+_LIKES = """#include "F2837xS_Device.h"
+typedef struct { Uint16 kp, ki, most, sum; } PID;
+static PID Pids[3], A, B, C;
+static void Gains(PID *p, Uint16 kp) { p->kp = kp; p->ki = 1; }
+static void Most(PID *p, Uint16 most) { p->most = most; }
+static void Clear(PID *p) { p->sum = 0; }
+static void Elements(void)
+{
+    Pids[0].kp = 3; Pids[0].ki = 1; Pids[0].most = 9;
+    Pids[1].kp = 3; Pids[1].ki = 1; Pids[1].most = 9;
+    Pids[2].kp = 3; Pids[2].ki = 1;                     // told: like-but-one
+}
+static void Calls(void)
+{
+    Gains(&A, 2); Most(&A, 5); Clear(&A);
+    Gains(&B, 4); Most(&B, 5); Clear(&B);
+    Gains(&C, 4); Clear(&C);                            // told: like-but-one
+}
+static void Blocks(void)
+{
+    volatile struct EPWM_REGS *p = &EPwm4Regs, *q = &EPwm5Regs, *r = &EPwm6Regs;
+    p->TBPRD = 25; p->TBCTL.all = 0; p->AQCTLA.all = 18; p->DBCTL.all = 3;
+    q->TBPRD = 25; q->TBCTL.all = 0; q->AQCTLA.all = 18; q->DBCTL.all = 3;
+    r->TBPRD = 25; r->TBCTL.all = 0; r->AQCTLA.all = 18;    // told: like-but-one
+}
+int main(void)
+{
+    Elements(); Calls(); Blocks();
+    for (;;) EPwm4Regs.TBPRD = Pids[2].most + Pids[1].sum;
+}
+"""
+
+_INPUTS = """#include "F2837xS_Device.h"
+static char Line[32];
+static struct { char text[20]; Uint16 length; } Order, Limited;
+static Uint16 At;
+Uint16 Out;
+static void Any(char c)
+{
+    switch (c) {
+    case 13: Line[At] = 0; At = 0; Out = Line[0]; break;
+    default: Line[At++] = c; break;                     // told: line-unlimited
+    }
+}
+static void Member(Uint16 c)
+{
+    if (c == 13u) { Order.length = 0; Out = Order.text[0]; return; }
+    Order.text[Order.length] = (char)c;                 // told: line-unlimited
+    Order.length = Order.length + 1u;
+}
+static void Right(Uint16 c)
+{
+    if (c == 13u) { Limited.length = 0; Out = Limited.text[0]; return; }
+    if (Limited.length < 20u) Limited.text[Limited.length++] = (char)c;
+}
+int main(void)
+{
+    EALLOW;
+    GpioCtrlRegs.GPADIR.all &= ~(1UL << 13);            // told: input-unused
+    GpioCtrlRegs.GPADIR.all &= ~(1UL << 14);
+    GpioCtrlRegs.GPBDIR.all &= ~(1UL << 3);
+    GpioCtrlRegs.GPADIR.all |= 1UL << 5;
+    EDIS;
+    for (;;) {
+        Any((char)SciaRegs.SCIRXBUF.all); Member(SciaRegs.SCIRXBUF.all); Right(SciaRegs.SCIRXBUF.all);
+        GpioDataRegs.GPADAT.all |= 1UL << 5;
+        if (GpioDataRegs.GPADAT.all & (1UL << 14)) Out = 3;
+        if (GpioDataRegs.GPBDAT.all == 8) Out = 4;
+    }
+}
+"""
+
+
 @pytest.mark.parametrize(
-    "text", [_LEFT_ON, _STATES, _MEMBERS, _CONDITIONS, _STATEMENTS],
-    ids=["left on", "states", "members", "conditions", "statements"],
+    "text", [_LEFT_ON, _STATES, _MEMBERS, _CONDITIONS, _STATEMENTS, _COPIES, _STORES, _LIKES, _INPUTS],
+    ids=["left on", "states", "members", "conditions", "statements", "copies", "stores", "likes", "inputs"],
 )  # fmt: skip
 def test_a_mistake_is_told_in_each_idiom(tmp_path: Path, text: str) -> None:
     file = tmp_path / "a.c"
-    file.write_text(text, encoding="utf-8")
-    lines = text.splitlines()
-    expected = {(n, line.split("// told: ")[1]) for n, line in enumerate(lines, 1) if "// told: " in line}
+    code, marks = zip(*(line.partition("// told: ")[::2] for line in text.splitlines()), strict=True)
+    file.write_text("\n".join(code) + "\n", encoding="utf-8")
+    expected = {(n, mark) for n, mark in enumerate(marks, 1) if mark}
     rules = {rule for _, rule in expected}
     found = {(f.place.line, f.rule) for f in Build([str(file)]).compiled.findings}
     assert {each for each in found if each[1] in rules} == expected
