@@ -260,8 +260,8 @@ looked at.
 A line that is longer than its buffer overwrites the objects behind it: a disturbed link, a wrong baud rate, or somebody
 who leaves a key pressed is enough.
 
-A function puts characters into an array and counts them (`line[length++] = c`). The count is set back where the
-character is the last of a line (`if (c == '\\r')`), and no test of the program limits it.
+A function puts characters into an array and counts them (`line[length++] = c`), also in a structure. The count is set
+back where the character is the last of a line (`if (c == '\\r')`, or a `switch`), and no test of the program limits it.
 
 The check needs the source of a whole program. Not reported if the program may limit the length in another way: by a
 test of the count or of another count in the function, by a loop with a number of turns, by a value that is computed
@@ -278,10 +278,11 @@ from the count.
         """
 The door switch, the stop button or the voltage has no effect: the test of it is missing.
 
-A pin is made an input (`GPIO_SetupPinOptions(12, GPIO_INPUT, ...)`, `GPIO_setDirectionMode`, `GPADIR`), or a conversion
-of the ADC is set up (`ADCSOC2CTL`, `ADC_setupSOC`). No statement of the program reads the pin or its port, routes it to
-the input X-BAR or a peripheral, or passes its number to any other function; nothing reads the result, or points to the
-results. A pin that is an output at times may be released only, and is not reported.
+A pin is made an input (`GPIO_SetupPinOptions(12, GPIO_INPUT, ...)`, `GPIO_setDirectionMode`, `GPADIR`, also by a
+mask), or a conversion of the ADC is set up (`ADCSOC2CTL`, `ADC_setupSOC`). No statement of the program reads the pin
+or its port (if a constant masks the port, its pins alone count), routes it to the input X-BAR or a peripheral, or
+passes its number to any other function; nothing reads the result, or points to the results. A pin that is an output at
+times may be released only, and is not reported.
 
 The check needs the source of a whole program. It is a note, because a part on the board may need the input, or a
 conversion may only give the time.

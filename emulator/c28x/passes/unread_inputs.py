@@ -84,10 +84,10 @@ def _pins(function: Function, s: Stmt, pins: _Inputs) -> None:
     """Note what a statement does with pins."""
     target = s.target if isinstance(s, Assign) else None
     number = constant_of(s.value) if isinstance(s, Assign) else None
-    if isinstance(target, RegisterRef) and isinstance(s, Assign) and target.field is None:
-        _port(function, s, target, pins)
-    elif isinstance(target, RegisterRef):
+    if isinstance(target, RegisterRef):
         pin = _pin(target)
+        if isinstance(s, Assign) and target.field is None:
+            _port(function, s, target, pins)
         if pin is not None and number == 0 and target.register.endswith("DIR"):
             pins.set_up.setdefault(pin, (function, s))
         elif pin is not None and (number != 0 if _LENDS.search(target.register) else _DRIVES.match(target.register)):
@@ -127,7 +127,7 @@ def _pins(function: Function, s: Stmt, pins: _Inputs) -> None:
 
 def _port(function: Function, s: Assign, target: RegisterRef, pins: _Inputs) -> None:
     """Note what a write of a whole register does with pins: `GPADIR.all &= ~(1UL << 5)`, `GPASET.all = 1UL << 5`."""
-    if _LENDS.search(target.register) and target.block.startswith("Gpio"):
+    if _LENDS.search(target.register):
         pins.all_used |= constant_of(s.value) != 0
         return
     if not _DRIVES.match(target.register):

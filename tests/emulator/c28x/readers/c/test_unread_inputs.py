@@ -57,7 +57,7 @@ def test_an_input_that_nothing_looks_at_is_told(tmp_path: Path, set_up: str, use
 
 @pytest.mark.parametrize(("set_up", "use"), [
     (PIN, "Out = GPIO_ReadPin(12);"), (PIN, "Out = Pressed(12);"), (PIN, "Out = GpioDataRegs.GPADAT.bit.GPIO12;"),
-    (PIN, "Out = GpioDataRegs.GPADAT.all & 1;"), (PIN, "Out = GPIO_ReadPin(Pins[i]);"),
+    (PIN, "Out = GpioDataRegs.GPADAT.all >> 12 & 1;"), (PIN, "Out = GPIO_ReadPin(Pins[i]);"),
     (PIN + " InputXbarRegs.INPUT4SELECT = 12;", ""), (PIN + " GPIO_SetupXINT1Gpio(12);", ""),
     (PIN + " GPIO_SetupPinMux(12, GPIO_MUX_CPU1, 6);", ""), (PIN + " GpioCtrlRegs.GPAMUX1.bit.GPIO12 = 1;", ""),
     ("GPIO_setDirectionMode(28, 0); GPIO_setPinConfig(0x00081801ul);", ""),  # GPIO_28_SCIRXDA
