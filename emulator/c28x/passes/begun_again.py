@@ -17,10 +17,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from pathlib import Path
 from typing import Any, Final, TypeVar
 
 from emulator.c28x.ctypes import ArrayType, IntType
+from emulator.c28x.passes.declared import line_of
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.state_values import ANYTHING, Given, StateValues, constant_of, named, start_of
 from emulator.c28x.symbols import Module
@@ -407,10 +407,5 @@ def _refuses(s: If, mark: Variable) -> bool:
 
 def is_latched(v: Variable) -> bool:
     """Whether the name of a flag, or the comment in its line, says that it is meant to stay."""
-    where = v.declaration.where
-    try:
-        lines = Path(where.file).read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:  # a text that is in no file
-        lines = []
-    line = lines[where.line - 1] if 0 < where.line <= len(lines) else v.declaration.name
+    line = line_of(v.declaration) or v.declaration.name
     return _LATCHED.search(line) is not None

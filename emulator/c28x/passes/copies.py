@@ -9,8 +9,9 @@ from __future__ import annotations
 from typing import Final
 
 from emulator.c28x.ctypes import IntType
+from emulator.c28x.passes.declared import may_be_volatile
 from emulator.c28x.passes.report import StaticReport
-from emulator.c28x.passes.values import may_be_volatile, volatile
+from emulator.c28x.passes.values import volatile
 from emulator.c28x.tree import (
     Assign,
     Binary,
@@ -70,7 +71,9 @@ def _are_copies(e: Binary, copies: _Copies) -> bool:
     if not isinstance(left, Load) or not isinstance(right, Load):
         return False
     both = left.lvalue, right.lvalue
-    return any(both in ((a, b), (b, a)) and _differ_by_nothing(e, a, b) for a, b in copies)
+    if not any(both in ((a, b), (b, a)) and _differ_by_nothing(e, a, b) for a, b in copies):
+        return False
+    return not any(isinstance(end.root, Expr) and may_be_volatile(end.root) for end in both)
 
 
 def _differ_by_nothing(e: Binary, a: LValue, b: LValue) -> bool:
@@ -160,8 +163,6 @@ def _plain(lvalue: LValue) -> bool:
     if volatile(lvalue) or lvalue.ctype.leaves != 1:
         return False
     outer = lvalue.root if isinstance(lvalue.root, Expr) else None
-    if outer is not None and may_be_volatile(outer):
-        return False
     designators = [outer, *(index.expr for index in lvalue.indices)]
     return all(_fixed(e) for e in designators if e is not None)
 

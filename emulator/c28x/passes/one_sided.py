@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from emulator.c28x.passes.begun_again import is_latched, is_number, step_of
+from emulator.c28x.passes.declared import line_of
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.state_values import StateValues, constant_of, named, start_of
 from emulator.c28x.symbols import Module
@@ -318,11 +319,5 @@ def _is_static(v: Variable) -> bool:
     declaration = v.declaration
     if declaration.function:
         return True
-    try:
-        lines = Path(declaration.file).read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:  # a text that is in no file
-        return False
-    if not 0 < declaration.line <= len(lines):
-        return False
-    line = lines[declaration.line - 1]
+    line = line_of(declaration)
     return line.startswith("_") if Path(declaration.file).suffix == ".py" else _STATIC.search(line) is not None

@@ -12,8 +12,9 @@ from collections.abc import Iterable, Iterator
 from typing import Final
 
 from emulator.c28x.ctypes import PointerType, StructType
+from emulator.c28x.passes.declared import may_be_volatile
 from emulator.c28x.passes.report import StaticReport
-from emulator.c28x.passes.values import may_be_volatile, volatile
+from emulator.c28x.passes.values import volatile
 from emulator.c28x.tree import (
     Assign,
     Call,
@@ -58,6 +59,8 @@ def check_stores(function: Function, report: StaticReport) -> None:
         for i, s in enumerate(body):
             if isinstance(s, Assign) and isinstance(s.target, LValue) and _seen_by_others(s.target):
                 again = _overwritten(s.target, body[i + 1 :])
+                if again is not None and isinstance(s.target.root, Expr) and may_be_volatile(s.target.root):
+                    continue
                 if again is not None and not (isinstance(bare(s.value), Const) and not _twice(s, again, body[i + 1])):
                     text = s.target.text
                     message = f"{text} is set to {source_text(s.value)}, and is set again in line {again.line}"
@@ -141,8 +144,7 @@ def _seen_by_others(target: LValue) -> bool:
     if isinstance(target.root, Variable):
         return target.root.kind == "global"
     pointer = target.root.ctype
-    to_structure = isinstance(pointer, PointerType) and isinstance(pointer.target, StructType)
-    return to_structure and not may_be_volatile(target.root)
+    return isinstance(pointer, PointerType) and isinstance(pointer.target, StructType)
 
 
 def _overwritten(

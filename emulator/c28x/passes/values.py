@@ -9,7 +9,6 @@ from typing import Any, Final
 
 from emulator.c28x.arithmetic import COMPARE
 from emulator.c28x.ctypes import LONG_DOUBLE, NOBODY, UCHAR, FloatType, IntType, PointerType
-from emulator.c28x.declarations import lines_with_comments
 from emulator.c28x.passes.blocks import check_blocks
 from emulator.c28x.passes.counted import CounterEndValues, known_locals, turning
 from emulator.c28x.passes.formats import check_format
@@ -473,16 +472,6 @@ def volatile(e: Expr | LValue) -> bool:
         or (isinstance(p, LValue) and (p.volatile or (isinstance(p.root, Variable) and p.root.volatile)))
         for p in parts(e)
     )
-
-
-def may_be_volatile(pointer: Expr) -> bool:
-    """Whether a pointer is, or may be, declared as one to a volatile object: types do not keep that."""
-    match bare(pointer):
-        case Load(lvalue=LValue(root=Variable(declaration=declaration))):
-            lines = lines_with_comments(declaration.file)
-            text = lines[declaration.line - 1][0] if 0 < declaration.line <= len(lines) else "volatile"
-            return "volatile" in text
-    return True
 
 
 def _as_pattern(e: Const, to: IntType) -> bool:

@@ -1,0 +1,26 @@
+"""The text of declarations, for what types do not keep: a storage class, what a pointer leads to, a remark."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from emulator.c28x.tree import Declaration, Expr, Load, LValue, Variable
+from emulator.c28x.tree_queries import bare
+
+
+def line_of(declaration: Declaration) -> str:
+    """The line on which an object is declared; empty: its text is in no file."""
+    try:
+        lines = Path(declaration.file).read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return ""
+    return lines[declaration.line - 1] if 0 < declaration.line <= len(lines) else ""
+
+
+def may_be_volatile(pointer: Expr) -> bool:
+    """Whether a pointer is, or may be, declared as one to a volatile object."""
+    match bare(pointer):
+        case Load(lvalue=LValue(root=Variable(declaration=declaration))):
+            line = line_of(declaration)
+            return "volatile" in line or not line
+    return True
