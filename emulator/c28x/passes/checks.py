@@ -105,7 +105,7 @@ def check(
         )  # fmt: skip
     check_begun_again(whole, of_whole)
     check_one_sided(whole, of_whole)
-    check_never_back(whole, of_whole)
+    check_never_back(modules, reports)  # marks of data belong to their structures
     check_tables(modules, reports)
     sides = sides_of(modules, reports)
     if sides is not None:

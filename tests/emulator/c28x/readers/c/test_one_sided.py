@@ -125,7 +125,8 @@ def test_an_object_that_goes_out_and_that_nobody_writes_is_told(tmp_path: Path, 
 
 @pytest.mark.parametrize("given", [
     {"write": "number++;"}, {"storage": ""}, {"storage": "static volatile"}, {"storage": "static const"},
-    {"name": "zeroOffset"}, {"name": "testWord"}, {"use": "(void) number; Sent = 1;"}, {"use": "Sent = *&number;"},
+    {"name": "zeroOffset"}, {"name": "testWord"}, {"use": "(void) number; Sent = 1;"},
+    {"use": "Sent = (Uint16)(unsigned long)&number;"},
 ])  # fmt: skip
 def test_an_object_that_is_written_or_adjusted_by_hand_is_silent(tmp_path: Path, given: dict[str, str]) -> None:
     assert used(tmp_path, **{"use": "Send(Raw, number & 15);", **given}) == []
