@@ -59,6 +59,7 @@ class ObjectValues:
         self._recast: list[Expr] = []
         self._unseen: set[Variable] | None = set()
         self._unseen_known = False
+        self._looked_up = 0
         #: The identity of an lvalue of the source -> its scalars.
         self._spots_of: dict[int, frozenset[Spot] | None] = {}
         for f in functions:
@@ -98,6 +99,12 @@ class ObjectValues:
                     for parameter, value in zip(part.function.parameters, part.arguments, strict=False):
                         self.given.setdefault(parameter, []).append(value)
 
+    def in_memory(self, pointer: Expr) -> bool:
+        """Whether a pointer is kept in an object: then an access means one of those there, and which is not known."""
+        before = self._looked_up
+        self.blocks(pointer)
+        return self._looked_up != before
+
     def blocks(self, pointer: Expr, deep: int = _DEEPEST) -> list[str] | None:
         """The register blocks that a pointer can point to; None if that is not known."""
         pointer = bare(pointer)
@@ -118,12 +125,13 @@ class ObjectValues:
         return [*self.given.get(variable, ()), *self._set_to.get(variable, ())]
 
     def known(self, pointer: Expr) -> bool:
-        """Whether all is known that a pointer can point to: objects, or registers."""
+        """Whether all is known that a pointer can point to, and no register is among it."""
         return self._locations(pointer, _DEEPEST) is not None
 
     def contents(self, lvalue: LValue, deep: int = _DEEPEST) -> list[Expr] | None:
         """The values of a pointer in memory, or of an element of a constant table; None if they are not known."""
         spots = self._spots(lvalue, deep)
+        self._looked_up += 1
         if spots is None:
             return None
         found: list[Expr] = []
@@ -211,8 +219,6 @@ class ObjectValues:
                 return None
             case AddressOf(lvalue=lvalue):
                 return self._spots(lvalue, deep)
-            case RegisterAddress():
-                return frozenset()
             case PointerAdd(pointer=inner, ctype=PointerType(target=target)):
                 spots, step = self._locations(inner, deep - 1), max(1, target.leaves)
                 return None if spots is None else frozenset(

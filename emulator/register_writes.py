@@ -160,6 +160,11 @@ class RegisterWrites:
                         self.pointed.setdefault(register, []).append(Write(mask, values, place))
 
     @cached_property
+    def _touched(self) -> set[str]:
+        """The blocks in which some register has another value than after reset."""
+        return {block.name for block in self._register_blocks if any(cell.value != cell.reset_value for cell in block)}
+
+    @cached_property
     def _addresses(self) -> dict[tuple[str, str], int]:
         """(block, register) -> its address; without a register that of the block."""
         return {
@@ -249,9 +254,14 @@ class RegisterWrites:
                 continue
             target, write = s.target, Write(*self.bits(s, {}), _place(f, s.where))
             if isinstance(target, RegisterAt):
-                for block in (named := self._blocks(target)) or ():
+                named = self._blocks(target) or []
+                # Of the blocks in a table the program may mean one only: those that nothing has changed are unclear.
+                sure = named if len(named) < 2 or not self._objects.in_memory(target.block) else [
+                    block for block in named if block in self._touched
+                ]  # fmt: skip
+                for block in sure:
                     self.writes.setdefault((block, target.name), []).append(write)
-                if named is None:
+                if not named or len(sure) < len(named):
                     self.pointed.setdefault(target.name, []).append(write)
             elif not of_library:
                 self.writes.setdefault((target.block, target.register), []).append(write)
@@ -409,12 +419,17 @@ class RegisterWrites:
                 if variable.ctype == e.ctype and not variable.in_memory:
                     return known[variable]
             case Load(lvalue=LValue(root=Variable(constant=True, initial=list() as initial), bits=None) as lvalue):
-                chosen = self._of_table(lvalue, initial, known, deep)
-                return self._of_all(self._objects.contents(lvalue) or (), deep) if chosen is None and deep else chosen
-            case Load(lvalue=LValue(root=Expr() | Variable(kind="global"), bits=None) as lvalue) if deep:
-                return self._of_all(self._objects.contents(lvalue) or (), deep)  # constants, and pointers
+                return self._of_table(lvalue, initial, known, deep)
+            case Load(
+                ctype=PointerType(), lvalue=LValue(root=Expr() | Variable(kind="global"), indices=[]) as lvalue
+            ) if deep:
+                only = self._of_all(self._objects.contents(lvalue) or (), deep)
+                return only if only is not None and len(only) == 1 else None  # one of several is no evidence of a write
             case Load(lvalue=LValue(root=Variable() as variable, indices=[], bits=None)) if deep and variable.plain:
-                return self._of_all(self._objects.of_plain(variable), deep) if variable.ctype == e.ctype else None
+                values = self._objects.of_plain(variable)
+                # A local that is set twice has one of the values here, and which is not known.
+                clear = variable.ctype == e.ctype and (variable.kind == "parameter" or len(values) == 1)
+                return self._of_all(values, deep) if clear else None
         if e.bounds is not None and e.bounds[0] == e.bounds[1]:
             return frozenset((e.bounds[0],))
         return None

@@ -318,10 +318,12 @@ class _FollowedCall:
         depends = self._depends([lvalue, *parts(lvalue)])
         place, written = self._evaluation.place(self._f, where), self._evaluation.bits(s, self._known) if s else ()
         words = lvalue.ctype.words
+        # Of several registers that a pointer can mean, an access is evidence of none.
+        exact = address[1] and (len(address[0]) == 1 or isinstance(bare(lvalue.root).ctype, IntType))
         for number in sorted(address[0]) or [0]:
             # An access to 32 bits ignores bit 0 of its address (SPRU430).
             first = (number + lvalue.words) & (~1 if words > 1 else -1)
-            self.accesses.append((AddressedAccess(s is not None, first, words, place, address[1], *written), depends))
+            self.accesses.append((AddressedAccess(s is not None, first, words, place, exact, *written), depends))
 
     def _is_number(self, pointer: Expr) -> bool:
         """Whether the value of a pointer was computed as an integer."""

@@ -56,7 +56,7 @@ void main(void)
     DELAY_US(1000);
     AdcbRegs.ADCSOC4CTL.all = 2ul << 15 | 19;
     AdcbRegs.ADCINTSEL1N2.all = (0x20u | @SOC) << 8;
-    GpioCtrlRegs.GPADIR.all |= @PINS;
+    GpioCtrlRegs.GPADIR.all |= 1ul << 12 | 1ul << 13;
     EDIS;
     InitEPwm1Gpio();
     InitEPwm2Gpio();
@@ -91,7 +91,6 @@ void main(void)
 LINKS = {
     "@COMPARE": ("CMPA.all", "CMPB.all", {"EPwm1Regs.AQCTLB", "EPwm2Regs.AQCTLB"}),
     "@SOC": ("4", "5", {"AdcbRegs.ADCINTFLG.ADCINT2"}),
-    "@PINS": ("1ul << 12 | 1ul << 13", "1ul << 12", {"GPIO13"}),
     "@MODE": ("0x0000", "0x0003", {"EPwm2Regs.CMPCTL.LOADAMODE"}),
 }
 
