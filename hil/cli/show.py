@@ -198,16 +198,24 @@ def progress(what: str, *, quiet: bool = False) -> Iterator[Callable[[float], No
 def busy(what: str, *, quiet: bool = False) -> Iterator[Callable[[str], None]]:
     """A moving sign with a text in a terminal, for work of unknown length; call it with another text to replace it.
 
-    Elsewhere, or if `quiet`, it shows nothing.
+    Each text is there at once, however short the work is.  Elsewhere, or if `quiet`, it shows nothing.
     """
+    from rich.live import Live
+    from rich.spinner import Spinner
     from rich.text import Text
 
     terminal = console()
     if quiet or not terminal.is_terminal:
         yield lambda _text: None
         return
-    with terminal.status(Text(what)) as status:
-        yield lambda text: status.update(Text(text))
+    sign = Spinner("dots", Text(what), style="status.spinner")
+    with Live(sign, console=terminal, refresh_per_second=12.5, transient=True) as live:
+
+        def tell(text: str) -> None:
+            sign.update(text=Text(text))
+            live.refresh()
+
+        yield tell
 
 
 def print_json(data: Mapping[str, Any]) -> None:
