@@ -31,9 +31,10 @@ from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import EnumType, Module, Symbol
 from emulator.c28x.tree import Function
 
-#: How many programs the folder keeps, and a process: the most recently used ones.  An audit of the robot makes 150, one
-#: for each correction; a kept program of the robot has 0.1 MB.
+#: How many programs the folder keeps: the most recently used ones.  An audit of the robot makes 150, most of them with
+#: one correction; a kept program of the robot has 0.1 MB.
 MAX_PROGRAMS: Final = 256
+#: How many of them a process keeps in memory.
 IN_MEMORY: Final = 32
 PACKAGE: Final = Path(__file__).resolve().parent.parent
 #: Folders that a translation depends on in addition to the firmware, and whether their subfolders count too.

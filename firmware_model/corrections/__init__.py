@@ -1,7 +1,8 @@
 """Corrected functions, one module a C file, kept apart from the faithful ones.
 
 A module here is an overlay of the firmware module of the same name: its functions take the place of the faithful
-ones as far as they concern a correction that is asked for (`FIXED("ID")`, see `emulator/c28x/preprocessor.py`).
+ones as far as they concern a correction that is asked for (`FIXED("ID")`, see
+`emulator/c28x/readers/python/preprocessor.py`).
 With no correction asked for, nothing of this package is read.
 """
 

@@ -1,8 +1,8 @@
 """Static check of the entrances of a state: `entrance-differs`, and `not-begun-again` for its time.
 
-A state is entered where a statement gives its constant to the object of the state, itself or to a function that gives
-its parameter to that object.  What the entrances do besides is
-the same for a reason: they stop an output, begin a time, clear a count.  One that leaves it out is most likely wrong.
+A state is entered where a statement gives its constant to the object of the state, or to a function that gives its
+parameter to that object.  What the entrances do besides is the same for a reason: they stop an output, begin a time,
+clear a count.  One that leaves it out is most likely wrong.
 
 * Its time: the state ends by a count or a stamp.  All other entrances begin it, this one does not.
 * Its preparation: the same state has at least three entrances.  All others call the same function with the same
