@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
@@ -320,6 +321,9 @@ class CExpressionReader:
         if isinstance(place, LValue) and place.bits is not None:
             at = node.expr.field.coord if isinstance(node.expr, c_ast.StructRef) else node.expr.coord
             raise SourceError.at(at, "a bit-field has no address")
+        if isinstance(place, build.RegisterPath) and (ctype := self.types.register(place.way)) is not None:
+            word = build.address_of(self.b, replace(place, way=place.way[:1]), node.coord)
+            return build.convert(self.b, word, ctype.pointer, explicit=True)
         return build.address_of(self.b, place, node.coord)
 
     def sizeof(self, node: c_ast.UnaryOp) -> Expr:

@@ -269,6 +269,20 @@ class CTypeReader:
         volatile = {d.name for d in node.decls if isinstance(d, c_ast.Decl) and self.qualified(d, "volatile")}
         return complete(known, members, volatile)
 
+    def register(self, way: tuple[str, ...]) -> StructType | None:
+        """The type of a register with fields (`way` is its name), or of its `.bit`; None for any other way."""
+        match way:
+            case (name,):
+                tag = f"{name}_REG"
+            case (name, "bit"):
+                tag = f"{name}_BITS"
+            case _:
+                return None
+        if tag not in self.tags and (ours := headers.register_type(tag)) is not None:
+            self.tags[tag] = ours
+        known = self.tags.get(tag)
+        return known if isinstance(known, StructType) else None
+
     @staticmethod
     def _is_of_register(known: StructType, tag: str) -> bool:
         """Whether a structure got its members because its tag is that of a register."""

@@ -67,6 +67,12 @@ class Robot:
         # TBPRD of ePWM1 stands at 0x4000 + 0x63
         ("*(volatile unsigned int *)0x4063UL |= 0x10; return EPwm1Regs.TBPRD;", 0x10),
         ("return pwm == &EPwm1Regs;", 1),
+        # a register with fields is a union: by its address it is reached in the same way
+        ("volatile union TBCTL_REG *p = &EPwm1Regs.TBCTL; p->bit.CTRMODE = 1; return EPwm1Regs.TBCTL.all;", 0x81),
+        ("volatile struct TBCTL_BITS *p = &pwm->TBCTL.bit; p->CTRMODE = 1; return EPwm1Regs.TBCTL.all;", 0x81),
+        ("(&pwm->TBCTL)->all = 5; return (*&EPwm1Regs.TBCTL).bit.CTRMODE;", 1),
+        # CMPA stands at 0x6A, CMPB one register of 32 bits behind it
+        ("(&EPwm1Regs.CMPA)[1].bit.CMPA = 9; return (&table[0]->CMPA + 1)->bit.CMPA + EPwm1Regs.CMPB.bit.CMPB;", 18),
         ("IER |= 1; return IER;", 1),
         ("unsigned int before = __disable_interrupts(); __restore_interrupts(before); return before;", 1),
     ],
