@@ -32,7 +32,7 @@ from emulator.c28x.program import Program
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Where
-from emulator.c28x.tree_queries import compared, limited, limited_scalars, made_float
+from emulator.c28x.tree_queries import compared, limited, limited_scalars, made_float, only_compute
 
 
 @reading(0)
@@ -64,7 +64,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
     words |= reversed_errors(f for module in modules for f in module.functions)
     every = [f for module in modules for f in module.functions]
     flags, numbers = flag_scalars(every), used_as_numbers(every)
-    sums = sums_of_samples(every, numbers)
+    sums, computing = sums_of_samples(every, numbers), only_compute(every)
     costs = Costs(float_division(options.float_division))
     owners: set[str] = set()
     functions = []
@@ -81,6 +81,7 @@ def compile_program(program: Program, options: CompileOptions, looked_at: Callab
                 function, watch=options.watch, ieee=options.ieee, room=options.room, compared=names_compared,
                 limited=names_limited, made_float=floats_made, in_a_range=in_a_range, stamps=suspicions,
                 pulses=cut_pulses, regulators=regulators, words=words, flags=flags, numbers=numbers, sums=sums,
+                computing=computing,
             ).run()  # fmt: skip
             costs.leave(function)
             mark_copy_and_clear(function)

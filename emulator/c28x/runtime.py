@@ -1387,7 +1387,7 @@ class Runtime:
         raise Idling(f"{place} idles for ever, and no event is left that could interrupt it")
 
     def endless(self, number: int) -> None:
-        """A loop that calls nothing and reads no register has computed for too long.
+        """A loop that reads no register, and calls nothing that does, has computed for too long.
 
         A task continues, as on the chip, because other tasks still run.  An endless loop of a `main` that the host runs
         in slices of time also continues: the program runs it between its interrupts.  Elsewhere outside of tasks, the
@@ -1401,7 +1401,7 @@ class Runtime:
         if not alone and self.counted(site, "endless-loop"):
             return
         limit_s = self.loop_limit / CYCLES_PER_US / 1e6
-        message = f"the loop over '{site.name}' has run for {limit_s:g} s and calls nothing that could end it"
+        message = f"the loop over '{site.name}' has run for {limit_s:g} s, and nothing that it does can end it"
         self.hit(site, "endless-loop", message)
         if alone:
             raise EndlessPoll(message)

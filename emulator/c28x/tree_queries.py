@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import fields
 from itertools import chain
 from typing import Any, Final, get_args, get_type_hints
@@ -544,9 +544,37 @@ def counts(loop: Stmt) -> bool:
     return False
 
 
-def computes_alone(loop: Stmt) -> bool:
-    """Whether only its own statements can end a loop: it calls nothing, reads no register, and does not just count."""
-    return not counts(loop) and not any(isinstance(p, OBSERVABLE) for p in within([loop]))
+def only_compute(functions: Iterable[Function]) -> set[str]:
+    """The paths of the functions whose result nobody else changes, and that call only such functions.
+
+    They access no register and no object at file scope that is not constant.
+    """
+    found = {f.path: f.calls for f in functions if not any(map(_of_others, within(f.body)))}
+    while more := [path for path, called in found.items() if called - found.keys()]:
+        for path in more:
+            del found[path]
+    return set(found)
+
+
+def _of_others(node: Any) -> bool:
+    """Whether a node is a register, an object at file scope that can change, or a call of an unknown function."""
+    match node:
+        case LValue(root=Variable(kind="global", constant=False)):
+            return True
+        case RegisterLoad() | RegisterRef() | RegisterAt() | CallPointer():
+            return True
+    return False
+
+
+def computes_alone(loop: Stmt, only_compute: Set[str] = frozenset()) -> bool:
+    """Whether only its own statements can end a loop: it reads no register, and does not just count.
+
+    It calls nothing but functions that only compute, by their paths.
+    """
+    return not counts(loop) and not any(
+        isinstance(p, OBSERVABLE) and not (isinstance(p, Call) and p.function.path in only_compute)
+        for p in within([loop])
+    )
 
 
 def visible_to_others(body: list[Stmt]) -> bool:

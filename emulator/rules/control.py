@@ -17,9 +17,9 @@ RULES: Final[tuple[Rule, ...]] = (
         """
 The program stops in a loop, and no task of lower priority runs any more. Interrupts still run.
 
-The loop calls nothing and reads no register, so only its own computation could end it. It has run for a fifth of a
-second of the chip's time. Typical: a counter that is never changed, an unsigned number that must become less than 0, a
-search for a value that is not there.
+The loop reads no register and calls only functions that compute, so only its own computation could end it. It has run
+for a fifth of a second of the chip's time. Typical: a counter that is never changed, an unsigned number that must
+become less than 0, a search for a value that is not there.
 
 The finding is at the head of the loop. Outside a task the call then ends with an error, because on the chip it would
 not return. A task continues. A `main` with an empty endless loop also continues, because such a program works in its

@@ -99,12 +99,12 @@ def run_program(
     """Run `main`, or without one the tasks, for `for_s` seconds of virtual time.
 
     Findings of tasks without a `main` are notes: the part of their program that creates objects before they run is not
-    in these files.  If `main` ends in a loop that waits for objects of interrupt routines, it runs again, and such
-    loops are allowed.  `board_named`: the program is meant for this board.  `silence`: run it once more with sources
-    that fall silent (`stale`), and once with a message that is cut off (`cut_messages`).
+    in these files.  If `main` is in a loop that interrupt routines can end, it runs again, and such loops are allowed.
+    `board_named`: the program is meant for this board.  `silence`: run it once more with sources that fall silent
+    (`stale`), and once with a message that is cut off (`cut_messages`).
     """
     ran = _run(build, roles, for_s, progress, patient=False, board_named=board_named)
-    if any(f.rule == "endless-loop" and is_intended(f, roles) for f in ran.findings):
+    if any(f.rule == "endless-loop" and waits_for_others(f, roles) for f in ran.findings):
         ran = _run(build, roles, for_s, progress, patient=True, board_named=board_named)
     kept = tuple(f for f in ran.findings if not is_intended(f, roles))
     if silence:

@@ -167,6 +167,7 @@ class Guards:
         limited: Set[NamedScalar], made_float: Set[NamedScalar], in_a_range: Set[NamedScalar],
         stamps: Mapping[int, str], pulses: Mapping[int, str], regulators: Mapping[int, RegulatorPart],
         words: Mapping[int, SignedWord], flags: Set[NamedScalar], numbers: Set[NamedScalar], sums: Set[int],
+        computing: Set[str],
     ) -> None:  # fmt: skip
         self.function = function
         self.watch = watch
@@ -183,6 +184,7 @@ class Guards:
         self.flags = flags
         self.numbers = numbers
         self.sums = sums
+        self.computing = computing
         #: The object that the statement assigns to; the ORs within one that is checked.
         self.assigned: LValue | None = None
         self.composed: set[int] = set()
@@ -279,7 +281,7 @@ class Guards:
                 self.condition(test)
                 if polls(s):
                     s.endless = Guard("poll", self.site(INT, polled(test)))
-                elif computes_alone(s):
+                elif computes_alone(s) or (not without_end(s) and computes_alone(s, self.computing)):
                     kind = "idle" if without_end(s) else ""
                     s.endless = Guard("endless", self.site(INT, source_text(test), kind=kind))
             case For():

@@ -307,6 +307,19 @@ def test_a_loop_without_an_end_ends_the_call() -> None:
     assert only(shop, "endless-loop").place.line == 5  # type: ignore[union-attr]
 
 
+def test_a_loop_without_an_end_may_call_functions_that_only_compute() -> None:
+    source = (
+        "def twice(n: int16) -> int16:\n    return n * 2\n"
+        "def f(n: int16) -> int16:\n    i: int16 = 0\n    while i < n:\n        n = twice(n) % 7 + 1\n    return i\n"
+    )
+    shop = Workshop(source)
+    with pytest.raises(EndlessPoll, match="i < n"):
+        shop.f(5)
+    place = only(shop, "endless-loop").place
+    assert place is not None
+    assert place.line == 7
+
+
 def test_a_long_delay_loop_is_no_endless_loop() -> None:
     shop = Workshop("def f() -> void:\n    n: uint32 = 4000000\n    while n > 0:\n        n -= 400\n")
     shop.runtime.loop_limit = 1000

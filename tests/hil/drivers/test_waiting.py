@@ -112,6 +112,17 @@ def test_a_wait_that_somebody_else_can_end_is_right(tmp_path: Path, ends: str) -
     assert not told(tmp_path, text)
 
 
+def test_a_loop_that_waits_for_many_ticks_is_right(tmp_path: Path) -> None:
+    wait = (
+        "while (Alive < 300) {\n            Uint16 seen = Now_Ms;\n"
+        "            while (seen == Now_Ms)\n                ;\n            Alive += Rounds;\n        }"
+    )
+    (tmp_path / "drv.c").write_text(program(wait=wait, tick="Serve();"), encoding="utf-8")
+    report = check_files(DriverFiles([tmp_path / "drv.c"], calls=1, board=load("bare"), seconds=0.5))
+    assert "endless-loop" not in {finding.rule for finding in report.findings}
+    assert any("the program ran for 0.5 s" in function.note for function in report.functions)
+
+
 @pytest.mark.parametrize(("was", "hangs"), [
     ("", False),  # the tick ends it, late as it may be
     ("    StartCpuTimer0();\n", True),
