@@ -6,6 +6,8 @@
 - A routine uses one part of an array (a double buffer), and `main` another one, until the routine turns to it.
 - A routine reads one element of an array in each run, round and round (the digits of a display).  All elements are
   never read in one run, so a mask would not keep them together.
+- A routine writes one element of an array in each run, and `main` only adds elements up: the mean of the latest
+  samples.  Which of them is replaced while `main` adds makes no difference.
 """
 
 from __future__ import annotations
@@ -29,6 +31,7 @@ from emulator.c28x.tree import (
     CopyStruct,
     Declare,
     Expr,
+    For,
     Function,
     If,
     Index,
@@ -455,6 +458,58 @@ def shown_in_turn(modules: Iterable[Module]) -> dict[str, set[str]]:
                     if not any(index == object_path(n) for f in others for n in within(f.body)):
                         found.setdefault(array, set()).add(routine.name)
     return found
+
+
+def averaged(modules: Iterable[Module]) -> dict[str, set[str]]:
+    """Arrays of samples whose elements are only added up: path -> the names of the routines that sample.
+
+    Each run of a routine writes one element at most, by a subscript.  A routine that fills an array is not meant: the
+    old and the new contents, added up, may be a sum that neither has.
+    """
+    own = {function.path: function for module in modules for function in module.functions}
+    found: dict[str, set[str]] = {}
+    for routine, reached in interrupt_routines(own):
+        once = {id(s) for function in reached for s in _outside_of_loops(function.body)}
+        written: dict[str, list[Stmt]] = {}
+        mentioned: Counter[str] = Counter()
+        for s in (s for function in reached for s in statements(function.body)):
+            mentioned.update(path for node in own_nodes(s) if (path := object_path(node)) is not None)
+            match s:
+                case Assign(target=LValue(indices=[Index(expr=subscript)]) as element) if not isinstance(
+                    subscript, Const
+                ) and (path := object_path(element)) is not None:
+                    written.setdefault(path, []).append(s)
+        for path, writes in written.items():
+            others = (function for function in own.values() if function not in reached)
+            if len(writes) == mentioned[path] == 1 and id(writes[0]) in once and all(
+                _adds_up(s, path) for f in others for s in statements(f.body)
+            ):  # fmt: skip
+                found.setdefault(path, set()).add(routine.name)
+    return found
+
+
+def _outside_of_loops(body: list[Stmt]) -> Iterator[Stmt]:
+    for s in body:
+        yield s
+        if not isinstance(s, While | For):
+            for block in blocks(s):
+                yield from _outside_of_loops(block)
+
+
+def _adds_up(s: Stmt, path: str) -> bool:
+    """Whether a statement uses an object at most to add one element of it to a sum, or to set one to a constant."""
+    if sum(object_path(node) == path for node in own_nodes(s)) == 0:
+        return True
+    match s:
+        case Assign(target=target, value=Const()):
+            return object_path(target) == path
+        case Assign(target=LValue() as total, value=value):
+            match bare(value):
+                case Binary(op="+", left=left, right=right):
+                    match bare(left), bare(right):
+                        case Load(lvalue=before), Load(lvalue=added):
+                            return before == total and object_path(added) == path
+    return False
 
 
 def ring_indices(modules: Iterable[Module]) -> dict[Word, bool]:

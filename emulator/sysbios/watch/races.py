@@ -29,6 +29,7 @@ from emulator.sysbios.watch.kept_off import (
     UseConditions,
     Word,
     alternating,
+    averaged,
     rereading_lines,
     ring_indices,
     shown_in_turn,
@@ -126,7 +127,7 @@ class Races:
         self._handed: dict[str, set[HandOver]] = {}
         #: Double buffers, from the source: path -> the paths of what selects the part that a routine uses.
         self._alternating: dict[str, set[str]] = {}
-        #: Arrays of which a routine shows one element after the other, from the source: path -> such routines.
+        #: Arrays of which a routine uses one element in each run, from the source: path -> such routines.
         self._in_turn: dict[str, set[str]] = {}
         #: Early hand-over -> the words that `main` still uses while the routine may use them too.
         self._late: dict[HandOver, set[tuple[Object, int]]] = {}
@@ -349,7 +350,7 @@ class Races:
                 self._pairs, self._continued = pairs(self._modules), continued(self._modules)
                 self._turned, self._handed = turned_by_both(self._modules), handed_over(self._modules)
                 self._alternating = alternating(self._modules)
-                self._in_turn = shown_in_turn(self._modules)
+                self._in_turn = shown_in_turn(self._modules) | averaged(self._modules)
                 self._conditions, self._rereading = UseConditions(self._modules), rereading_lines(self._modules)
             shared.pairs = self._pairs.get(obj.declaration.path)
         if not obj.declaration.function:

@@ -95,6 +95,11 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
         # An array of data hands nothing over.
         ("Uint16 i; for (i = 0; i < 8; i++) Words[i] = Count;", "Uint16 i; for (i = 0; i < 8; i++) Sum += Words[i];",
          [("race", "Words")]),
+        # Samples of which main adds up only some; or two in one run.
+        ("Words[Head] = Count; Head = (Head + 1) & 7;",
+         "Uint16 i; for (i = 0; i < 8; i++) if (Words[i] > 3) Sum += Words[i];", [("race", "Words")]),
+        ("Words[Head] = Count; Words[Head ^ 1] = Count; Head = (Head + 2) & 7;",
+         "Uint16 i; for (i = 0; i < 8; i++) Sum += Words[i];", [("race", "Words")]),
         # Shown in turn, but two in one run; or main sets which one comes next, so that it knows what is complete.
         ("static Uint16 digit; digit = (digit + 1) & 3; Sum = Words[digit] + Words[digit + 4];",
          "Uint16 i; for (i = 0; i < 8; i++) Words[i] = i;", [("race", "Words")]),
@@ -233,6 +238,8 @@ def test_what_an_interrupt_can_come_into_is_told(
          "Uint16 i; for (i = 0; i < 4; i++) Words[i] = i + Sum;"),
         ("static Uint16 digit; Sum = Words[digit]; if (++digit == 4) digit = 0;",
          "Uint16 i; for (i = 0; i < 4; i++) Words[i] = i + Sum;"),
+        # The mean of the latest samples: it makes no difference which of them is replaced.
+        ("Words[Head] = Count; Head = (Head + 1) & 7;", "Uint16 i; for (i = 0; i < 8; i++) Sum += Words[i];"),
         # A buffer that a flag hands over and back.
         (
             "if (Ready) { Uint16 i; for (i = 0; i < 8; i++) Sum += Words[i]; Ready = 0; }",
@@ -352,7 +359,8 @@ void main(void)
     }
 }
 """
-TAKE = "if (Done) { for (i = 0; i < 8; i++) Sum += Words[i]; Done = 0; }"
+#: Not a mere sum: for a mean it would make no difference which of the words is replaced meanwhile.
+TAKE = "if (Done) { for (i = 0; i < 8; i++) Sum = 3 * Sum + Words[i]; Done = 0; }"
 
 
 @pytest.mark.parametrize(
@@ -360,11 +368,13 @@ TAKE = "if (Done) { for (i = 0; i < 8; i++) Sum += Words[i]; Done = 0; }"
     [
         ("if (!Done) Words[Next++ % 8] = Next;", TAKE, 0),
         ("if (Done) { PieCtrlRegs.PIEACK.all = PIEACK_GROUP1; return; } Words[Next++ % 8] = Next;", TAKE, 0),
-        ("if (!Done) Sum += Words[Next++ % 8];", TAKE.replace("Sum += Words[i]", "Words[i] = i"), 0),
+        ("if (!Done) Sum += Words[Next++ % 8];", TAKE.replace("Sum = 3 * Sum + Words[i]", "Words[i] = i"), 0),
         # Nothing keeps the routine off; main gives back too early, does not ask, or asks for nothing.
         ("Words[Next++ % 8] = Next;", TAKE, 1),
-        ("if (!Done) Words[Next++ % 8] = Next;", "if (Done) { Done = 0; for (i = 0; i < 8; i++) Sum += Words[i]; }", 1),
-        ("if (!Done) Words[Next++ % 8] = Next;", "for (i = 0; i < 8; i++) Sum += Words[i]; if (Done) Done = 0;", 1),
+        ("if (!Done) Words[Next++ % 8] = Next;",
+         "if (Done) { Done = 0; for (i = 0; i < 8; i++) Sum = 3 * Sum + Words[i]; }", 1),
+        ("if (!Done) Words[Next++ % 8] = Next;",
+         "for (i = 0; i < 8; i++) Sum = 3 * Sum + Words[i]; if (Done) Done = 0;", 1),
         ("if (Done) Sum++; Words[Next++ % 8] = Next;", TAKE, 1),
     ],
 )
