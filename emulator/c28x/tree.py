@@ -160,7 +160,7 @@ class Function:
     extern: bool = False
     #: A variadic function of the firmware: the pointer to its extra arguments.
     given: Variable | None = field(default=None, kw_only=True, repr=False, compare=False)
-    #: Declared `interrupt`; None: in Python, which has no word for it.
+    #: Declared `interrupt`; None: in Python without `@interrupt`, as some write it.
     interrupt: bool | None = None
     #: Declared `static`: visible only in its own file.
     static: bool = False

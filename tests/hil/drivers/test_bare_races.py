@@ -392,3 +392,56 @@ def test_it_is_told_where_main_must_hold_the_interrupt_off(tmp_path: Path) -> No
     (place,) = (finding.place for finding in findings if finding.rule == "race")
     assert place is not None
     assert lines[place.line - 1].strip() == "Count--;"
+
+
+PYTHON = '''"""clock.c"""
+
+from __future__ import annotations
+
+from emulator.c28x.language import *
+from emulator.device_h import *
+
+
+class TIME(struct):
+    hours: uint16
+    minutes: uint16
+
+
+Count: uint16 = 0
+Sum: uint16 = 0
+Now: volatile[TIME] = (0, 0)
+
+
+@interrupt
+def Tick() -> void:
+    Count += 1
+    if Count == 9999:
+        Now.minutes += 1
+        Now.hours += 1
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP1
+
+
+def main() -> void:
+    InitSysCtrl()
+    InitPieCtrl()
+    InitPieVectTable()
+    EALLOW()
+    PieVectTable.TIMER0_INT = Tick
+    EDIS()
+    InitCpuTimers()
+    ConfigCpuTimer(CpuTimer0, 200.0, 50.0)
+    PieCtrlRegs.PIEIER1.bit.INTx7 = 1
+    IER |= M_INT1
+    EINT()
+    StartCpuTimer0()
+    while 1:
+        DELAY_US(30)
+        Sum = Now.hours * 60 + Now.minutes
+'''
+
+
+def test_a_routine_in_python_is_one_in_the_source_too(tmp_path: Path) -> None:
+    """What no run as short as this shows."""
+    (tmp_path / "clock.py").write_text(PYTHON)
+    findings = check_files(DriverFiles([tmp_path / "clock.py"], seconds=0.005)).findings
+    assert [(f.rule, f.object) for f in findings] == [("race", "clock.Now")]

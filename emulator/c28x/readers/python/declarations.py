@@ -328,7 +328,8 @@ class PythonDeclarationReader(PythonTypeReader):
                 self.complete(node.returns)
         ctype_f = FunctionType(node.name, result, tuple(p.ctype for p in parameters), node.args.vararg is not None)
         function = Function(
-            node.name, self.module.short, ctype_f, parameters, node.lineno, self.c_file(node), extern=extern
+            node.name, self.module.short, ctype_f, parameters, node.lineno, self.c_file(node), extern=extern,
+            interrupt="interrupt" in words or None,
         )
         self.module.symbols[node.name] = function
         if not extern:
