@@ -341,9 +341,9 @@ A semaphore in mode `Semaphore_Mode_BINARY` keeps one release. If a loop posts i
 it in between, all posts but one are lost. The task that handles one item for each pend then stays behind by these
 items.
 
-It is reported if one statement posts the semaphore several times in one call while it is still posted, and no task
-that pends on it has a loop behind the pend that would handle everything. A Clock that posts a binary semaphore in each
-period loses releases on purpose and is not reported.
+It is reported if one statement posts the semaphore several times while it is still posted, before its thread ends or
+blocks, and no task that pends on it has a loop behind the pend that would handle everything. A Clock that posts a
+binary semaphore in each period, or a task that sleeps between its posts, loses releases on purpose and is not reported.
 
 **Fix:** a counting semaphore; or one post, and a loop in the task that continues until the queue is empty.
 """, "BIOS, Semaphore, Mode BINARY",

@@ -88,7 +88,7 @@ class KernelWatch:
             threads, locator, names, findings, self.gates, Posters(kernel, linked, names), calls, linked
         )
         self.releases = Releases(threads, locator, names, findings, calls)
-        self.lost_posts = LostPosts(locator, names, findings, calls, linked)
+        self.lost_posts = LostPosts(threads, locator, names, findings, calls, linked)
         self.lost_events = LostEvents(threads, locator, findings, linked.program.modules.values())
         self.let_in = LetIn(threads, locator, findings, linked.program.modules.values())
         self.interfaces = Interfaces(threads, locator, findings, linked.program.modules.values())

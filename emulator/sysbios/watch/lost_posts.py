@@ -1,13 +1,15 @@
 """Posts of a binary semaphore that are lost: `post-lost`.
 
 A binary semaphore keeps one post.  Posts beyond it are lost.  This is reported where each post matters: one statement
-posts repeatedly in one call, and the task does one thing for each pend, without a loop that would empty a queue.
+posts several times before its thread ends or blocks, and the task does one thing for each pend, without a loop that
+would empty a queue.  A task that posts once in each turn, as it sleeps between them, only says that there is news.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
-from typing import Final
+from typing import Final, NamedTuple
 
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked
@@ -18,33 +20,55 @@ from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.names import HandleNames
 from emulator.sysbios.watch.statements import Call as RunningCall
 from emulator.sysbios.watch.statements import StatementLocator, StatementNumber
+from emulator.sysbios.watch.threads import Thread, ThreadWatch
 
 #: The bit of the mode that makes a semaphore binary.
 _BINARY: Final = 1
-#: Report when one statement has lost this many posts in one call.
+#: Report when one statement has lost this many posts before its thread ended or blocked.
 _LOST: Final = 2
+_BLOCKING: Final = ("Semaphore_pend", "Event_pend", "Mailbox_pend", "Mailbox_post", "Task_sleep", "Task_yield")
+
+
+class _Post(NamedTuple):
+    """A post: its statement, the call with which its thread began, and how often that had called what may block."""
+
+    statement: StatementNumber
+    began: RunningCall | None
+    blocked: int
+
+    def follows(self, other: _Post) -> bool:
+        """Whether the same statement made both, and its thread has neither ended nor blocked between them."""
+        return self.began is other.began and (self.statement, self.blocked) == (other.statement, other.blocked)
 
 
 class LostPosts:
     """Listens to posts."""
 
     def __init__(
-        self, locator: StatementLocator, names: HandleNames, findings: Findings, calls: Calls, linked: Linked
-    ) -> None:
-        self._locator, self._names, self._findings, self._linked = locator, names, findings, linked
-        #: Semaphore -> the statement and call that posted it last, and how many posts that one has lost.
-        self._last: dict[Semaphore, tuple[StatementNumber, RunningCall | None, int]] = {}
+        self, threads: ThreadWatch, locator: StatementLocator, names: HandleNames, findings: Findings, calls: Calls,
+        linked: Linked,
+    ) -> None:  # fmt: skip
+        self._threads, self._locator, self._names, self._findings = threads, locator, names, findings
+        self._linked = linked
+        #: Semaphore -> its last post, and how many posts that statement has lost since its thread began or blocked.
+        self._last: dict[Semaphore, tuple[_Post, int]] = {}
+        #: How often each thread has called a function that may block.
+        self._blocked: Counter[Thread] = Counter()
         self._reported: set[Semaphore] = set()
         calls.before("Semaphore_post", callback=self._posting)
+        calls.before(*_BLOCKING, callback=self._blocking)
+
+    def _blocking(self, *_arguments: object) -> None:
+        self._blocked[self._threads.current] += 1
 
     def _posting(self, semaphore: Semaphore) -> None:
         if not semaphore.mode & _BINARY:
             return
-        statement, call = self._locator.here(), self._locator.call()
-        before = self._last.get(semaphore)
-        lost = before[2] if before is not None and before[0] == statement and before[1] is call else 0
-        lost += bool(semaphore.count) and before is not None and before[0] == statement and before[1] is call
-        self._last[semaphore] = statement, call, lost
+        statement = self._locator.here()
+        post = _Post(statement, self._locator.outermost_call(), self._blocked[self._threads.current])
+        before, lost = self._last.get(semaphore, (None, 0))
+        lost = lost + bool(semaphore.count) if before is not None and post.follows(before) else 0
+        self._last[semaphore] = post, lost
         if lost >= _LOST and semaphore not in self._reported:
             self._reported.add(semaphore)
             self._report(semaphore, statement)

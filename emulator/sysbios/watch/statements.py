@@ -57,6 +57,13 @@ class StatementLocator:
         position = self._position
         return position.calls if position.at else next((calls for _, calls in position.frames()), None)
 
+    def outermost_call(self) -> Call | None:
+        """The identity of the call with which the code that runs now began: of a task's function, or of a routine."""
+        calls, outermost = self._position.calls, None
+        while calls is not None and len(calls) == 2:
+            calls, outermost = calls[1], calls
+        return outermost
+
     def running(self, call: Call) -> bool:
         """Whether a call has not returned: it is on the call stack of the code that runs now."""
         return self._position.within(call)

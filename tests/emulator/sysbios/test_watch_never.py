@@ -198,6 +198,10 @@ BURST = RIGHT.replace(
 
 def test_a_binary_semaphore_that_loses_posts_is_told(tmp_path: Path) -> None:
     assert told(tmp_path, BURST.replace("{0}", "Semaphore_post(ready);")) == [("post-lost", "Semaphore_post(ready);")]
+    put = "Void put(Void) {\n Semaphore_post(ready);\n }\n Void tick"
+    assert told(tmp_path, BURST.replace("{0}", "put();").replace("Void tick", put)) == [
+        ("post-lost", "Semaphore_post(ready);")
+    ]
 
 
 @pytest.mark.parametrize(("post", "was", "now"), [
@@ -211,3 +215,10 @@ def test_a_binary_semaphore_that_loses_posts_is_told(tmp_path: Path) -> None:
 def test_a_post_that_nobody_misses_is_silent(tmp_path: Path, post: str, was: str, now: str) -> None:
     text = BURST.replace("{0}", post)
     assert not told(tmp_path, text.replace(was, now) if was else text)
+
+
+def test_a_task_that_posts_news_and_sleeps_is_silent(tmp_path: Path) -> None:
+    wait = "Event_pend(event, Event_Id_NONE, Event_Id_00, BIOS_WAIT_FOREVER);"
+    text = BURST.replace("{0}", ";").replace(wait, "Semaphore_post(ready); Task_sleep(1);")
+    text = text.replace("Flag = 0;", "Flag = 0; Task_sleep(5);").replace("Event_post(event, Event_Id_00);", "")
+    assert not told(tmp_path, text)
