@@ -137,8 +137,9 @@ class Gates:
     def _exits(self) -> None:
         """Report paths through the source that do not leave a gate, unless the run has reported this gate already."""
         kept = {finding.object for finding in self._findings.of("gate-not-left")}
-        for function, (statement, path, entered) in exits(self._names):
-            name, at = path.rpartition(".")[2], statement.where
+        for function, found in exits(self._names):
+            statement, name, entered = found.statement, found.name, found.entered
+            at = statement.where
             if name not in kept:
                 on = "the function returns" if isinstance(statement, Return) else "the loop goes on"
                 self._findings.report_at(

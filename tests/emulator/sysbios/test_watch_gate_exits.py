@@ -99,3 +99,43 @@ def test_a_way_that_is_right_is_told_nothing(tmp_path: Path, body: str) -> None:
 def test_a_gate_that_partners_enter_and_leave_is_told_nothing(tmp_path: Path) -> None:
     body = "ENTER\nif (Wanted != Shown)\n    continue;\nLEAVE"
     assert told(tmp_path, body, partners=True)[0] == []
+
+
+#: The task gets a structure with the gate, or the address of another one.
+BY_POINTER = PROGRAM.replace("Void worker(UArg a, UArg b)\n{", """typedef struct {
+    GateMutexPri_Handle gate;
+    Int n;
+} Device;
+Device One;
+Int take(Device *d)
+{
+    IArg key;
+    ENTER
+    if (Wanted != Shown)
+        return 1;
+    LEAVE
+    return 0;
+}
+Void worker(UArg a, UArg b)
+{""").replace("gate = GateMutexPri_create(NULL, NULL);", "gate = One.gate = GateMutexPri_create(NULL, NULL);")
+
+
+@pytest.mark.parametrize(("was", "now", "found"), [
+    ("", "", 1),
+    ("        return 1;\n", "    {\n LEAVE\n return 1;\n    }\n", 0),
+    # The pointer is another one at the leave; or others leave what a pointer leads to.
+    ("    if (Wanted", "    d = &One;\n    if (Wanted", 0),
+    ("Void worker", "Void Out(Device *d, IArg key) { LEAVE }\nVoid worker", 0),
+])  # fmt: skip
+def test_a_gate_behind_a_pointer_is_one_gate_as_long_as_the_pointer_stays(
+    tmp_path: Path, was: str, now: str, found: int
+) -> None:
+    text = BY_POINTER.replace(was, now, 1).replace("BODY", "take(&One);")
+    text = text.replace("ENTER", "key = GateMutexPri_enter(d->gate);")
+    text = text.replace("LEAVE", "GateMutexPri_leave(d->gate, key);")
+    for partner in PARTNERS:
+        text = text.replace(partner, "")
+    (tmp_path / "drv.c").write_text(text, encoding="utf-8")
+    told = check_files(DriverFiles([tmp_path / "drv.c"], calls=1, seconds=0.05)).findings
+    lines = [text.splitlines()[f.place.line - 1] for f in told if f.rule == "gate-not-left" and f.place is not None]
+    assert [line.strip() for line in lines] == ["return 1;"] * found
