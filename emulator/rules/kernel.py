@@ -72,18 +72,22 @@ indices of the ring anywhere outside of the routine, or takes the elements in a 
     ),
     _rule(
         "published-early", Severity.WARNING,
-        "The index of a ring is written before the element that it guards.", """
-Rarely, an old character is sent in place of a new one.
+        "A word is written before what belongs to it, and an interrupt routine reads both.", """
+Rarely, an old character is sent in place of a new one, or a state ends at once.
 
 `main` fills a ring and an interrupt routine empties it: `ringIn = next; ring[old] = c;`. The routine compares `ringIn`
 with its own index. If it comes between the two statements, it takes an element that is not there yet. No mask is needed
 if the element is written first.
 
+`State = PULL; pulled_ms = 0;`, and a timer's routine does `if (++pulled_ms >= PULL_MS) State = HOLD;` in this state. If
+it comes between the two statements, it finds the count of the last time, and the state ends at once.
+
 The check reads the source of a whole program without a kernel. Not reported: a function that has switched interrupts
 off before (`DINT`, `..._disableInterrupt`, an enable bit), or whose caller has; an index that is written again behind
-the element; `ring[in++] = c`, whose order C leaves to the compiler.
+the element; `ring[in++] = c`, whose order C leaves to the compiler; a count that something else sets back, too; a
+routine that serves a peripheral which `main` or a partner has to start.
 
-**Fix:** `ring[ringIn] = c; ringIn = next;`, both objects volatile.
+**Fix:** write what belongs to the word first: `ring[ringIn] = c; ringIn = next;`, both objects volatile.
 """, "ISO C 5.1.2.3 p2", how="static",
     ),
     _rule(

@@ -1,4 +1,4 @@
-"""Static check of rings whose index is written before the element that it guards: `published-early`.
+"""Static check of words that are written before what they stand for: `published-early`.
 
     ringIn = next;
     ring[old] = c;
@@ -6,32 +6,70 @@
 The interrupt routine compares `ringIn` with its own index to see whether there is an element.  If it comes between the
 two statements, it takes an element that is not there yet.
 
-The check needs a whole program without a kernel, in which the loop of `main` fills a ring and a routine empties it.  It
-follows what a function switches off before, also in its callers.  The mirror is `released.py`.
+    State = PULL;
+    pulled_ms = 0;
+
+In this state, the routine counts `pulled_ms` and leaves the state when the count is over.  If it comes between the two
+statements, it finds the count of the last time, and leaves the state at once.  Only a routine that runs all the time is
+meant: it counts a clock in each run.  One of a peripheral may not come before `main` has started that.
+
+The check needs a whole program without a kernel, in which the loop of `main` and a routine share the words.  It follows
+what a function switches off before, also in its callers.  The mirror is `released.py`.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
+from typing import Final, NamedTuple
 
 from emulator.c28x.passes.interrupted import Place, Sides, mentions, off_at, place_of, scalar_of, written
 from emulator.c28x.passes.state_values import constant_of
-from emulator.c28x.tree import Assign, Binary, Compare, Declare, Expr, Function, Index, Load, LValue, Stmt, Variable
-from emulator.c28x.tree_queries import all_blocks, bare, own_nodes, parts, source_text, statements
+from emulator.c28x.tree import (
+    Assign,
+    Binary,
+    Call,
+    Compare,
+    Declare,
+    Expr,
+    Function,
+    If,
+    Index,
+    Load,
+    Logic,
+    LValue,
+    RegisterAt,
+    RegisterRef,
+    Stmt,
+    Switch,
+    Variable,
+)  # fmt: skip
+from emulator.c28x.tree_queries import all_blocks, bare, own_nodes, parts, register_text, source_text, statements
 
 
 def check_published(sides: Sides) -> None:
-    """Report the elements of rings that are written behind the index which guards them."""
+    """Report the words that are written before the element, or the count, that belongs to them."""
     guards = {index: rings for routine in sides.routines for index, rings in _guards(routine).items()}
-    for function, body in sides.bodies.items() if guards else ():
+    timed = {found for routine in sides.routines if _runs_always(sides, routine) for found in _timed(sides, routine)}
+    for function, body in sides.bodies.items() if guards or timed else ():
         for s, later in _early(body, guards):
-            if not off_at(body, {id(s)}) and not sides.mask_of_caller(function):
-                name = source_text(Load(s.target.ctype, s.target)) if isinstance(s.target, LValue) else ""
-                message = (
-                    f"{name} is written before the element that it guards (line {later.line}): an interrupt routine "
-                    "that comes in between takes an element which is not there yet"
-                )
-                sides.owners[function].report(function, s.where, "published-early", message, object=name)
+            _report(
+                sides, function, s, f"is written before the element that it guards (line {later.line}): an interrupt "
+                "routine that comes in between takes an element which is not there yet",
+            )  # fmt: skip
+        for s, later in _begun(sides, body, timed):
+            count = source_text(Load(later.target.ctype, later.target)) if isinstance(later.target, LValue) else ""
+            _report(
+                sides, function, s, f"is written before {count}, which says how long this state lasts (line "
+                f"{later.line}): an interrupt routine that comes in between goes by the count of the last time",
+            )  # fmt: skip
+
+
+def _report(sides: Sides, function: Function, s: Assign, what: str) -> None:
+    """Report a statement that may be executed while the interrupts are on."""
+    if not off_at(sides.bodies[function], {id(s)}) and not sides.mask_of_caller(function):
+        name = source_text(Load(s.target.ctype, s.target)) if isinstance(s.target, LValue) else ""
+        sides.owners[function].report(function, s.where, "published-early", f"{name} {what}", object=name)
 
 
 def _guards(routine: list[Function]) -> dict[Place, set[Place]]:
@@ -100,3 +138,84 @@ def _is_before(at: Expr, index: Place, given: Expr, copies: dict[Variable, set[P
         if mentions(left, index) or any(q == given for q in parts(left) if isinstance(q, Load)):
             return True
     return False
+
+
+#: Registers and functions of what gives an interrupt only when `main` or a partner has begun something.
+_SERVED: Final = re.compile(r"(Sci|Spi|I2c|Can|ECap|EQep|XInt|Dma|Mcb|Usb)[a-z0-9]*(Regs|_)", re.IGNORECASE)
+
+
+class _Timed(NamedTuple):
+    """A count that a routine moves in a state, and by which it leaves the state: the state's word and value."""
+
+    state: Place
+    value: int
+    counter: Place
+
+
+def _runs_always(sides: Sides, routine: list[Function]) -> bool:
+    """Whether a routine counts a clock in each run, and serves nothing that `main` or a partner has to start."""
+    clocks = {
+        place for s in routine[0].body
+        if (place := written(s)) is not None and isinstance(s, Assign) and place in sides.asked(routine[0], s.value)
+        and all(constant_of(each.value) is not None for each in sides.main_writes.get(place, ()))
+    }  # fmt: skip
+    nodes = [p for function in routine for s in statements(function.body) for p in own_nodes(s)]
+    served = [register_text(p) for p in nodes if isinstance(p, RegisterRef | RegisterAt)]
+    served += [p.function.name for p in nodes if isinstance(p, Call)]
+    return bool(clocks) and not any(_SERVED.match(name) for name in served)
+
+
+def _timed(sides: Sides, routine: list[Function]) -> Iterator[_Timed]:
+    """The states of a routine that a count of its own ends.
+
+    Beyond the limit, it ends them too: one that must be equal to the limit goes on when it is old.
+    """
+    for function in routine:
+        for s in statements(function.body):
+            for state, value, block in _in_states(s):
+                counted = {
+                    place for each in statements(block)
+                    if (place := written(each)) is not None and isinstance(each, Assign)
+                    and place in sides.asked(function, each.value)
+                }  # fmt: skip
+                for decision in statements(block):
+                    if isinstance(decision, If) and any(written(each) == state for each in statements(decision.then)):
+                        for limit in parts(decision.test):
+                            if isinstance(limit, Compare) and limit.op not in ("==", "!="):
+                                asked = sides.asked(function, limit)
+                                yield from (_Timed(state, value, count) for count in counted & asked - {state})
+
+
+def _in_states(s: Stmt) -> Iterator[tuple[Place, int, list[Stmt]]]:
+    """The blocks of a statement that are executed only while a word has a value: the word, the value, the block."""
+    match s:
+        case Switch(subject=subject, cases=cases) if (state := scalar_of(subject)) is not None:
+            yield from ((state, value, block) for values, block in cases for value in values or ())
+        case If(test=test, then=then):
+            for each in test.operands if isinstance(test, Logic) and test.op == "and" else [test]:
+                match bare(each):
+                    case Compare(op="==", left=left, right=right):
+                        state, value = scalar_of(left), constant_of(right)
+                        if state is not None and value is not None:
+                            yield state, value, then
+
+
+def _begun(sides: Sides, body: list[Stmt], timed: set[_Timed]) -> Iterator[tuple[Assign, Assign]]:
+    """The statements that begin a timed state, each with the one behind it that sets the count.
+
+    If anything else sets the count to this value, nothing old may be left in it.
+    """
+    for block in all_blocks(body):
+        for number, s in enumerate(block):
+            counts = {t.counter for t in timed if isinstance(s, Assign) and t.state == written(s)
+                      and t.value == constant_of(s.value)}  # fmt: skip
+            for later in block[number + 1 :] if counts else ():
+                if isinstance(s, Assign) and isinstance(later, Assign) and (count := written(later)) in counts:
+                    everywhere = [s for other in sides.bodies.values() for s in statements(other)]
+                    everywhere += [w.statement for w in sides.routine_writes]
+                    if not any(
+                        isinstance(each, Assign) and each is not later and written(each) == count
+                        and bare(each.value) == bare(later.value) for each in everywhere
+                    ):  # fmt: skip
+                        yield s, later
+                    break

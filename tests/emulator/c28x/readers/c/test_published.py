@@ -1,4 +1,4 @@
-"""Rings between `main` and an interrupt routine: index and element in the wrong order, and their right twins."""
+"""Words that `main` writes before what belongs to them, which an interrupt routine reads too; and their right twins."""
 
 from __future__ import annotations
 
@@ -91,3 +91,52 @@ def test_an_index_before_its_element_is_told(tmp_path: Path, put: str, given: di
 )
 def test_an_element_before_its_index_or_a_mask_is_silent(tmp_path: Path, put: str, given: dict[str, str]) -> None:
     assert told(tmp_path, put, **given) == []
+
+
+#: A routine pulls a valve for some ms, then holds it.
+VALVE = """
+volatile Uint16 State, pulled_ms, Ticks;
+interrupt void Tick(void)
+{{
+    Ticks++;
+    if (State == 1) {{ if ({counted}) State = 2; }}
+}}
+static void Open(void) {{ if (State == 0) {{ {opened} }} }}
+"""
+OPENS = {"turn": "Open(); if (Sent) State = 0;", "put": "ring[in] = c; in = next;"}
+
+
+@pytest.mark.parametrize(
+    ("opened", "counted"),
+    [
+        ("State = 1; pulled_ms = 0;", "++pulled_ms >= 25"),
+        ("State = 1; Sent = 1; pulled_ms = 0;", "pulled_ms++ > 25"),
+    ],
+)
+def test_a_state_before_the_count_that_ends_it_is_told(tmp_path: Path, opened: str, counted: str) -> None:
+    valve = VALVE.format(opened=opened, counted=counted)
+    (line,) = told(tmp_path, **OPENS, more=valve)
+    assert opened in line
+
+
+@pytest.mark.parametrize(
+    ("opened", "counted", "given"),
+    [
+        ("pulled_ms = 0; State = 1;", "++pulled_ms >= 25", {}),
+        ("Switch_disable(); State = 1; pulled_ms = 0; Switch_enable();", "++pulled_ms >= 25", {}),
+        ("State = 1; pulled_ms = 0;", "++pulled_ms == 25", {}),  # an old count goes on
+        ("State = 3; pulled_ms = 0;", "++pulled_ms >= 25", {}),  # a state that nothing ends
+        # Nothing old is left in it.
+        ("State = 1; pulled_ms = 0;", "++pulled_ms >= 25", {"turn": "Open(); if (Sent) { State = 0; pulled_ms = 0; }"}),
+    ],
+)
+def test_a_count_before_its_state_or_none_that_is_old_is_silent(
+    tmp_path: Path, opened: str, counted: str, given: dict[str, str]
+) -> None:
+    assert told(tmp_path, **{**OPENS, "more": VALVE.format(opened=opened, counted=counted), **given}) == []
+
+
+def test_a_routine_that_main_starts_comes_when_the_count_is_set(tmp_path: Path) -> None:
+    valve = VALVE.format(opened="State = 1; pulled_ms = 0;", counted="++pulled_ms >= 25")
+    valve = valve.replace("Ticks++;", "Ticks++; SCI_acknowledge();")
+    assert told(tmp_path, **OPENS, more="void SCI_acknowledge(void) {}" + valve) == []
