@@ -13,11 +13,11 @@ from typing import Final, NamedTuple
 
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked
-from emulator.c28x.tree import Call, Convert, For, Function, Load, LValue, Stmt, Variable, While
+from emulator.c28x.tree import Call, For, Function, Stmt, While
 from emulator.c28x.tree_queries import blocks, own_nodes, statements
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
-from emulator.sysbios.watch.names import HandleNames
+from emulator.sysbios.watch.names import HandleNames, first_argument
 from emulator.sysbios.watch.statements import Call as RunningCall
 from emulator.sysbios.watch.statements import StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import Thread, ThreadWatch
@@ -98,12 +98,7 @@ def _in(body: list[Stmt], around: Stmt | None, own: dict[str, Function]) -> Iter
     for statement in body:
         for call in (part for part in own_nodes(statement) if isinstance(part, Call)):
             if call.function.name == "Semaphore_pend":
-                argument = call.arguments[0]
-                path = None
-                match argument.operand if isinstance(argument, Convert) else argument:
-                    case Load(lvalue=LValue(root=Variable(kind="global") as variable)):
-                        path = variable.declaration.path
-                yield path, around is None or _loops(around, own)
+                yield first_argument(call), around is None or _loops(around, own)
         for block in blocks(statement):
             yield from _in(block, statement if isinstance(statement, While | For) else around, own)
 

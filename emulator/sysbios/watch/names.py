@@ -1,10 +1,11 @@
-"""Names of kernel objects in the firmware.  Each is the name of the file-scope object that holds the handle."""
+"""Names of kernel objects in the firmware.  Each is the name of the object, or of the member, that holds the handle."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from emulator.c28x.ctypes import ArrayType, CType, StructType
 from emulator.c28x.link import Linked
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Call, Const, Convert, Evaluate, Function, FunctionRef, Load, LValue, Stmt, Variable
@@ -65,14 +66,18 @@ class HandleNames:
         if known is not None:
             return known
         for obj in self._linked.objects.values():
-            if any(value is handle for value in obj.data):
-                name = self._known[handle] = obj.declaration.name
+            leaf = next((leaf for leaf, value in enumerate(obj.data) if value is handle), None)
+            if leaf is not None:
+                name = self._known[handle] = _path(obj.declaration.name, obj.declaration.ctype, leaf)
                 return name
         return str(getattr(handle, "name", handle))
 
     def objects(self, handle: Any) -> set[str]:
-        """Paths of the file-scope objects that hold `handle`."""
-        return {path for path, obj in self._linked.objects.items() if any(value is handle for value in obj.data)}
+        """Paths of the file-scope objects that hold `handle`, and of the members of structures that do."""
+        return {
+            _path(path, obj.declaration.ctype, leaf)
+            for path, obj in self._linked.objects.items() for leaf, value in enumerate(obj.data) if value is handle
+        }  # fmt: skip
 
     @property
     def functions(self) -> list[Function]:
@@ -166,10 +171,23 @@ def calls(body: list[Stmt]) -> Iterator[Call]:
 def first_argument(call: Call) -> str | None:
     """The path of the file-scope object that holds the handle in the first argument; None where the source names none.
 
-    An array of handles is one object.
+    A member of a structure is an object of its own: `drv.link.ready`.  An array of handles is one object.
     """
     argument = call.arguments[0]
     match argument.operand if isinstance(argument, Convert) else argument:
-        case Load(lvalue=LValue(root=Variable(kind="global") as variable)):
-            return variable.declaration.path
+        case Load(lvalue=LValue(root=Variable(kind="global") as variable, leaf=leaf)):
+            return _path(variable.declaration.path, variable.ctype, leaf)
     return None
+
+
+def _path(path: str, ctype: CType, leaf: int) -> str:
+    """The path of the scalar number `leaf` of an object, without the subscripts of arrays."""
+    while True:
+        match ctype:
+            case ArrayType(element=element):
+                ctype, leaf = element, leaf % element.leaves
+            case StructType(word_backed=False, members=[_, *_] as members):
+                member = next(m for m in reversed(members) if m.leaf <= leaf)
+                path, ctype, leaf = f"{path}.{member.name}", member.ctype, leaf - member.leaf
+            case _:
+                return path

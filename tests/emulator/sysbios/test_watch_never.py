@@ -183,6 +183,16 @@ def test_a_wait_that_always_times_out_is_told(tmp_path: Path, was: str, now: str
     assert [place for rule, place in told(tmp_path, text) if rule == "always-timeout"] == [at] * found
 
 
+def test_a_handle_in_a_structure_is_one_of_its_own(tmp_path: Path) -> None:
+    text = RIGHT.replace("Semaphore_Handle ready, other;", "").replace("ready", "sem.ready")
+    text = text.replace("other =", "sem.other =")
+    text = text.replace("Event_Handle", "struct { Semaphore_Handle ready, other; } sem;\nEvent_Handle", 1)
+    assert not told(tmp_path, text)
+    wait = "Semaphore_pend(sem.ready, BIOS_WAIT_FOREVER);"
+    text = text.replace("Semaphore_post(sem.ready)", "Semaphore_post(sem.other)")
+    assert told(tmp_path, text) == [("never-posted", wait)]
+
+
 def test_a_part_of_a_program_is_told_nothing(tmp_path: Path) -> None:
     text = RIGHT.replace("Semaphore_post(ready);", "").replace("Int main(Void)", "Int start(Void)")
     assert not told(tmp_path, text)
