@@ -334,8 +334,11 @@ words of a larger structure and leaves the rest, and `Mailbox_pend` fills as man
 It is reported at `Mailbox_create`, if both sides use the same structure, and members with a value other than 0 did not
 arrive, twice. A part of a structure that the sender leaves 0 is not missed.
 
+Before the program runs it is reported if the handle gets one mailbox only, every post and pend of it passes the same
+structure, and a statement reads a member that does not arrive: `Mailbox_create(sizeof(SAMPLE *), 4, ...)`.
+
 **Fix:** `sizeof` the structure that is posted.
-""", "BIOS, Mailbox_create: msgSize; Mailbox_post copies msgSize words",
+""", "BIOS, Mailbox_create: msgSize; Mailbox_post copies msgSize words", how="dynamic/static",
     ),
     _rule(
         "post-lost", Severity.WARNING, "A binary semaphore was posted again before it was taken: posts were lost.", """

@@ -24,6 +24,7 @@ from emulator.c28x.passes.interrupted import sides_of
 from emulator.c28x.passes.likes import check_likes
 from emulator.c28x.passes.masked import check_masked
 from emulator.c28x.passes.members import with_members
+from emulator.c28x.passes.messages import check_messages
 from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
 from emulator.c28x.passes.never_back import check_never_back
 from emulator.c28x.passes.null_tests import NullTests
@@ -114,6 +115,7 @@ def check(
         check_cleared(sides)
     check_dropped(modules, reports)
     check_likes(modules, reports)
+    check_messages(modules, reports)
     check_spans(modules, reports)
     check_drained(whole, of_whole)
     check_unlimited_lines(whole, of_whole)
