@@ -51,7 +51,7 @@ real project may choose another order, so the neighbour may be another one on yo
     _rule(
         "table-short",
         Severity.WARNING,
-        "A remainder, a mask or the end of a count allows an index that its table does not have.",
+        "A remainder, a mask, the end of a count or a state is an index that its table does not have.",
         """
 Most of the time all is well. With a word that nobody expected, the program reads behind the end of the table.
 
@@ -61,6 +61,10 @@ rows are 5.
 
 An index that is counted, and set back too late, is such a one too: `at++; if (at > 5) at = 0;` for a table of five, or
 `at = at < 5 ? at + 1 : 0;`, or down: `if (at == 0) at = 5; else at--;`.
+
+A state is one, too: of five constants that the program gives to `State`, `Names[State]` needs five elements. This is
+not reported if a test of the state, or of what is set beside it, comes before, also in the callers; nor if only the
+start of `main` sets the last state.
 
 The check follows the index through objects that get only remainders, masks, constants and such counts, and through
 results of functions. Not reported: an index by which the program decides anything else (`if (word == 7) return;`),

@@ -34,6 +34,7 @@ from emulator.c28x.passes.released import check_released
 from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.spans import check_spans
 from emulator.c28x.passes.stamps import Stamps
+from emulator.c28x.passes.state_tables import check_state_tables
 from emulator.c28x.passes.states import States
 from emulator.c28x.passes.stores import check_stores
 from emulator.c28x.passes.tables import check_tables
@@ -108,6 +109,7 @@ def check(
     check_one_sided(whole, of_whole)
     check_never_back(modules, reports)  # marks of data belong to their structures
     check_tables(modules, reports)
+    check_state_tables(whole, of_whole)
     sides = sides_of(modules, reports)
     if sides is not None:
         check_published(sides)

@@ -587,6 +587,52 @@ def Pan() -> int16:
         ("Pan", ()),
     ),
     static_pair(
+        "table-short",
+        "a table of texts that lacks the one of a state",
+        """
+Pins: volatile[uint16] = 1
+Shown: volatile[char] = 0
+State: int16 = 0
+Names: const[array[ptr[const[char]], 2]] = ("OFF", "ON")
+def _enter(state: int16) -> void:
+    global State
+    State = state
+def _report() -> void:
+    text: ptr[const[char]] = Names[State]  # <-
+    Shown = text[0]
+def main() -> int16:
+    while 1:
+        if Pins == 0:
+            _enter(0)
+        elif Pins == 1:
+            _enter(1)
+        else:
+            _enter(2)
+        _report()
+""",
+        """
+Pins: volatile[uint16] = 1
+Shown: volatile[char] = 0
+State: int16 = 0
+Names: const[array[ptr[const[char]], 3]] = ("OFF", "ON", "FAULT")
+def _enter(state: int16) -> void:
+    global State
+    State = state
+def _report() -> void:
+    text: ptr[const[char]] = Names[State]
+    Shown = text[0]
+def main() -> int16:
+    while 1:
+        if Pins == 0:
+            _enter(0)
+        elif Pins == 1:
+            _enter(1)
+        else:
+            _enter(2)
+        _report()
+""",
+    ),
+    static_pair(
         "narrowed",
         "a limit that the type behind it cannot hold",
         """
