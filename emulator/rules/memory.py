@@ -66,6 +66,9 @@ A state is one, too: of five constants that the program gives to `State`, `Names
 not reported if a test of the state, or of what is set beside it, comes before, also in the callers; nor if only the
 start of `main` sets the last state.
 
+So is a number that a test lets too far: `if (n <= 8) line[n++] = c;` for a line of eight, and for `if (n < 8)` with
+`line[n] = 0;` behind it. This is not reported if another test asks for the number, or in a loop with a number of turns.
+
 The check follows the index through objects that get only remainders, masks, constants and such counts, and through
 results of functions. Not reported: an index by which the program decides anything else (`if (word == 7) return;`),
 because the test may exclude it; a mask with gaps; a table that is reached by a pointer.

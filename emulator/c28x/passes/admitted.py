@@ -44,12 +44,12 @@ def _block(function: Function, body: list[Stmt], around: list[Limited], report: 
             for inner in blocks(s):
                 _block(function, inner, around, report)
             continue
-        limits = list(_limits(s.test))
+        limits = list(upper_limits(s.test))
         _branch(function, s.then, limits, around, report)
         _block(function, s.then, [*around, *limits], report)
         _block(function, s.otherwise, around, report)
         if leaves(s.then) and not s.otherwise:
-            kept = [limit for limit in _limits(s.test, holds=False) if not _used_whole(function, limit[0])]
+            kept = [limit for limit in upper_limits(s.test, holds=False) if not _used_whole(function, limit[0])]
             _branch(function, body[number + 1 :], kept, around, report)
             around = [*around, *kept]
 
@@ -67,14 +67,14 @@ def _branch(
             report.report(function, test.where, "narrowed", message, object=value.text, value=limit)
 
 
-def _limits(test: Expr, *, holds: bool = True) -> Iterator[Limited]:
+def upper_limits(test: Expr, *, holds: bool = True) -> Iterator[Limited]:
     """The upper limits that hold where a test is true, or (`holds`) where it is false."""
     match bare(test):
         case Not(operand=operand):
-            yield from _limits(operand, holds=not holds)
+            yield from upper_limits(operand, holds=not holds)
         case Logic(op=op, operands=operands) if (op == "and") == holds:
             for operand in operands:
-                yield from _limits(operand, holds=holds)
+                yield from upper_limits(operand, holds=holds)
         case Compare(op=op, left=left, right=right) as compare:
             if not holds:
                 op = _OPPOSITE.get(op, "")
@@ -90,8 +90,8 @@ def _used_whole(function: Function, value: LValue) -> bool:
     cut = tested = 0
     for p in within(function.body):
         match p:
-            case Convert(operand=Load(lvalue=lvalue), explicit=True) if lvalue == value:
-                cut += 1
+            case Convert(operand=Load(lvalue=lvalue) as whole) if lvalue == value:
+                cut += p.explicit or p.ctype.words < whole.ctype.words
             case Compare(left=left, right=right):
                 tested += sum(isinstance(side, Load) and side.lvalue == value for side in map(bare, (left, right)))
     return _uses(function.body, value) > cut + tested

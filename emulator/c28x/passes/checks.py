@@ -21,6 +21,7 @@ from emulator.c28x.passes.entrances import check_entrances
 from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.future_stamps import unreachable_exits
 from emulator.c28x.passes.interrupted import sides_of
+from emulator.c28x.passes.let_in import check_let_in
 from emulator.c28x.passes.likes import check_likes
 from emulator.c28x.passes.masked import check_masked
 from emulator.c28x.passes.members import with_members
@@ -110,6 +111,7 @@ def check(
     check_never_back(modules, reports)  # marks of data belong to their structures
     check_tables(modules, reports)
     check_state_tables(whole, of_whole)
+    check_let_in(whole, of_whole)
     sides = sides_of(modules, reports)
     if sides is not None:
         check_published(sides)

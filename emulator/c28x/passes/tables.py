@@ -103,7 +103,7 @@ class _Indices:
         """Take the steps by 1 of a block behind which a test sets the scalar back."""
         for number, s in enumerate(block):
             match s:
-                case Assign(target=LValue() as target, value=value) if _is_step(target, value):
+                case Assign(target=LValue() as target, value=value) if is_step(target, value):
                     pass
                 case _:
                     continue
@@ -140,9 +140,9 @@ class _Indices:
         if not isinstance(compare, Compare) or back is None:
             return
         more = _WHERE_TRUE if stepped is then else _WHERE_FALSE
-        if _is_step(target, stepped) and (high := _highest(compare, target, more)) is not None:
+        if is_step(target, stepped) and (high := _highest(compare, target, more)) is not None:
             self._steps[id(stepped)] = _Reach(high, compare)
-        elif _is_step(target, stepped, "-") and _stops_at_0(compare, target, goes_on=stepped is then):
+        elif is_step(target, stepped, "-") and _stops_at_0(compare, target, goes_on=stepped is then):
             self._steps[id(stepped)] = _Reach(0, None)
             self._steps[id(constant)] = _Reach(back, compare)
         else:
@@ -237,7 +237,7 @@ class _Indices:
         return max(known, key=lambda reach: reach.high) if known and len(known) == len(values) else None
 
 
-def _is_step(target: LValue, value: Expr, op: str = "+") -> bool:
+def is_step(target: LValue, value: Expr, op: str = "+") -> bool:
     """Whether a value is that of a named scalar and 1 more (`op`: or 1 less).  (`n++` keeps it in a temporary.)"""
     match bare(value):
         case Binary(op=found, left=left, right=right) if found == op and constant_of(right) == 1:

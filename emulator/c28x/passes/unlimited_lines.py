@@ -68,7 +68,7 @@ def check_unlimited_lines(modules: Iterable[Module], reports: dict[Module, Stati
 def _stores(function: Function) -> Iterator[tuple[Stmt, Variable, Variable, Variable]]:
     """The statements of a function that put a character into a line: with the line, its length, the character."""
     lengths = {v.declaration: v for s in statements(function.body) if (v := assigned(s)) is not None and step_of(s, v)}
-    for s in _in_no_counting_loop(function.body):
+    for s in in_no_counting_loop(function.body):
         match s:
             case Assign(target=LValue(root=Variable(kind="global", ctype=ArrayType()) as line, indices=[index])):
                 at, value = bare(index.expr), bare(s.value)
@@ -81,7 +81,7 @@ def _stores(function: Function) -> Iterator[tuple[Stmt, Variable, Variable, Vari
                     yield s, line, length, character
 
 
-def _in_no_counting_loop(body: list[Stmt]) -> Iterator[Stmt]:
+def in_no_counting_loop(body: list[Stmt]) -> Iterator[Stmt]:
     """Statements that are in no loop but those without an end, and those that take what there is.
 
     These ask a register or a function, or whether the two indices of a ring differ.
@@ -91,7 +91,7 @@ def _in_no_counting_loop(body: list[Stmt]) -> Iterator[Stmt]:
         if isinstance(s, For) or (isinstance(s, While) and not _takes_what_is_there(s.test)):
             continue
         for block in blocks(s):
-            yield from _in_no_counting_loop(block)
+            yield from in_no_counting_loop(block)
 
 
 def _takes_what_is_there(test: Expr) -> bool:

@@ -28,6 +28,7 @@ def told(body: str) -> bool:
         "if (n >= 0 && n <= 40000L) angle = (int16)n;",
         "if (wide < 100000L) period = (Uint16)wide; else period = 1;",
         "if (n < 0 || n > 99999L) return; period = (Uint16)n;",
+        "if (n < 0 || n > 99999L) return; Set(n);",
         "if (!(n <= 99999L)) { in = 1; return; } in = 2; Set((Uint16)n);",
         "while (in) { if (u >= 70000UL) break; period = (Uint16)u; }",
     ],

@@ -1,0 +1,226 @@
+"""Static check of tests that let one element too many into an array: `table-short`.
+
+    static char Line[LINE_MAX];
+    if (Length <= LINE_MAX)
+        Line[Length++] = c;
+
+    if (Length < LINE_MAX)
+        Line[Length++] = c;
+    ...
+    Line[Length] = '\\0';
+
+The number is only counted up by 1 behind one test, and set to constants; no other test asks for it.  So it reaches the
+limit, and one more behind it.  Silent in loops with a number of turns: these may be fewer than the limit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple
+
+from emulator.c28x.ctypes import IntType
+from emulator.c28x.passes.admitted import upper_limits
+from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.passes.state_values import constant_of
+from emulator.c28x.passes.tables import is_step
+from emulator.c28x.passes.unlimited_lines import in_no_counting_loop
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    AddressOf,
+    Assign,
+    Compare,
+    Conditional,
+    Declare,
+    Expr,
+    For,
+    Function,
+    If,
+    Load,
+    LValue,
+    Not,
+    Stmt,
+    Switch,
+    Variable,
+    While,
+)  # fmt: skip
+from emulator.c28x.tree_queries import (
+    NamedScalar,
+    all_blocks,
+    bare,
+    blocks,
+    leaves,
+    named_scalar,
+    own_nodes,
+    parts,
+    source_text,
+    statements,
+)
+
+
+class _Gate(NamedTuple):
+    """A test that lets a number up to a limit through, to statements that count it."""
+
+    function: Function
+    test: Compare
+    number: NamedScalar
+    limit: int
+    body: list[Stmt]
+
+
+class _Beyond(NamedTuple):
+    """An element behind the end of an array, the length of the array, and the largest value of the subscript."""
+
+    array: LValue
+    length: int
+    most: int
+
+
+def check_let_in(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
+    """Report the tests of a number behind which it goes beyond the end of an array."""
+    owners = {function: report for module, report in reports.items() for function in module.functions}
+    gates = [gate for function in owners for gate in _gates(function)]
+    for gate in gates:
+        local = isinstance(gate.number[0], Variable) and gate.number[0].kind != "global"
+        functions = [gate.function] if local else list(owners)
+        if not _only_counted(gate, functions):
+            continue
+        for function in functions:
+            found = _beyond(gate, function)
+            if found is not None:
+                name = found.array.text.partition("[")[0]
+                lets = f"{source_text(gate.test)} lets {gate.limit} through"
+                message = f"{lets}, and {name} has only {found.length} elements"
+                if found.most > gate.limit:
+                    message += f": it is counted up behind the test, and used in line {found.array.where.line}"
+                owners[gate.function].report(
+                    gate.function, gate.test.where, "table-short", message, object=name, value=found.most
+                )  # fmt: skip
+                break
+
+
+def _gates(function: Function) -> Iterator[_Gate]:
+    """The tests of a function that alone let a number be counted up."""
+    free = {id(s) for s in in_no_counting_loop(function.body)}
+    for block in all_blocks(function.body):
+        for at, s in enumerate(block):
+            if not isinstance(s, If) or id(s) not in free:
+                continue
+            ways = [(s.then, list(upper_limits(s.test)))]
+            refused = list(upper_limits(s.test, holds=False))
+            if s.otherwise:
+                ways.append((s.otherwise, refused))
+            elif leaves(s.then) or any(_sets_back(s.then, lvalue) for lvalue, _, _ in refused):
+                ways.append((block[at + 1 :], refused))
+            for body, limits in ways:
+                for lvalue, limit, test in limits:
+                    number = named_scalar(lvalue)
+                    if number is not None and any(_steps(x, number) for x in body):
+                        yield _Gate(function, test, number, limit, body)
+
+
+def _sets_back(body: list[Stmt], lvalue: LValue) -> bool:
+    return any(isinstance(x, Assign) and x.target == lvalue and constant_of(x.value) == 0 for x in body)
+
+
+def _steps(s: Stmt, number: NamedScalar) -> bool:
+    return isinstance(s, Assign) and isinstance(s.target, LValue) and named_scalar(s.target) == number and is_step(
+        s.target, s.value
+    )  # fmt: skip
+
+
+def _only_counted(gate: _Gate, functions: Iterable[Function]) -> bool:
+    """Whether a number is only counted behind its gate, set to constants elsewhere, and tested nowhere else."""
+    counted = {id(s) for s in gate.body}
+    for function in functions:
+        for s in statements(function.body):
+            nodes = own_nodes(s)
+            for test in _tests(s, nodes):
+                if test is not gate.test and _has(test, gate.number) and not _about_nothing(test):
+                    return False
+            match s:
+                case Assign(target=LValue() as target, value=value) if named_scalar(target) == gate.number:
+                    if not (_steps(s, gate.number) and id(s) in counted) and constant_of(value) is None:
+                        return False
+                case For(variable=variable) if named_scalar(variable) == gate.number:
+                    return False
+            if any(isinstance(p, AddressOf) and named_scalar(p.lvalue) == gate.number for p in nodes):
+                return False
+    return True
+
+
+def _tests(s: Stmt, nodes: Iterable[Any]) -> Iterator[Expr]:
+    for p in nodes:
+        if isinstance(p, Compare):
+            yield p
+        elif isinstance(p, Not | Conditional):
+            inner = p.operand if isinstance(p, Not) else p.test
+            if isinstance(bare(inner), Load):
+                yield inner
+    match s:
+        case Switch(subject=test):
+            yield test
+        case If(test=test) | While(test=test) if isinstance(bare(test), Load):
+            yield test
+        case For(stop=stop):
+            yield stop
+
+
+def _about_nothing(test: Expr) -> bool:
+    """Whether a test only asks whether a number is 0, or is the number of turns of a loop."""
+    return not isinstance(test, Compare) or 0 in (constant_of(test.left), constant_of(test.right))
+
+
+def _has(e: Any, number: NamedScalar) -> bool:
+    return any(isinstance(p, LValue) and named_scalar(p) == number for p in parts(e))
+
+
+def _beyond(gate: _Gate, function: Function) -> _Beyond | None:
+    """An element that the number goes beyond, with the length of its array and the largest value of the number."""
+    within = {id(x) for s in gate.body for block in blocks(s) for x in statements(block)}
+    return next(_elements(gate, function.body, within), None)
+
+
+def _elements(gate: _Gate, body: list[Stmt], within: set[int]) -> Iterator[_Beyond]:
+    """What `_beyond` looks for, in a block up to a statement that sets the number back."""
+    most = gate.limit + 1
+    old: set[Variable] = set()
+    for s in body:
+        if gate.body and s is gate.body[0]:
+            most = gate.limit
+        match s:
+            case Declare(variable=Variable(kind="temporary") as kept, value=Expr() as value) if _is(value, gate.number):
+                old.add(kept)
+        nodes = own_nodes(s)
+        pointed = {id(p.lvalue) for p in nodes if isinstance(p, AddressOf)}
+        for lvalue in nodes if id(s) not in within else ():
+            if not isinstance(lvalue, LValue) or id(lvalue) in pointed or len(lvalue.indices) != 1:
+                continue
+            index = lvalue.indices[0]
+            before = isinstance(at := bare(index.expr), Load) and at.lvalue.root in old
+            reached = gate.limit if before else most
+            if index.bound and index.bound <= reached and (before or _is(index.expr, gate.number)):
+                yield _Beyond(lvalue, index.bound, reached)
+        for block in blocks(s):
+            yield from _elements(gate, block, within)
+        if _steps(s, gate.number):
+            most = gate.limit + 1
+        elif _sets(s, gate.number):
+            return
+        elif not any(p is gate.test for p in nodes):
+            staying = [block for block in blocks(s) if not leaves(block)]
+            if any(_sets(x, gate.number) for block in staying for x in statements(block)):
+                return
+
+
+def _sets(s: Stmt, number: NamedScalar) -> bool:
+    """Whether a statement sets a number, and does not step it."""
+    return (
+        isinstance(s, Assign) and isinstance(s.target, LValue) and named_scalar(s.target) == number
+        and not _steps(s, number)
+    )  # fmt: skip
+
+
+def _is(e: Expr, number: NamedScalar) -> bool:
+    """Whether an expression is just the value of a number."""
+    inner = bare(e)
+    return isinstance(inner, Load) and isinstance(inner.ctype, IntType) and named_scalar(inner.lvalue) == number

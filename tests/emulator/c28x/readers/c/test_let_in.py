@@ -1,0 +1,67 @@
+"""Tests that let one element too many into an array, and their right twins."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.emulator.c28x.readers.c.workshop import findings_of
+
+HEAD = """typedef unsigned int Uint16;
+static char line[8];
+static struct { Uint16 used; char text[8]; } kept;
+static Uint16 n, m, more[9];
+volatile char in;
+static void Obey(void) { in = line[0]; }
+"""
+
+
+def told(take: str, rest: str = "") -> bool:
+    """Whether a function that takes one character is told that its array is too short."""
+    text = f"{HEAD}void Take(char c)\n{{\n{take}\n}}\n{rest}\n"
+    return ("table-short", HEAD.count("\n") + 3) in findings_of(text)
+
+
+@pytest.mark.parametrize(
+    ("take", "rest"),
+    [
+        ("if (c == '\\n') { Obey(); n = 0; } else if (n <= 8) line[n++] = c;", ""),
+        ("if (n < 9 && c != 0) { line[n] = c; n++; } else n = 0;", ""),
+        ("if (n > 8) { n = 0; } line[n++] = c;", ""),
+        ("if (n >= 9) return; line[n++] = c;", "void Clear(void) { n = 0; }"),
+        ("if (kept.used <= 8) kept.text[kept.used++] = c; else kept.used = 0;", ""),
+        # The end of the text.
+        ("if (n < 8) line[n++] = c;", "void End(void) { line[n] = 0; n = 0; Obey(); }"),
+        ("if (n < 8) { line[n++] = c; line[n] = 0; }", ""),
+        ("if (kept.used < 8) kept.text[kept.used++] = c; else { kept.text[kept.used] = 0; kept.used = 0; }", ""),
+    ],
+)
+def test_one_element_too_many_is_told(take: str, rest: str) -> None:
+    assert told(take, rest)
+
+
+@pytest.mark.parametrize(
+    ("take", "rest"),
+    [
+        ("if (n < 8) line[n++] = c;", ""),
+        ("if (n <= 7) line[n++] = c; else n = 0;", ""),
+        ("if (n < 7) line[n++] = c;", "void End(void) { line[n] = 0; n = 0; Obey(); }"),
+        ("if (n >= 8) n = 0; line[n++] = c;", ""),
+        ("if (n >= 8) return; line[n++] = c;", ""),
+        ("if (n <= 8) more[n++] = c;", ""),
+        # Another test ends the count.
+        ("if (n <= 8) { line[n++] = c; if (n == 8) n = 0; }", ""),
+        ("if (n <= 8) line[n++] = c;", "void Look(void) { if (n >= 8) { Obey(); n = 0; } }"),
+        ("if (n < 8) line[n++] = c;", "void End(void) { if (n < 8) line[n] = 0; n = 0; Obey(); }"),
+        # It is set back before.
+        ("if (n < 8) { line[n++] = c; } else { n = 0; line[n] = c; }", ""),
+        ("if (c == '\\r') n = 0; if (in) line[n] = c; if (n < 8) n++;", ""),
+        # In a loop, the turns may be the limit.
+        ("n = 0; for (m = 0; m < 8; m++) { if (n <= 8) line[n++] = more[m]; }", ""),
+        # It is counted down elsewhere, or gets what nobody knows.
+        ("if (n <= 8) line[n++] = c;", "void Back(void) { if (n) n--; }"),
+        ("if (n <= 8) line[n++] = c;", "void Set(Uint16 to) { n = to; }"),
+        ("const char *end; if (n < 8) line[n++] = c; end = &line[n]; in = end[-1];", ""),
+    ],
+)
+def test_as_many_elements_as_there_are_is_silent(take: str, rest: str) -> None:
+    assert not told(take, rest)
