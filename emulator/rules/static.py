@@ -67,7 +67,8 @@ Nothing reads the variable before it is written again or before the function end
 is discarded; a state in a local that should be a file-scope object; a parameter that should be a pointer.
 
 The check also reports a file-scope object that is set twice when nothing in between can read it, and a local structure
-or array (or one that was passed by value) of which no part is read after the last store.
+or array (or one that was passed by value) of which no part is read after the last store. A local that is only read to
+make its own next value is reported too: a check sum (`check ^= word;`) that nothing compares.
 
 Constants, steps such as `p++`, and reads of registers or calls of kernel functions (made for their effect) are not
 reported, nor are stores to a `volatile` local. A constant that limits the variable is reported (`if (x > 300) x =

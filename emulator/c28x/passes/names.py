@@ -45,6 +45,7 @@ from emulator.c28x.tree import (
 from emulator.c28x.tree_queries import (
     OBSERVABLE,
     addressed,
+    assigned,
     bare,
     blocks,
     different,
@@ -86,6 +87,11 @@ class Liveness:
         #: Identity of each statement -> the variables that it uses itself.
         self.used = {id(s): frozenset(read(s)) for s in statements(function.body)}
         self.read_anywhere = {v for used in self.used.values() for v in used}
+        #: Variables whose value only their own next value is made of: `check ^= word;`.
+        self.only_themselves = self.tracked & self.read_anywhere
+        for s in statements(function.body):
+            own = assigned(s) if isinstance(s, Assign) else None
+            self.only_themselves -= {v for v in self.used[id(s)] if v is not own}
         #: The live variables after each enclosing loop and at its `continue`; after each enclosing switch.
         self.loops: list[tuple[Live, Live]] = []
         self.switches: list[tuple[str, Live]] = []
@@ -130,7 +136,7 @@ class Liveness:
         match s:
             case Assign(target=LValue(root=Variable() as root, indices=[]), value=value) if root in self.tracked:
                 self.store(s, root, value, live)
-                return live - {root} | used
+                return live - {root} | (used - self.only_themselves)
             case Assign(target=LValue(root=Variable() as root), value=value) if root in self.whole:
                 self.store(s, root, value, live)
                 return live | used
@@ -203,6 +209,8 @@ class Liveness:
             return
         declared = isinstance(s, Declare)
         if _reads_device(value) or (_for_effect(value) and (declared or variable not in self.read_anywhere)):
+            return
+        if variable in self.only_themselves and volatile(value):
             return
         if variable in self.whole:  # reported once, at its first part: the walk goes backwards
             self.found = {line: found for line, found in self.found.items() if found[1] is not variable}

@@ -113,6 +113,9 @@ READ = [
     "{ int x = n * 2; do { if (port) { x = n * 3; continue; } port = 2; } while (x > 3); return 0; }",
     # The next turn of a do reads.
     "{ int x = n, y; do { y = x; x = y + port; } while (y < 100); return 0; }",
+    "{ int x = 0; while (n-- > 0) x ^= n; return x; }",
+    "{ int x = 0; while (n-- > 0) x ^= port; return 0; }",  # read for its effect
+    "{ int x = 0; while (n-- > 0) x++; return 0; }",
 ]
 
 
@@ -126,6 +129,7 @@ DEAD = [
     "{ int x; switch (n) { case 0: x = n * 2; break; case 1: x = n * 3; port = x; break; } return 0; }",
     "{ int x; do { x = n * 2; } while (n-- > 0); return 0; }",
     "{ int x; for (x = n * 4; n > 3; n++) { x = n * 2; port = x; } return n; }",
+    "{ int x = 0; while (n-- > 0) x ^= n; return n; }",
 ]
 
 
