@@ -164,8 +164,10 @@ by a factor.
 The units are those that names and comments state. A name states one by its end (`timeoutMs`, `SAMPLE_US`, `dist_mm`,
 `TiltDegrees`, `tempTenthsDeg`, `angle_deg_x10`), a comment beside the declaration if it begins with nothing but a unit
 (`// mV`, `// 0.1 degree`), or has one in brackets (`[mm]`). Ends that mean other things too count beside a word for the
-quantity (`timeout_s`, `temperatureDc`). Time-outs and periods of SYS/BIOS are in ticks, `DELAY_US` takes microseconds,
-angles of the C library are in radians. The message names both units, and says where each comes from.
+quantity (`timeout_s`, `temperatureDc`), and in a sum, a comparison or an assignment with a value in another unit of
+this quantity (`now_ms - since_ms > hold_s`), unless the letter is one of several (`LIMIT_A`, `LIMIT_B`). Time-outs and
+periods of SYS/BIOS are in ticks, `DELAY_US` takes microseconds, angles of the C library are in radians. The message
+names both units, and says where each comes from.
 
 `hil check` reports a value that goes to an object, a parameter or a result with another unit of the same quantity, also
 in a list of initial values, and sums and comparisons of two units. A constant factor converts: `x_ms * 1000` is
@@ -174,6 +176,9 @@ may mean something else, and is not.
 A product with 180/pi (57.3) is in degrees: it is reported where it, or an object that takes only such products, goes to
 `sinf` or to a value in radians. A share of a value (`FULL_MV * permille / 100`) that goes to its own quantity is
 reported if its factor is ten times too large, for a share is no multiple; a smaller part of it can be meant.
+A current times a time is a charge: `mA * ms` is not `mAs`. So are products of power and time, and of voltage and
+current. A local that goes as it is to an object in a unit, and to no other, is in this unit. What the program counts
+one by one, divided by a constant such as `STEPS_PER_MM`, is in millimetres.
 Values of two quantities are reported only if no sensor makes one of the other without a factor. An object that is
 printed as it is, in front of another unit (`sprintf(line, "%u mV", current_mA)`), is reported in any case.
 

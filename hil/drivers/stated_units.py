@@ -9,8 +9,9 @@ from math import isclose
 from typing import Final
 
 from emulator.c28x.declarations import lines_with_comments
-from emulator.c28x.tree import Const, Where
-from hil.drivers.unit_names import PhysicalUnit, UnitRemark, remark, unit_of_name
+from emulator.c28x.tree import Const, Convert, Expr, Where
+from emulator.c28x.tree_queries import bare
+from hil.drivers.unit_names import PhysicalUnit, UnitRemark, remark, unit_in_context, unit_of_name
 
 #: One number: C, and C-shaped Python.
 _NUMBER: Final = (
@@ -29,6 +30,8 @@ _MEMBERS: Final = re.compile(rf"^\s*(?:\w+\s+)+[*\s]*({_NAMES}(?:\s*,[\s*]*{_NAM
 _MACRO: Final = re.compile(r"^\s*#\s*define\s+(\w+)\(\s*\w+\s*\)")
 _IDENTIFIER: Final = re.compile(r"[A-Za-z_]\w*")
 _SUBSCRIPT: Final = re.compile(r"\[[^\[\]]*\]")
+#: Last letters of names that count: letters of no unit.
+_CHANNELS: Final = "BDELNPRUXYZbdelnpruxyz"
 #: A number in a comment may be rounded by this.
 _ROUNDED: Final = 0.01
 
@@ -76,6 +79,22 @@ def stated(name: str, said: UnitRemark, by: str = "name") -> Measured | None:
     return Measured(unit, by) if unit is not None else None
 
 
+def stated_in_context(name: str, said: UnitRemark, identifiers: set[str]) -> Measured | None:
+    """The unit that a name may state where another value shows the quantity (`hold_s`).
+
+    `LIMIT_A` beside `LIMIT_B` among the `identifiers` of the program has a channel, and no unit.
+    """
+    unit = unit_in_context(name) if said == UnitRemark() else None
+    if unit is None or (name[-2:-1] == "_" and any(name[:-1] + letter in identifiers for letter in _CHANNELS)):
+        return None
+    return Measured(unit, "name", of=name)
+
+
+def identifiers(files: Iterable[str]) -> set[str]:
+    """The identifiers in the code of files."""
+    return {name for file in files for code, _ in lines_with_comments(file) for name in _IDENTIFIER.findall(code)}
+
+
 def of_definition(where: Where, value: float) -> Measured | None:
     """The unit of a number that the definition at a place names; None: it is not known."""
     code, comment = _line(where)
@@ -87,6 +106,14 @@ def of_definition(where: Where, value: float) -> Measured | None:
         said = UnitRemark(said.unit, said.unclear)
     found = stated(name, said)
     return replace(found, of=name) if found is not None else None
+
+
+def as_written(e: Expr) -> Expr:
+    """An expression without conversions, also those that were folded into a constant."""
+    e = bare(e)
+    while isinstance(e, Const) and isinstance(e.source, Convert):
+        e = bare(e.source)
+    return e
 
 
 def defined_number(e: Const) -> tuple[str, str]:

@@ -4,6 +4,10 @@ A name states a unit by its end, in snake_case or camelCase.  An end that has ot
 counts only if another word of the name names the quantity: `timeout_s`, `motorCurrent_A`, `temperatureDc`.  Names with
 `per` are rates or factors, which are not followed.
 
+An end that could also be a channel or a phase (`halten_s`, `LIMIT_A`), or that is rare (`cbar`), states a unit where
+the other side of a comparison, a sum or an assignment has a unit of the same quantity: `unit_in_context`.  Two units
+one behind the other are one of a product (`rest_mA_ms`), or of a rate (`mm_s`), which is not followed.
+
 A comment states a unit if it begins with nothing but a unit (`// rpm, filtered`), or has one in brackets.  A comment
 that speaks of a scale in another form makes the unit of the name unknown.
 """
@@ -49,6 +53,20 @@ class PhysicalUnit:
         """A unit that is smaller by a factor."""
         return replace(self, name=f"1/{by:g} {self.name}", scale=self.scale / by, prefix=self.prefix / by)
 
+    def multiplied(self, other: PhysicalUnit) -> PhysicalUnit | None:
+        """The unit of a product with a value in the `other` unit; None: it has no name."""
+        for one, two in ((self, other), (other, self)):
+            quantity = _PRODUCTS.get((one.quantity, two.quantity))
+            if quantity is not None and one.scale and two.scale:
+                return PhysicalUnit(f"{one.name} {two.name}", quantity, one.scale * two.scale, one.prefix * two.prefix)
+        return None
+
+
+#: Quantities of which a product is another one, in the base units (A s, V A, W s).
+_PRODUCTS: Final = {
+    ("current", "time"): "charge", ("power", "time"): "energy", ("voltage", "current"): "power",
+}  # fmt: skip
+
 
 def _units() -> Iterator[tuple[PhysicalUnit, tuple[str, ...], tuple[str, ...]]]:
     """The units, each with the ends of names, in small letters, that state it, and with more texts of comments.
@@ -93,7 +111,12 @@ def _units() -> Iterator[tuple[PhysicalUnit, tuple[str, ...], tuple[str, ...]]]:
     yield PhysicalUnit("rpm", "rotation", 1.0), ("rpm",), ()
     yield PhysicalUnit("percent", "ratio", 1e-2), ("percent", "pct"), ("%",)
     yield PhysicalUnit("permille", "ratio", 1e-3), ("permille", "promille"), ()
-    for size, words in ((1e-1, ("tenths",)), (1e-2, ("hundredths",)), (1e-3, ("milli", "thousandths"))):
+    for size, words in (
+        (1e-1, ("tenths",)),
+        (1e-2, ("hundredths",)),
+        (0.0625, ("sixteenths",)),
+        (1e-3, ("milli", "thousandths")),
+    ):
         yield PhysicalUnit(f"{words[-1]} of a unit", "", size, size), words, ()
 
 
@@ -134,10 +157,25 @@ _AMBIGUOUS: Final = {
         "winkel", "kurs", "drehung", "neigung", "angulo", "rumbo", "giro",
     )),
 }  # fmt: skip
+#: Products of units, as names spell them.
+_SPELLED: Final = {
+    spelling: PhysicalUnit(f"{letter}{symbol}", quantity, size * power, power)
+    for symbol, quantity, size in (
+        ("As", "charge", 1.0), ("Ah", "charge", 3600.0), ("Ws", "energy", 1.0), ("Wh", "energy", 3600.0),
+    )
+    for letter, power in (("", 1.0), ("m", 1e-3), ("u", 1e-6), ("k", 1e3))
+    for spelling in ((f"{letter}{symbol}", f"{letter}{symbol}".upper()) if letter else (symbol,))
+}  # fmt: skip
+#: Ends, as they are written, that state a unit only where the other side has one of the same quantity.
+_IN_CONTEXT: Final = {
+    **{end: _BY_NAME[end] for end in ("s", "V", "A", "W", "cbar", "dbar", "cV", "cA")}, "C": _BY_NAME["degree Celsius"],
+}  # fmt: skip
+#: The words for `per`: the name of a rate.
+_PER: Final = frozenset(("per", "je", "pro", "por"))
 #: Parts of a unit: how a comment or a name writes them.
 _PARTS: Final = {
     "tenth": 10.0, "tenths": 10.0, "hundredth": 100.0, "hundredths": 100.0, "thousandth": 1000.0,
-    "thousandths": 1000.0, "deci": 10.0, "centi": 100.0,
+    "thousandths": 1000.0, "sixteenth": 16.0, "sixteenths": 16.0, "deci": 10.0, "centi": 100.0,
     "0.1": 10.0, "0.01": 100.0, "0.001": 1000.0, "1/10": 10.0, "1/100": 100.0, "1/1000": 1000.0,
 }  # fmt: skip
 #: Names that are a unit and nothing else.
@@ -160,12 +198,15 @@ _NUMBER: Final = r"[-+]?\d+(?:\.\d*)?"
 def unit_of_name(name: str) -> PhysicalUnit | None:
     """The unit that the end of an identifier states; None: none, or one that is not certain."""
     words: list[str] = []
-    for part in name.split("_"):
+    written = name.split("_")
+    for part in written:
         whole = part.lower() in _ENDS or part in ("kHz", "MHz", "mHz", "mA", "mC", "dC")
         words += [part] if whole else _HUMPS.findall(part)
     small = [word.lower() for word in words]
-    if "per" in small or not small:
+    if not _PER.isdisjoint(small) or not small:
         return None
+    if len(written) > 1 and written[-1] in _SPELLED:
+        return _SPELLED[written[-1]]
     if len(small) == 1:
         return _ENDS[small[0]] if small[0] in _ALONE else None
     if small[-2] == "x" and small[-1] in ("10", "100", "1000"):
@@ -178,6 +219,10 @@ def unit_of_name(name: str) -> PhysicalUnit | None:
     if len(small) > 2 and small[-2] + small[-1] in _ENDS:
         return _ENDS[small[-2] + small[-1]]
     end = small[-1]
+    before = _whole_word(written[-2]) if len(written) > 2 else None
+    if before is not None:
+        last = _whole_word(written[-1])
+        return before.multiplied(last) if last is not None else None
     if end in _AMBIGUOUS:
         unit_name, quantities = _AMBIGUOUS[end]
         known = any(word == q or (len(q) > 2 and word.startswith(q)) for word in small[:-1] for q in quantities)
@@ -187,6 +232,31 @@ def unit_of_name(name: str) -> PhysicalUnit | None:
     if unit is not None and unit.quantity and small[-2] in _PARTS:
         return unit.divided(_PARTS[small[-2]])
     return unit
+
+
+def unit_in_context(name: str) -> PhysicalUnit | None:
+    """The unit that the end of an identifier may state, where another unit shows the quantity; None: none."""
+    *before, end = name.split("_")
+    unit = _IN_CONTEXT.get(end) or (_IN_CONTEXT.get(end.lower()) if name.isupper() else None)
+    if not before or len(before[-1]) < 2 or _whole_word(before[-1]) is not None or not _PER.isdisjoint(words_of(name)):
+        return None  # a rate, or an index of one letter
+    return unit
+
+
+def unit_per(name: str) -> PhysicalUnit | None:
+    """The unit of which the name of a factor says how many counts make one: `STEPS_PER_MM`, `PULSE_JE_ML`."""
+    words = name.split("_")
+    if len(words) < 3 or words[-2].lower() not in _PER or any(_whole_word(word) is not None for word in words[:-2]):
+        return None
+    return _whole_word(words[-1])
+
+
+def _whole_word(word: str) -> PhysicalUnit | None:
+    """The unit that a word is, and nothing else; no symbol of one letter."""
+    if len(word) < 2:
+        return None
+    unit = _BY_NAME.get(word) or _BY_NAME.get("mA" if word == "MA" else "") or _ENDS.get(word.lower())
+    return unit if unit is not None and unit.quantity and unit.quantity != "ratio" else None
 
 
 def unit_of_text(text: str) -> PhysicalUnit | None:

@@ -10,9 +10,14 @@ kernel has it: angles are in radians, time-outs of SYS/BIOS in ticks.  A value k
 casts, signs and sums, and in local variables that take only values of this unit.  A mean keeps the unit of its parts: a
 sum of products with constants that add up to 1, as in a filter.  Other products and quotients have no known unit.
 
+A name whose end can mean something else too (`hold_s`, `LIMIT_A`) states its unit where it meets a value in another
+unit of this quantity.  A local that is moved as it is to objects in one unit, and goes nowhere else, has this unit.
+
 A product with constants is in its unit or, if the constants convert it, in another: `x_ms * 1000` is in ms or in us.
 It is told if no scaling can have been meant, and the constant is a power of ten, or the reverse of what would convert.
 A product with 180/pi is in degrees, whatever its other factor is called; so is an object that takes only such values.
+A product of a current and a time is a charge, in the product of their units, and so are energies and powers.  What
+counts one by one, divided by a constant such as `STEPS_PER_MM`, is in millimetres.
 A product of a value and a share in percent or permille has the unit of the value, with the factor that makes it one.
 
 CHOICE: values of two different quantities are told only if no sensor can have made one of the other without a factor:
@@ -56,9 +61,22 @@ from emulator.c28x.tree import (
 from emulator.c28x.tree_queries import assigned, bare, own_nodes, parts, roots, source_text, statements
 from emulator.chip import Chip
 from hil.drivers.clock_names import clock_by_name, factors
+from hil.drivers.counted import counted
 from hil.drivers.hardware_counts import HardwareCounts, tick_seconds
-from hil.drivers.stated_units import Measured, comment_beside, macro_name, members, misnamed, of_definition, stated
-from hil.drivers.unit_names import PhysicalUnit, UnitRemark, remark, unit_of_text, words_of
+from hil.drivers.stated_units import (
+    Measured,
+    as_written,
+    comment_beside,
+    defined_number,
+    identifiers,
+    macro_name,
+    members,
+    misnamed,
+    of_definition,
+    stated,
+    stated_in_context,
+)
+from hil.drivers.unit_names import PhysicalUnit, UnitRemark, remark, unit_of_text, unit_per, words_of
 
 #: Operators whose operands must have the same unit; the result has this unit too.
 _KEEPS: Final = ("+", "-")
@@ -103,6 +121,8 @@ _MOST_MEMBERS: Final = 500
 _LAST: Final = re.compile(r"(\w+)\W*$")
 #: What stands behind a conversion: the name of a unit, and what follows up to the next conversion.
 _UNIT_BEHIND: Final = re.compile(r" ?(?P<unit>[^\s%,;:.()\[\]]+)(?P<rest>[^%]*)")
+#: What a comment says about a divisor that is not in whole counts.
+_SCALED_DIVISOR: Final = re.compile(r"tenth|hundredth|thousandth|scale|fixed|times|[*x] ?10|0\.\d|\bq\d", re.IGNORECASE)
 _SUBSCRIPT: Final = re.compile(r"\[[^\[\]]*\]")
 
 
@@ -185,13 +205,19 @@ class _Units:
         self._members = members(self.files)
         #: The text of objects at file scope that hold what was multiplied with 180/pi.
         self._degrees: set[str] = set()
+        self._identifiers = identifiers(self.files)
         #: Objects and members that the program converts where they are: their names are right at one time only.
         self._converted = {
             _name(target) for function in functions for target, value in _assignments(function)
             if _scales_itself(target, value)
         }  # fmt: skip
+        self._counted = counted((pair for function in functions for pair in _assignments(function)), _name)
+        #: Where numbers are defined that the program passes on as ticks of the kernel.
+        self._in_ticks: set[Where] = set()
         for function in functions:
             self._infer(function)
+            self._infer_by_targets(function)
+        self._infer_ticks(functions)
         self._infer_parameters(functions)
         for function in functions:
             self._infer(function)
@@ -232,6 +258,44 @@ class _Units:
                 v is not None and v.factor == 1.0 and v.unit == first.unit for v in values
             ):  # fmt: skip
                 self.variables[variable] = _inherited(first)
+
+    def _infer_by_targets(self, function: Function) -> None:
+        """Give a unit to locals that take one value, and go as they are to objects in this unit, and nowhere else."""
+        given: dict[Variable, int] = {}
+        units: dict[Variable, list[Measured | None]] = {}
+        for target, value in _assignments(function):
+            root = target.root
+            if isinstance(root, Variable) and not isinstance(bare(value), Const):
+                given[root] = given.get(root, 0) + 1
+            moved = bare(value)
+            whole = moved.lvalue.root if isinstance(moved, Load) and not moved.lvalue.indices else None
+            for part in parts(value):
+                used = part.root if isinstance(part, LValue) else None
+                if isinstance(used, Variable) and used.kind == "local" and _is_number(used.ctype):
+                    units.setdefault(used, []).append(self._of_lvalue(target) if used is whole else None)
+        for variable, wanted in units.items():
+            first = wanted[0]
+            local = given.get(variable) == 1 and not variable.escapes and self._of_lvalue(_whole(variable)) is None
+            if local and first is not None and all(unit is not None and unit.unit == first.unit for unit in wanted):
+                self.variables[variable] = replace(first, by="target's " + first.by) if first.by else first
+
+    def _infer_ticks(self, functions: list[Function]) -> None:
+        """Give the kernel's tick to parameters that go as they are to its functions, and to numbers passed as ticks."""
+        calls = [p for f in functions for s in statements(f.body) for p in own_nodes(s) if isinstance(p, Call)]
+        changed = {assigned(s) for function in functions for s in statements(function.body)}
+        for _ in range(2):  # a function around one around the kernel's
+            for call in calls:
+                for n, value in enumerate(map(as_written, call.arguments)):
+                    wanted = self._of_parameter(call.function, n)[0]
+                    if wanted is None or wanted.unit != self._tick or wanted.by:
+                        continue
+                    if isinstance(value, Const) and value.where.macro is not None:
+                        self._in_ticks.add(value.where.macro)
+                    root = value.lvalue.root if isinstance(value, Load) and not value.lvalue.indices else None
+                    if not isinstance(root, Variable) or root.kind != "parameter" or root in changed or root.escapes:
+                        continue
+                    if _is_number(root.ctype) and self._of_lvalue(_whole(root)) is None:
+                        self.variables[root] = Measured(self._tick)
 
     def _infer_parameters(self, functions: list[Function]) -> None:
         """Give a unit to parameters to which each call passes a value of this unit."""
@@ -294,7 +358,7 @@ class _Units:
 
             where = variable.declaration.where
             if variable.initial and not isinstance(variable.ctype, StructType | ArrayType):
-                wanted = self._of_lvalue(LValue(variable.ctype, variable))
+                wanted = self._of_lvalue(_whole(variable))
                 self._check_target(variable.initial[0], wanted, where, report, variable.declaration.name)
             elif variable.initial:
                 self._check_members(variable, variable.initial, where, report)
@@ -317,6 +381,8 @@ class _Units:
                 if isinstance(e, Binary):
                     left, right = _averaged(e) or (left, right)
                 one, other = self._value(left), self._value(right)
+                one = one or (self._in_context(left, other) if other is not None else None)
+                other = other or (self._in_context(right, one) if one is not None else None)
                 if one is not None and other is not None:
                     turned = one.factor == 1.0 != other.factor
                     message = (
@@ -334,7 +400,9 @@ class _Units:
                 self._check_printed(e, where, report)
                 for number, value in enumerate(arguments):
                     wanted, name = self._of_parameter(callee, number)
-                    self._check_target(value, wanted, where, report, f"parameter {name} of {callee.name}")
+                    text = f"parameter {name} of {callee.name}"
+                    own = callee.parameters[number : number + 1] if not callee.extern else []
+                    self._check_target(value, wanted, where, report, text, _whole(own[0]) if own else None)
 
     def _check_printed(self, e: Call, where: Where, report: Report) -> None:
         """Check the objects that a format prints in front of the name of a unit, as they are: `%u mV`.
@@ -344,7 +412,8 @@ class _Units:
         for value, before, behind in printed(e):
             follows = _UNIT_BEHIND.match(behind)
             given = self._value(value)
-            if follows is None or given is None or not isinstance(bare(value), Load) or before.endswith("."):
+            as_it_is = isinstance(bare(value), Load) or (given is not None and given.by == _BY_DIVISOR)
+            if follows is None or given is None or not as_it_is or before.endswith("."):
                 continue
             said = remark(f"{follows['unit']}; {follows['rest']}")
             if said.unit is None or said.unclear or given.factor != 1.0 or given.named:
@@ -356,8 +425,8 @@ class _Units:
 
     def _check_clock(self, e: Binary, where: Where, report: Report) -> None:
         """Check a product or a quotient of counts with a constant whose name says how fast the counter counts."""
-        for counted, other in ((e.left, e.right), (e.right, e.left)) if self._counters is not None else ():
-            counts = [found for f in factors(counted) if (found := self._value(f)) is not None and found.counter]
+        for number, other in ((e.left, e.right), (e.right, e.left)) if self._counters is not None else ():
+            counts = [found for f in factors(number) if (found := self._value(f)) is not None and found.counter]
             claims = [claim for f in factors(other) if (claim := clock_by_name(f)) is not None]
             if len(counts) != 1 or len(claims) != 1:
                 continue
@@ -374,10 +443,11 @@ class _Units:
             case Return(value=Expr() as value):
                 self._check_target(value, self._of_result(function), s.where, report, f"the result of {function.name}")
             case Assign(target=LValue() as target, value=value):
-                self._check_target(value, self._of_lvalue(target), s.where, report, target.text or _name(target))
+                wanted = self._of_lvalue(target)
+                self._check_target(value, wanted, s.where, report, target.text or _name(target), target)
             case Declare(variable=variable, value=Expr() as value):
-                lvalue = LValue(variable.ctype, variable)
-                self._check_target(value, self._of_lvalue(lvalue), s.where, report, variable.declaration.name)
+                lvalue = _whole(variable)
+                self._check_target(value, self._of_lvalue(lvalue), s.where, report, variable.declaration.name, lvalue)
             case Declare(variable=variable, value=list() as values):
                 self._check_members(variable, values, s.where, report)
 
@@ -396,9 +466,13 @@ class _Units:
             self._check_target(given[0], wanted, s.where, report, f"the argument of {name}")
 
     def _check_target(
-        self, value: Expr, wanted: Measured | None, where: Where, report: Report, target: str
+        self, value: Expr, wanted: Measured | None, where: Where, report: Report, target: str, to: LValue | None = None
     ) -> None:
         given = self._value(value)
+        if wanted is None and given is not None and to is not None:
+            wanted = self._in_context(Load(to.ctype, to), given)
+        elif given is None and wanted is not None:
+            given = self._in_context(value, wanted)
         if wanted is not None and given is not None:
             message = _mismatch(given, wanted, _text(given, value), target)
             if message:
@@ -437,6 +511,21 @@ class _Units:
             f"the factor of such a share is {right:.4g}"
         )
 
+    def _in_context(self, e: Expr, other: Measured) -> Measured | None:
+        """The unit of an object, a constant or a result whose name may state one of the quantity of the `other`."""
+        name, said = "", UnitRemark()
+        match as_written(e):
+            case Const() as constant:
+                name, comment = defined_number(constant)
+                said = remark(comment)
+            case Load(lvalue=lvalue) if _is_number(lvalue.ctype):
+                name = _name(lvalue)
+                said = self._said(lvalue, name)
+            case Call(function=function) if _states_result(function):
+                name = function.name
+        found = stated_in_context(name, said, self._identifiers) if other.factor == 1.0 and not other.named else None
+        return found if found is not None and name not in self._converted and found.unit.ratio(other.unit) else None
+
     def _value(self, e: Expr) -> Measured | None:
         """The unit of a value; None if it is not known."""
         if self._counters is not None and isinstance(e, RegisterLoad | Call | Unary):
@@ -473,6 +562,14 @@ class _Units:
     def _scaled(self, e: Binary) -> Measured | None:
         """The unit of a product or a quotient of one value with constants."""
         left, right = bare(e.left), bare(e.right)
+        if e.op == "*" and (product := self._multiplied(left, right)) is not None:
+            return product
+        if e.op == "/" and (unit := _unit_of_divisor(right)) is not None:
+            number, times = left, 1.0
+            while isinstance(number, Binary) and number.op == "*" and (by := _plain(bare(number.right))) is not None:
+                number, times = bare(number.left), times * by
+            if isinstance(number, Load) and _name(number.lvalue) in self._counted and self._value(number) is None:
+                return Measured(unit, _BY_DIVISOR, times)
         if e.op == "*" and _plain(left) is not None:
             left, right = right, left
         factor, value = _plain(right), self._value(left)
@@ -487,6 +584,19 @@ class _Units:
         named = value.named or any(part.where.macro is not None for part in _with_sources(right))
         of = value.of or source_text(left)
         return replace(value, factor=value.factor * (factor if e.op in ("*", "<<") else 1 / factor), named=named, of=of)
+
+    def _multiplied(self, left: Expr, right: Expr) -> Measured | None:
+        """The unit of a product of two values of which the quantity is known; None: it is none."""
+        one, other = (
+            Measured(self._tick) if isinstance(e, Const) and e.where.macro in self._in_ticks else self._value(e)
+            for e in map(as_written, (left, right))
+        )
+        unit = one.unit.multiplied(other.unit) if one is not None and other is not None else None
+        if one is None or other is None or unit is None or one.counter or other.counter:
+            return None
+        by = "factors' names" if one.by or other.by else ""
+        of = f"{one.of or source_text(left)} * {other.of or source_text(right)}"
+        return Measured(unit, by, one.factor * other.factor, one.named or other.named, of)
 
     def _of_lvalue(self, lvalue: LValue) -> Measured | None:
         """The unit of an object, or of a member, element or target."""
@@ -503,11 +613,16 @@ class _Units:
             struct = root.ctype.target if isinstance(root.ctype, PointerType) else root.ctype
             if (struct.name, name) in _TICK_MEMBERS:
                 return Measured(self._tick)
+        found = stated(name, self._said(lvalue, name))
         if whole and isinstance(root, Variable):
-            found = stated(name, comment_beside(root.declaration.where, name))
             self.variables[root] = found
-            return found
-        return stated(name, self._members.get(name, UnitRemark()))
+        return found
+
+    def _said(self, lvalue: LValue, name: str) -> UnitRemark:
+        """What the comment beside the declaration of an object or a member says."""
+        if isinstance(lvalue.root, Variable) and _is_whole(lvalue):
+            return comment_beside(lvalue.root.declaration.where, name)
+        return self._members.get(name, UnitRemark())
 
     def _of_result(self, function: Function) -> Measured | None:
         """The unit of a function's result."""
@@ -515,11 +630,7 @@ class _Units:
             return self.results[function.path]
         if function.extern and function.name in _TICKS:
             return Measured(self._tick)
-        words = words_of(function.name)
-        takes = words[:1] == [] or words[0] in _TAKING or words[0] in _ASKING or "from" in words
-        # `period_hz(rate)` need not be in Hz, but `get_hz(channel)` and `ticks_to_ms(n)` say what they give.
-        takes |= any(_is_number(p.ctype) for p in function.parameters) and not _GIVING.intersection(words)
-        return None if takes or not _is_number(function.ctype.result) else stated(function.name, UnitRemark())
+        return stated(function.name, UnitRemark()) if _states_result(function) else None
 
     def _of_parameter(self, function: Function, number: int) -> tuple[Measured | None, str]:
         """The unit of a parameter, and its name."""
@@ -531,10 +642,34 @@ class _Units:
         if number >= len(function.parameters):
             return None, ""
         parameter = function.parameters[number]
-        own = self._of_lvalue(LValue(parameter.ctype, parameter))
+        own = self._of_lvalue(_whole(parameter))
         if own is None and len(function.parameters) == 1 and _takes(words_of(function.name)[:1]):
             own = stated(function.name, UnitRemark(), "function's name") if _is_number(parameter.ctype) else None
         return own, parameter.declaration.name
+
+
+#: The unit of what is divided by `STEPS_PER_MM`.
+_BY_DIVISOR: Final = "divisor's name"
+
+
+def _unit_of_divisor(e: Expr) -> PhysicalUnit | None:
+    """The unit of counts that are divided by a constant which says how many make one of it; None: it says nothing."""
+    e = as_written(e)
+    name, comment = defined_number(e) if isinstance(e, Const) else ("", "")
+    return unit_per(name) if not _SCALED_DIVISOR.search(comment) else None
+
+
+def _states_result(function: Function) -> bool:
+    """Whether the name of a function can say in which unit its result is."""
+    words = words_of(function.name)
+    takes = words[:1] == [] or words[0] in _TAKING or words[0] in _ASKING or "from" in words
+    # `period_hz(rate)` need not be in Hz, but `get_hz(channel)` and `ticks_to_ms(n)` say what they give.
+    takes |= any(_is_number(p.ctype) for p in function.parameters) and not _GIVING.intersection(words)
+    return not takes and _is_number(function.ctype.result)
+
+
+def _whole(variable: Variable) -> LValue:
+    return LValue(variable.ctype, variable)
 
 
 #: The unit of a product with 180/pi.
@@ -742,4 +877,4 @@ def _assignments(function: Function) -> Iterator[tuple[LValue, Expr]]:
             case Assign(target=LValue() as target, value=value):
                 yield target, value
             case Declare(variable=variable, value=Expr() as value):
-                yield LValue(variable.ctype, variable), value
+                yield _whole(variable), value

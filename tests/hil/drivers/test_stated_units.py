@@ -20,6 +20,9 @@ from hil.image import Build
     # Ends that mean other things too, with and without a word for the quantity.
     ("timeout_s", "s"), ("config_s", ""), ("temperatureDc", "decidegree Celsius"), ("BUS_DC", ""),
     ("motorCurrent_A", "A"), ("PORT_A", ""), ("heading_rad", "rad"), ("winkel_rad", "rad"), ("tiempo_s", "s"),
+    # Products, and rates.
+    ("rest_mA_ms", "mA ms"), ("CHARGE_MAS", "mAs"), ("capacity_mAh", "mAh"), ("uno_mas", ""), ("speed_mm_ms", ""),
+    ("PULSE_JE_MS", ""), ("temp_sixteenths", "sixteenths of a unit"),
     ("wheel_rad", ""), ("chargeMa", "mA"), ("PHASE_MA", "mA"), ("ma", ""),
     ("current_mA", "mA"), ("temp_dC", "decidegree Celsius"), ("pack_mA", ""), ("HOT_C", "degree Celsius"),
     ("PHASE_C", ""),
@@ -193,6 +196,66 @@ void f(void)
     sprintf(line, %s);
 }
 """
+
+
+MEANT = """#include <stdint.h>
+#include <stdio.h>
+#define HOLD_S         900U
+#define LATE_S         9       // steps of 10 ms
+#define LOAD_A         30
+#define LOAD_B         40
+#define FULL_MBAR      6000
+#define HOT_C          60
+#define BLOCK_MS       10
+#define STEPS_PER_MM   80
+#define TENTHS_PER_MM  800     // tenths of a step
+typedef struct { uint16_t hold_s; int16_t load_A; } Stage;
+Stage stage;
+uint32_t now_ms, since_ms; int16_t load_mA, pack_cbar, temp_sixteenths, temp_errors;
+int32_t charge_mAs, rest_mA_ms, steps, at, way; int16_t direction;
+uint16_t word;
+char line[40];
+void move(int16_t by) { steps += direction; at = steps; direction = by ? 1 : -1; if (by) direction = 0; }
+void back(void) { if (word) direction = 1; else direction = -1; way = way + word; }
+void f(void)
+{
+    int16_t temp, other;
+
+    %s
+}
+"""
+
+
+@pytest.mark.parametrize(("body", "message"), [
+    ("if (now_ms - since_ms >= stage.hold_s) word = 0;",
+     "now_ms - since_ms is in ms by its name, stage.hold_s in s by its name"),
+    ("if (now_ms - since_ms > HOLD_S) word = 0;", "now_ms - since_ms is in ms by its name, HOLD_S in s by its name"),
+    ("stage.hold_s = now_ms;", "now_ms is in ms by its name, stage.hold_s in s by its name"),
+    ("if (pack_cbar > FULL_MBAR) word = 0;", "pack_cbar is in cbar by its name, FULL_MBAR in mbar by its name"),
+    ("temp = (int16_t)word >> 3; temp_sixteenths = temp; if (temp > HOT_C) word = 0;",
+     "temp is in sixteenths of a unit by its target's name, HOT_C in degree Celsius by its name"),
+    ("charge_mAs += load_mA * (int32_t)BLOCK_MS;",
+     "charge_mAs is in mAs by its name, load_mA * 10 in mA ms by its factors' names"),
+    ("charge_mAs += rest_mA_ms;", "charge_mAs is in mAs by its name, rest_mA_ms in mA ms by its name"),
+    ('sprintf(line, "%ld um", at / STEPS_PER_MM);', "at / 80 is in mm by its divisor's name, and is printed as um"),
+    # Converted; a comment; one of two channels; a rate.
+    ("if (now_ms - since_ms >= stage.hold_s * 1000UL || (now_ms - since_ms) / 1000 > HOLD_S) word = 0;", ""),
+    ("if (now_ms > LATE_S || load_mA > LOAD_A || stage.load_A > load_mA) word = 0;", "stage.load_A is in A"),
+    ("if (now_ms > LATE_S || load_mA > LOAD_A) word = 0;", ""),
+    ("stage.hold_s = now_ms / 1000; since_ms = stage.hold_s * 1000UL; if (pack_cbar > FULL_MBAR / 10) word = 0;", ""),
+    ("rest_mA_ms += load_mA * BLOCK_MS; charge_mAs += rest_mA_ms / 1000; rest_mA_ms %= 1000;", ""),
+    # A value of two units, or of another one later; one that also goes elsewhere.
+    ("temp = word; temp_sixteenths = temp; temp = temp / 16; if (temp > HOT_C) word = 0;", ""),
+    ("temp = word; temp_sixteenths = temp; pack_cbar = temp; if (temp > HOT_C) word = 0;", ""),
+    ("temp = word; other = temp * 16; temp_sixteenths = other; if (temp > HOT_C) word = 0;", ""),
+    ("temp = word; temp_sixteenths = temp; if (temp > HOT_C * 16) word = 0;", ""),
+    # In thousandths of a step; counts that are something else; a part of a number.
+    ('sprintf(line, "%ld um", at * 1000 / STEPS_PER_MM); sprintf(line, "%ld um", way / STEPS_PER_MM);', ""),
+    ('sprintf(line, "%ld um", at / TENTHS_PER_MM); sprintf(line, "%ld.%ld mm", at / STEPS_PER_MM, at % 80);', ""),
+])  # fmt: skip
+def test_what_a_name_means_beside_another_unit(tmp_path: Path, body: str, message: str) -> None:
+    found = told(tmp_path, MEANT.replace("%s", body, 1), "unit-by-name")
+    assert [text[: len(message)] for text in found] == ([message] if message else [])
 
 
 @pytest.mark.parametrize(("printed", "messages"), [
