@@ -197,7 +197,7 @@ class _Accesses(Watcher):
             # The program has no kernel.  `main` needs no protection before the first interrupt.
             if self._threads.routines:
                 self._races.touch(obj, word, write)
-                self._events.touch(obj, write)
+                self._events.touch(obj, word, write)
             return
         # A routine of the vector table is no thread of the kernel.
         if self._cpu.isr:

@@ -10,22 +10,26 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Final
 
+from emulator.c28x.ctypes import ArrayType
 from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Object
 from emulator.c28x.symbols import Module
-from emulator.c28x.tree import Assign, Const, LValue, Variable
+from emulator.c28x.tree import Assign, Const
 from emulator.c28x.tree_queries import statements
 from emulator.clock import us
+from emulator.sysbios.watch.names import scalar_path
 from emulator.sysbios.watch.statements import StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import Routine, ThreadWatch
 
+#: Structures of more scalars hold data.
+_LARGE: Final = 32
 #: Timer interrupts, which come periodically.  A program clears such a flag to wait for the next one.
 PERIODIC: Final = frozenset({13, 14, 38})
 
 
 @dataclass(slots=True)
 class Flag:
-    """A plain object that some statement sets to 0."""
+    """A scalar that may tell of an event."""
 
     #: When `main` read it last (cycle; -1: never).
     seen: int = -1
@@ -47,62 +51,55 @@ class LostEvents:
         self._clock = findings.clock
         #: Interrupt -> when the operation that ends in it was started last.
         self._started: dict[int, int] = {}
-        self._flags: dict[Object, Flag | None] = {}
+        #: The scalars that may be flags, by object and word.
+        self._flags: dict[tuple[Object, int], Flag] = {}
         #: The cycle of the first access that was reported here.  Accesses are reported from the first interrupt on.
         self._since = -1
-        self._clearing: dict[str, set[tuple[str, int]]] | None = None
+        self._clearing: set[tuple[str, int]] | None = None
 
     def start(self, number: int) -> None:
         """An operation begins that ends in interrupt `number`."""
         self._started[number] = self._clock.now
 
-    def touch(self, obj: Object, write: bool) -> None:
-        """The running thread reads or writes an object."""
-        flag = self._flags.get(obj)
+    def touch(self, obj: Object, word: int, write: bool) -> None:
+        """The running thread reads or writes a word of an object."""
+        flag = self._flags.get((obj, word))
         if flag is None:
             if self._since < 0:
                 self._since = self._clock.now
-            if obj in self._flags:
+            if isinstance(obj.declaration.ctype, ArrayType) or obj.declaration.ctype.leaves > _LARGE:
                 return
-            flag = self._flags[obj] = Flag() if self._clears(obj) else None
-            if flag is None:
-                return
+            flag = self._flags[obj, word] = Flag()
         what = self._threads.current.what
         if isinstance(what, Routine):
             if write and what.number not in PERIODIC:
                 started = self._started.get(what.number, -1)
                 flag.number, flag.started, flag.set, flag.cleared = what.number, started, self._clock.now, 0
         elif write:
-            if flag.set > flag.started > max(flag.seen, self._since) and self._clears(obj, self._locator.here()):
+            if flag.set > flag.started > max(flag.seen, self._since) and self._clears(self._locator.here()):
                 flag.cleared = self._locator.here()
             flag.set = -1
         else:
             if flag.cleared and self._started.get(flag.number) == flag.started:
-                self._report(obj, flag)
+                self._report(obj, word, flag)
             flag.seen, flag.set, flag.cleared = self._clock.now, -1, 0
 
-    def _clears(self, obj: Object, statement: StatementNumber = 0) -> bool:
-        """Whether some statement sets an object to 0; with `statement`, whether that statement does."""
+    def _clears(self, statement: StatementNumber) -> bool:
+        """Whether a statement sets something to 0."""
         if self._clearing is None:
-            self._clearing = {}
-            for function in (function for module in self._modules for function in module.functions):
-                for step in statements(function.body):
-                    match step:
-                        case Assign(target=LValue(root=Variable(kind="global") as root), value=Const(value=0)) if (
-                            root.ctype.leaves == 1
-                        ):
-                            at = step.where.file, step.where.line
-                            self._clearing.setdefault(root.declaration.path, set()).add(at)
-        clearing = self._clearing.get(obj.declaration.path, set())
-        if not statement:
-            return bool(clearing)
+            self._clearing = {
+                (s.where.file, s.where.line)
+                for module in self._modules for function in module.functions for s in statements(function.body)
+                if isinstance(s, Assign) and isinstance(s.value, Const) and s.value.value == 0
+            }  # fmt: skip
         place = self._locator.place(statement)
-        return place is not None and place[:2] in clearing
+        return place is not None and place[:2] in self._clearing
 
-    def _report(self, obj: Object, flag: Flag) -> None:
+    def _report(self, obj: Object, word: int, flag: Flag) -> None:
         place = self._locator.place(flag.cleared)
         if place is not None:
-            path = obj.declaration.path
+            leaf = obj.leaf(word)
+            path = scalar_path(obj.declaration.path, obj.declaration.ctype, leaf[0] if leaf is not None else 0)
             after = us(self._clock.now - flag.started)
             self._findings.report_at(
                 place, "event-lost",

@@ -68,14 +68,14 @@ class HandleNames:
         for obj in self._linked.objects.values():
             leaf = next((leaf for leaf, value in enumerate(obj.data) if value is handle), None)
             if leaf is not None:
-                name = self._known[handle] = _path(obj.declaration.name, obj.declaration.ctype, leaf)
+                name = self._known[handle] = scalar_path(obj.declaration.name, obj.declaration.ctype, leaf)
                 return name
         return str(getattr(handle, "name", handle))
 
     def objects(self, handle: Any) -> set[str]:
         """Paths of the file-scope objects that hold `handle`, and of the members of structures that do."""
         return {
-            _path(path, obj.declaration.ctype, leaf)
+            scalar_path(path, obj.declaration.ctype, leaf)
             for path, obj in self._linked.objects.items() for leaf, value in enumerate(obj.data) if value is handle
         }  # fmt: skip
 
@@ -176,11 +176,11 @@ def first_argument(call: Call) -> str | None:
     argument = call.arguments[0]
     match argument.operand if isinstance(argument, Convert) else argument:
         case Load(lvalue=LValue(root=Variable(kind="global") as variable, leaf=leaf)):
-            return _path(variable.declaration.path, variable.ctype, leaf)
+            return scalar_path(variable.declaration.path, variable.ctype, leaf)
     return None
 
 
-def _path(path: str, ctype: CType, leaf: int) -> str:
+def scalar_path(path: str, ctype: CType, leaf: int) -> str:
     """The path of the scalar number `leaf` of an object, without the subscripts of arrays."""
     while True:
         match ctype:

@@ -76,3 +76,14 @@ def test_an_event_that_is_cleared_before_anybody_looked(turn: str, lost: bool, t
     file.write_text(text, encoding="utf-8")
     found = [f for f in check_files(DriverFiles([file], seconds=0.005)).findings if f.rule == "event-lost"]
     assert [text.splitlines()[f.place.line - 1] for f in found if f.place] == ["Done = 0;"] * lost
+
+
+@pytest.mark.parametrize("begins", ["SpibRegs.SPITXBUF = 1; DELAY_US(50);\n", ""])
+def test_a_member_behind_a_pointer_is_cleared_late(begins: str, tmp_path: Path) -> None:
+    text = PROGRAM.replace("volatile Uint16 Done, Count;", "struct { volatile Uint16 got, done; } Link;\nUint16 Count;")
+    text = text.replace("Done = Spib", "Link.done = Spib").replace("Uint16 patience;", "Uint16 patience, *p;")
+    late = f"p = &Link.done; {begins}*p = 0;\n{'' if begins else 'SpibRegs.SPITXBUF = 1;'} {WAIT}"
+    file = tmp_path / "flag.c"
+    file.write_text(text.replace("TURN", late.replace("!Done", "!*p")), encoding="utf-8")
+    found = [f for f in check_files(DriverFiles([file], seconds=0.005)).findings if f.rule == "event-lost"]
+    assert [f.object for f in found] == ["flag.Link.done"] * bool(begins)
