@@ -196,7 +196,8 @@ def _elements(gate: _Gate, body: list[Stmt], within: set[int]) -> Iterator[_Beyo
             if not isinstance(lvalue, LValue) or id(lvalue) in pointed or len(lvalue.indices) != 1:
                 continue
             index = lvalue.indices[0]
-            before = isinstance(at := bare(index.expr), Load) and at.lvalue.root in old
+            at = bare(index.expr)
+            before = isinstance(at, Load) and isinstance(at.lvalue.root, Variable) and at.lvalue.root in old
             reached = gate.limit if before else most
             if index.bound and index.bound <= reached and (before or _is(index.expr, gate.number)):
                 yield _Beyond(lvalue, index.bound, reached)

@@ -25,6 +25,7 @@ def told(take: str, rest: str = "") -> bool:
     ("take", "rest"),
     [
         ("if (c == '\\n') { Obey(); n = 0; } else if (n <= 8) line[n++] = c;", ""),
+        ("if (n <= 8) line[n++] = c;", "int At(struct { Uint16 at; } *p) { return line[p->at]; }"),
         ("if (n < 9 && c != 0) { line[n] = c; n++; } else n = 0;", ""),
         ("if (n > 8) { n = 0; } line[n++] = c;", ""),
         ("if (n >= 9) return; line[n++] = c;", "void Clear(void) { n = 0; }"),
