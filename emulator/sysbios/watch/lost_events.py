@@ -67,7 +67,8 @@ class LostEvents:
         if flag is None:
             if self._since < 0:
                 self._since = self._clock.now
-            if isinstance(obj.declaration.ctype, ArrayType) or obj.declaration.ctype.leaves > _LARGE:
+            declared = obj.declaration
+            if declared.function or isinstance(declared.ctype, ArrayType) or declared.ctype.leaves > _LARGE:
                 return
             flag = self._flags[obj, word] = Flag()
         what = self._threads.current.what
