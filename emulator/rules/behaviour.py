@@ -338,9 +338,10 @@ It is a note, because the direction that counts as positive may be chosen: of a 
 The value that the limit is for may be anything: the check that belongs to it is missing, or has been removed. A time
 that nothing uses is for a wait that is missing.
 
-The limit is a `#define` of a number in a C file. Its name says that it is one (`SPEED_MAX`, `POT_MIN`, `TRAVEL_LIMIT`,
-`REPLY_TIMEOUT_MS`, `BATTERY_LOW_MV`, `OVERCURRENT_MA`) or states a unit (`SETTLING_US`, `COLD_TENTHS`), and it occurs
-nowhere else in the C files. Headers are not looked at, nor a file that leaves more of them unused than it uses.
+The limit is a `#define` of a number in a C file, or `NAME = 5` in Python. Its name says that it is one (`SPEED_MAX`,
+`POT_MIN`, `TRAVEL_LIMIT`, `REPLY_TIMEOUT_MS`, `BATTERY_LOW_MV`, `OVERCURRENT_MA`) or states a unit (`SETTLING_US`,
+`COLD_TENTHS`), and it occurs nowhere else in the files. Headers are not looked at, nor a file that leaves more of them
+unused than it uses.
 
 **Fix:** apply the limit, or remove it.
 """,

@@ -31,6 +31,26 @@ def test_a_limit_that_nothing_applies_is_told(tmp_path: Path, limit: str) -> Non
     assert (line, name in limit) == (5, True)
 
 
+PYTHON = """from emulator.c28x.language import *
+
+DUTY_MAX = 950
+%s
+since_ms: uint32 = 0
+
+
+def limit(v: int16) -> int16:
+    return DUTY_MAX if v > DUTY_MAX else v
+"""
+
+
+@pytest.mark.parametrize(("line", "names"), [
+    ("HOME_MS = 60000", [("HOME_MS", 4)]), ("LEVEL_MIN: int16 = -40  # LEVEL_MIN is in mm", [("LEVEL_MIN", 4)]),
+    ("HOME = 3", []), ("HOME_MS = 5\nHOME_US = HOME_MS * 1000", []),
+])  # fmt: skip
+def test_constants_in_python_are_limits_too(tmp_path: Path, line: str, names: list[tuple[str, int]]) -> None:
+    assert told(tmp_path, PYTHON % line, "home.py") == names
+
+
 @pytest.mark.parametrize("text", [
     f"{HEAD}#define LEVEL_MIN 40\n{USES}int low(void) {{ return level < LEVEL_MIN; }}\n",
     # Used by another definition, or by the preprocessor.
@@ -39,6 +59,7 @@ def test_a_limit_that_nothing_applies_is_told(tmp_path: Path, limit: str) -> Non
     # No limit by its name, no number, a list of what a part can do.
     f"{HEAD}#define FIRST_CHANNEL 3\n#define MAXIMA 4\n#define LOWER(a) ((a) - 1)\n#define MIN_OF level\n{USES}",
     f"{HEAD}#define RATE_MAX 9\n#define RATE_MIN 1\n{USES}",
+    f"{HEAD}#define HIGH 1\n{USES}",
     # No other limit is used.
     "#define LEVEL_MIN 40\nint level = 0;\nint get(void) { return level; }\n",
 ])  # fmt: skip
