@@ -21,7 +21,8 @@ An `int` has 16 bits here: -32768 to 32767. A sum of a hundred 12-bit samples, a
 the negative of -32768 does not fit. The hardware wraps (overflow mode is off). The compiler may assume that an
 overflow never happens. On a PC `int` has 32 bits, so neither the test nor the sanitizer sees anything.
 
-A sum or a product of two constants (`1800 * 1000`) is reported before the program runs.
+A sum or a product of two constants (`1800 * 1000`) is reported before the program runs. So is a product whose quotient
+is compared with more than it can be: `counts * 7500 / 2000` of 32 bits is never above 1073741.
 
 A bit that is shifted into the sign bit (`1 << 15`, as in every mask for bit 15) loses nothing. It is reported only if
 the result is widened.

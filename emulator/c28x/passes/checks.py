@@ -31,6 +31,7 @@ from emulator.c28x.passes.never_back import check_never_back
 from emulator.c28x.passes.null_tests import NullTests
 from emulator.c28x.passes.one_sided import check_one_sided
 from emulator.c28x.passes.published import check_published
+from emulator.c28x.passes.quotients import check_quotients
 from emulator.c28x.passes.released import check_released
 from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.spans import check_spans
@@ -120,6 +121,7 @@ def check(
     check_dropped(modules, reports)
     check_likes(modules, reports)
     check_messages(modules, reports)
+    check_quotients(modules, reports)
     check_spans(modules, reports)
     check_drained(whole, of_whole)
     check_unlimited_lines(whole, of_whole)

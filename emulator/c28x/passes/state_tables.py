@@ -18,6 +18,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any, Final, NamedTuple
 
 from emulator.c28x.ctypes import ArrayType, CType, IntType, StructType
+from emulator.c28x.passes.given import GivenValue, GivenValues
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.state_values import start_of
 from emulator.c28x.symbols import Module
@@ -35,7 +36,6 @@ from emulator.c28x.tree import (
     Expr,
     For,
     Function,
-    FunctionRef,
     If,
     Jump,
     LeaveSwitch,
@@ -82,13 +82,6 @@ def check_state_tables(modules: Iterable[Module], reports: dict[Module, StaticRe
             states.check(function, report)
 
 
-class _Given(NamedTuple):
-    """A value that a statement gives (None: one that is not known), and whether the statement runs after the start."""
-
-    value: Expr | None
-    later: bool
-
-
 class _Known(NamedTuple):
     """The scalars that have a state, and those that are set beside it."""
 
@@ -105,45 +98,17 @@ class _States:
 
     def __init__(self, functions: list[Function], objects: list[Variable]) -> None:
         self._objects = objects
-        #: Scalar -> the values that statements give to it; function -> those that it returns.
-        self._given: dict[NamedScalar, list[_Given]] = {}
-        self._results: dict[str, list[_Given]] = {}
+        self._given = GivenValues(functions)
         #: Function -> the statements that call it, with their functions.
         self._callers: dict[str, list[tuple[Function, Stmt]]] = {}
         self._functions = functions
-        self._by_pointer = {
-            p.function.path for f in functions for s in statements(f.body) for p in own_nodes(s)
-            if isinstance(p, FunctionRef)
-        }  # fmt: skip
         self._beside: dict[NamedScalar, set[NamedScalar]] = {}
-        self._later = _run_later(functions, self._by_pointer)
+        self._later = _run_later(functions, self._given.by_pointer)
         for function in functions:
-            if function.path in self._by_pointer or function.interrupt:
-                for parameter in function.parameters:
-                    self._given[parameter, 0] = [_Given(None, later=True)]
             for s in statements(function.body):
-                self._take(function, s)
-
-    def _take(self, function: Function, s: Stmt) -> None:
-        later = id(s) in self._later
-        match s:
-            case Assign(target=LValue() as target, value=value) if (scalar := named_scalar(target)) is not None:
-                self._given.setdefault(scalar, []).append(_Given(value, later))
-            case Declare(variable=variable, value=Expr() as value):
-                self._given.setdefault((variable, 0), []).append(_Given(value, later))
-            case For(counter=counter):
-                self._given.setdefault((counter, 0), []).append(_Given(None, later))
-            case Return(value=value):
-                self._results.setdefault(function.path, []).append(_Given(value, later))
-        for p in own_nodes(s):
-            match p:
-                case AddressOf(lvalue=lvalue) if isinstance(lvalue.ctype, IntType):
-                    if (scalar := named_scalar(lvalue)) is not None:
-                        self._given.setdefault(scalar, []).append(_Given(None, later))
-                case Call(function=called, arguments=arguments):
-                    self._callers.setdefault(called.path, []).append((function, s))
-                    for parameter, argument in zip(called.parameters, arguments, strict=False):
-                        self._given.setdefault((parameter, 0), []).append(_Given(argument, later))
+                for p in own_nodes(s):
+                    if isinstance(p, Call):
+                        self._callers.setdefault(p.function.path, []).append((function, s))
 
     def check(self, function: Function, report: StaticReport) -> None:
         """Report the subscripts of one function."""
@@ -188,7 +153,7 @@ class _States:
         """
         if depth > _DEEPEST or not isinstance(e.ctype, IntType):
             return False
-        given: list[_Given]
+        given: list[GivenValue]
         match e:
             case Const(value=int(value)):
                 if later:
@@ -198,12 +163,12 @@ class _States:
             case Convert(operand=operand):
                 return self._values(operand, values, through, depth, later=later)
             case Conditional(then=then, otherwise=otherwise):
-                given = [_Given(then, later=True), _Given(otherwise, later=True)]
+                given = [GivenValue(then, None), GivenValue(otherwise, None)]
             case Load(lvalue=LValue(ctype=IntType()) as lvalue) if (scalar := named_scalar(lvalue)) is not None:
                 if scalar in through:
                     return True
                 through.add(scalar)
-                given = self._given.get(scalar, [])
+                given = self._given.of(scalar)
                 holder = scalar[0]
                 if isinstance(holder, StructType):
                     if self._count(holder) != 1:
@@ -211,14 +176,18 @@ class _States:
                     values.setdefault(0, None)
                 elif holder.kind == "global":
                     values.setdefault(start_of(holder), None)
-            case Call(function=function) if function.path in self._results:
-                given = self._results[function.path]
+            case Call(function=function) if function.path in self._given.results:
+                given = self._given.results[function.path]
             case _:
                 return False
         return all(
-            one.value is not None and self._values(one.value, values, through, depth + 1, later=later and one.later)
-            for one in sorted(given, key=lambda one: not one.later)
+            one.value is not None and self._values(one.value, values, through, depth + 1, later=later and kept)
+            for one, kept in sorted(((one, self._comes_later(one)) for one in given), key=lambda pair: not pair[1])
         )
+
+    def _comes_later(self, given: GivenValue) -> bool:
+        """Whether a value is given after the start."""
+        return given.by is None or id(given.by) in self._later
 
     def _count(self, structure: StructType) -> int:
         """The objects with a structure, without the locals that only get copies of others."""
@@ -254,7 +223,7 @@ class _States:
         choices = [p for p in own_nodes(s) if isinstance(p, Compare | Logic | Not | Conditional)]
         if any(map(known.asked, [*choices, *(_way(function.body, s, known) or [])])):
             return False
-        if function.path in self._by_pointer or function.interrupt or function.name == "main":
+        if function.path in self._given.by_pointer or function.interrupt or function.name == "main":
             return True
         callers = [(f, x) for f, x in self._callers.get(function.path, ()) if f.path not in above]
         return len(above) < _DEEPEST and any(

@@ -17,6 +17,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final, NamedTuple
 
 from emulator.c28x.ctypes import IntType
+from emulator.c28x.passes.given import GivenValue, GivenValues
 from emulator.c28x.passes.intervals import interval
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.state_values import constant_of
@@ -30,9 +31,7 @@ from emulator.c28x.tree import (
     Conditional,
     Const,
     Convert,
-    Declare,
     Expr,
-    For,
     Function,
     If,
     Load,
@@ -40,7 +39,6 @@ from emulator.c28x.tree import (
     LValue,
     Not,
     RegisterLoad,
-    Return,
     Stmt,
     Switch,
     Variable,
@@ -81,9 +79,8 @@ class _Indices:
     """What the objects of a program get, and which of them it tests."""
 
     def __init__(self, functions: list[Function]) -> None:
-        #: Scalar -> the values that statements give to it; None among them: it gets others too.
-        self._given: dict[NamedScalar, list[Expr | None]] = {}
-        self._results: dict[str, list[Expr | None]] = {}
+        self._given = GivenValues(functions)
+        self._parameters = {(parameter, 0) for function in functions for parameter in function.parameters}
         self._tested: set[NamedScalar] = set()
         #: Identity of the value of a step -> how far it leads; the identities of the tests that end a count.
         self._steps: dict[int, _Reach] = {}
@@ -94,10 +91,8 @@ class _Indices:
             for s in statements(function.body):
                 self._chooses(s)
         for function in functions:
-            for parameter in function.parameters:
-                self._given[parameter, 0] = [None]
             for s in statements(function.body):
-                self._take(function, s)
+                self._tests(s)
 
     def _counts(self, block: list[Stmt]) -> None:
         """Take the steps by 1 of a block behind which a test sets the scalar back."""
@@ -149,21 +144,9 @@ class _Indices:
             return
         self._ends.add(id(compare))
 
-    def _take(self, function: Function, s: Stmt) -> None:
-        match s:
-            case Assign(target=LValue() as target, value=value) if (scalar := named_scalar(target)) is not None:
-                self._given.setdefault(scalar, []).append(value)
-            case Declare(variable=variable, value=Expr() as value):
-                self._given.setdefault((variable, 0), []).append(value)
-            case For(counter=counter):
-                self._given.setdefault((counter, 0), []).append(None)
-            case Return(value=value):
-                self._results.setdefault(function.path, []).append(value)
-        nodes = own_nodes(s)
-        for p in nodes:
-            if isinstance(p, AddressOf) and (scalar := named_scalar(p.lvalue)) is not None:
-                self._given.setdefault(scalar, []).append(None)
-        for test in _tests(s, nodes):
+    def _tests(self, s: Stmt) -> None:
+        """Take what a statement decides by."""
+        for test in _tests(s, own_nodes(s)):
             if id(test) not in self._ends:
                 self._tested |= {scalar for p in _ranged(test) if isinstance(p, LValue) and (scalar := named_scalar(p))}
 
@@ -224,15 +207,15 @@ class _Indices:
                         field = mask >> count
                         return _Reach(min(field, _most(left) >> count), e) if not field & field + 1 else None
             case Conditional(test=test, then=then, otherwise=otherwise) if id(bare(test)) in self._ends:
-                return self._furthest([then, otherwise], depth)
+                return self._furthest([GivenValue(then, None), GivenValue(otherwise, None)], depth)
             case Load(lvalue=lvalue) if (scalar := named_scalar(lvalue)) is not None and scalar not in self._tested:
-                return self._furthest(self._given.get(scalar, []), depth + 1)
+                return self._furthest(self._given.of(scalar), depth + 1) if scalar not in self._parameters else None
             case Call(function=function):
-                return self._furthest(self._results.get(function.path, []), depth + 1)
+                return self._furthest(self._given.results.get(function.path, []), depth + 1)
         return None
 
-    def _furthest(self, values: list[Expr | None], depth: int) -> _Reach | None:
-        reached = [self._reach(value, depth) if value is not None else None for value in values]
+    def _furthest(self, values: list[GivenValue], depth: int) -> _Reach | None:
+        reached = [self._reach(one.value, depth) if one.value is not None else None for one in values]
         known = [reach for reach in reached if reach is not None]
         return max(known, key=lambda reach: reach.high) if known and len(known) == len(values) else None
 
