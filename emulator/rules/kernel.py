@@ -47,10 +47,13 @@ What `main` did before it started a transfer is ordered before the interrupt at 
 peripheral (`TXFFIENA = 1`) before the counts on which the routine depends, a request that waits lets the routine in:
 it finds nothing to do, and switches its interrupt off for good.
 
+An index that `main` steps around the end of a ring (`out = (out + 1) % SIZE`) and a routine writes too, as to drop the
+oldest element of a full ring, is reported before the program runs.
+
 Host tools see nothing: the host has none of these threads and locks.
 
 **Fix:** put both accesses under one gate, no longer than a copy; or mask the other thread; or hand the data over.
-""", "BIOS, Task and Swi scheduling; TFG 3.1.5",
+""", "BIOS, Task and Swi scheduling; TFG 3.1.5", how="dynamic/static",
     ),
     _rule(
         "one-for-many",

@@ -23,6 +23,7 @@ from emulator.c28x.passes.future_stamps import unreachable_exits
 from emulator.c28x.passes.interrupted import sides_of
 from emulator.c28x.passes.let_in import check_let_in
 from emulator.c28x.passes.likes import check_likes
+from emulator.c28x.passes.lost_writes import check_lost_writes
 from emulator.c28x.passes.masked import check_masked
 from emulator.c28x.passes.members import with_members
 from emulator.c28x.passes.messages import check_messages
@@ -118,6 +119,7 @@ def check(
         check_published(sides)
         check_released(sides)
         check_cleared(sides)
+        check_lost_writes(sides)
     check_dropped(modules, reports)
     check_likes(modules, reports)
     check_messages(modules, reports)

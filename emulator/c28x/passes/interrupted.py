@@ -49,7 +49,7 @@ Place = tuple[Variable | StructType, int]
 #: Names of functions that switch interrupts off, or on; and of registers that do either.
 _OFF: Final = re.compile(r"DINT|disable|mask|(?<![bcf])lock|enter", re.IGNORECASE)
 _ON: Final = re.compile(r"EINT|enable|unmask|unlock|restore|leave", re.IGNORECASE)
-_ENABLES: Final = re.compile(r"\bIER|INTENA|FIENA|INTM|ENA\b|TIE\b")
+_ENABLES: Final = re.compile(r"IER|INTENA|FIENA|INTM|ENA\b|TIE\b")
 
 
 def place_of(lvalue: LValue) -> Place | None:
