@@ -67,7 +67,10 @@ not reported if a test of the state, or of what is set beside it, comes before, 
 start of `main` sets the last state.
 
 So is a number that a test lets too far: `if (n <= 8) line[n++] = c;` for a line of eight, and for `if (n < 8)` with
-`line[n] = 0;` behind it. This is not reported if another test asks for the number, or in a loop with a number of turns.
+`line[n] = 0;` behind it. It is not reported if another test asks for the number, or in a loop with a number of turns.
+
+`events[next - back]` goes below the first element once `next` has begun again at 0; `events[(next + 8 - back) % 8]`
+does not.
 
 The check follows the index through objects that get only remainders, masks, constants and such counts, and through
 results of functions. Not reported: an index by which the program decides anything else (`if (word == 7) return;`),
