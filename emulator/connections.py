@@ -1519,7 +1519,7 @@ class Connections:
         findings = self._chip.findings
         path, task = findings.path(beyond.cause.at, beyond.cause.calls), beyond.cause.who
         writes = (*self._source.writes.get(_split(register), ()), *self._source.pointed.get(compare, ()))
-        computed = {write.place[:2] for write in writes if write.values is None}
+        computed = {write.place[:2] for write in writes if write.values is None or write.scaled}
         at_call = next((n for n, place in enumerate(path) if place[:2] in computed), None)
         if at_call is not None:
             findings.report_at(

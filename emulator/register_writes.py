@@ -102,6 +102,8 @@ class Write:
     mask: int
     values: Values
     place: Place
+    #: Whether the program scales an object for it: the values are then known, but they are no constants that it names.
+    scaled: bool = False
 
     def moved(self, bits: int, width: int) -> Write:
         """The same write to a register of `width` bits in which its word 0 stands `bits` further up."""
@@ -252,7 +254,7 @@ class RegisterWrites:
                         self.read_fields.add((block, name, register.field.name if register.field else ""))
             if not isinstance(s, Assign) or not isinstance(s.target, RegisterAt | RegisterRef):
                 continue
-            target, write = s.target, Write(*self.bits(s, {}), _place(f, s.where))
+            target, write = s.target, Write(*self.bits(s, {}), _place(f, s.where), _scales(s.value))
             if isinstance(target, RegisterAt):
                 named = self._blocks(target) or []
                 # Of the blocks in a table the program may mean one only: those that nothing has changed are unclear.
@@ -532,6 +534,14 @@ def _places(f: Function, s: Stmt) -> set[Place]:
     """The places of a statement and of the calls in it, without its inner blocks."""
     nodes = own_nodes(s)
     return {_place(f, s.where)} | {_place(f, p.where) for p in nodes if isinstance(p, Call) and p.where.line}
+
+
+def _scales(e: Expr) -> bool:
+    """Whether an expression multiplies or divides an object."""
+    return any(
+        isinstance(p, Binary) and p.op in ("*", "/") and any(isinstance(each, Load) for each in parts(p))
+        for p in parts(e)
+    )  # fmt: skip
 
 
 def _of_type(ctype: CType, values: Values) -> Values:

@@ -254,8 +254,9 @@ The output stays at 100 %, or at 0 % if the compare event sets it, whatever the 
 The counter counts up to `TBPRD`. It never reaches a compare value above `TBPRD`, so the output does not change there.
 
 The check is made at the end of a run. The finding is at the statement that wrote the first such value. These values
-are not reported: one above the period, which means 100 % for a counter that counts up; a constant; a value that is
-written just before the longer period that it is meant for.
+are not reported: one above the period, which means 100 % for a counter that counts up; a constant (but not a percentage
+that the program scales, even if it only has known values); a value that is written just before the longer period that
+it is meant for.
 
 **Fix:** limit the value to `TBPRD + 1` and to 0, in a signed type.
 """,

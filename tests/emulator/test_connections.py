@@ -667,6 +667,9 @@ def test_a_can_controller_without_a_pin_is_told_where_it_joins_the_bus(
 @pytest.mark.parametrize(("statement", "silent"), [
     ("EPwm2Regs.CMPA.bit.CMPA = 20002 + (Count & 1);", False),
     ("EPwm2Regs.CMPA.bit.CMPA = 20000 + (Count & 1);", True),  # one above is 100 %
+    # All values are known: 20 % and 80 % of a period that is twice as long, or of this one.
+    ("{ static Uint16 pct; pct = Count & 1 ? 80 : 20; EPwm2Regs.CMPA.bit.CMPA = (Uint32)pct * 40000 / 100; }", False),
+    ("{ static Uint16 pct; pct = Count & 1 ? 80 : 20; EPwm2Regs.CMPA.bit.CMPA = (Uint32)pct * 20000 / 100; }", True),
     ("EPwm2Regs.CMPA.bit.CMPA = Count & 1 ? 0xFFFF : 5;", True),
     ("EPwm2Regs.CMPA.bit.CMPA = 0xFFFF;", True),
     ("EPwm2Regs.CMPA.bit.CMPA = 30000 + Count; EPwm2Regs.TBPRD = 60000;", True),  # for a longer period
