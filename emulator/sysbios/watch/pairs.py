@@ -3,7 +3,8 @@
 The source shows them even where a run does not: a carry from minutes to hours is rare.  There are five forms:
 
 - An interrupt routine sets several words of one object.  Another function computes with two of them at once.
-- A routine sets words of a structure at one time.  Another function copies the whole structure and uses two of them.
+- A routine sets words of a structure at one time.  Another function copies the whole structure and uses two of them,
+  or it copies two of them into a structure of the same type.
 - A routine increments an index and uses it with other objects.  Another function sets the index and one of these.
 - A routine and another function move the same index of a ring buffer.
 - A routine fills objects only while a flag is 0, and sets the flag.  Another function clears the flag before it reads
@@ -15,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any, Final, NamedTuple
 
-from emulator.c28x.ctypes import ArrayType, IntType, StructType, scalars
+from emulator.c28x.ctypes import ArrayType, CType, IntType, PointerType, StructType, scalars
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     AddressOf,
@@ -104,26 +105,36 @@ def _add_copied(own: dict[str, Function], found: dict[str, list[Pair]]) -> None:
     """Add the words of structures that a routine sets together, and that another function copies together.
 
     Words are set together in one block, and not all of them are counters.  A copy for which a test decides (a flag, a
-    loop that copies again) is left out.
+    loop that copies again) is left out, unless the test is about other routines only.
     """
-    together: dict[str, list[tuple[str, frozenset[int]]]] = {}
-    inside: set[str] = set()
-    telling: set[str] = set()
-    for routine, reached in interrupt_routines(own):
+    routines = list(interrupt_routines(own))
+    inside = {function.path for _, reached in routines for function in reached}
+    others = [function for function in own.values() if function.path not in inside]
+    writes = [{path for function in reached for path in written_objects(function.body)} for _, reached in routines]
+    for number, (routine, reached) in enumerate(routines):
+        together: dict[str, list[frozenset[int]]] = {}
         for function in reached:
-            inside.add(function.path)
-            telling |= written_objects(function.body) | _read_addresses(function)
             for block in all_blocks(function.body):
                 for path, words in _set_together(block).items():
-                    together.setdefault(path, []).append((routine.name, words))
-    others = [function for function in own.values() if together and function.path not in inside]
-    for way in free_ways(others, own, telling):
-        for source, used, line in _copies(way):
-            about = source.declaration.path
-            for routine_name, words in together.get(about, ()):
-                if len(words & used) > 1:
-                    reader = (way.function.where.file, way.function.name)
-                    found.setdefault(about, []).append(Pair(words & used, frozenset({routine_name}), reader, line))
+                    together.setdefault(path, []).append(words)
+        if not together:
+            continue
+        telling = {path for function in reached for path in _read_addresses(function)} | writes[number]
+        for (_, asking), written in zip(routines, writes, strict=True):
+            if any(path in writes[number] for function in asking for path in _mentioned(function)):
+                telling |= written  # what it has found out about this routine
+        for way in free_ways(others, own, telling):
+            for source, used, line in _copies(way):
+                about = source.declaration.path
+                for words in together.get(about, ()):
+                    if len(words & used) > 1:
+                        reader = (way.function.where.file, way.function.name)
+                        found.setdefault(about, []).append(Pair(words & used, frozenset({routine.name}), reader, line))
+
+
+def _mentioned(function: Function) -> set[str]:
+    """The objects at file scope that a function has to do with."""
+    return {path for part in within(function.body) if (path := object_path(part)) is not None}
 
 
 def _read_addresses(function: Function) -> set[str]:
@@ -166,8 +177,11 @@ def _words(ctype: StructType) -> frozenset[int]:
 
 
 def _copies(way: Ways) -> Iterator[tuple[Variable, frozenset[int], int]]:
-    """The structures at file scope that a function copies as a whole, the words of the copies that are used, the line.
+    """The structures at file scope that a function copies, the words of the copies that are used, and the line.
+
+    Copied as a whole, or member by member into a structure of the same type: then the line is 0, for any.
     """
+    by_member: dict[tuple[Variable, Variable], set[int]] = {}
     for statement in way.undecided:
         target: Variable | Expr | None = None
         source: LValue | None = None
@@ -176,11 +190,34 @@ def _copies(way: Ways) -> Iterator[tuple[Variable, frozenset[int], int]]:
                 pass
             case Declare(variable=target, value=Load(lvalue=source)):
                 pass
+            case Assign(target=LValue(words=to) as member, value=value) if (
+                isinstance(copied := bare(value), Load) and copied.lvalue.words == to
+            ):  # fmt: skip
+                root, into = copied.lvalue.root, member.root
+                if isinstance(into, Load) and isinstance(into.ctype, PointerType):
+                    into = into.lvalue.root
+                if (
+                    isinstance(root, Variable) and isinstance(into, Variable)
+                    and root.kind == "global" and _is_member_of_same(member, root.ctype)
+                ):  # fmt: skip
+                    by_member.setdefault((root, into), set()).add(to)
         match source:
             case LValue(root=Variable(kind="global", ctype=StructType() as whole) as root, ctype=ctype) if (
                 ctype == whole and not whole.word_backed and not _has_array(whole)
             ):
                 yield root, _used_words(way.function, target, whole), statement.line
+    for (root, into), words in by_member.items():
+        if isinstance(root.ctype, StructType):
+            of_structure = into.ctype == root.ctype
+            yield root, frozenset(words) & _used_words(way.function, into if of_structure else None, root.ctype), 0
+
+
+def _is_member_of_same(member: LValue, whole: CType) -> bool:
+    """Whether an lvalue is a scalar in a structure of the same type, or in one that a pointer points to."""
+    holder = member.root.ctype
+    if isinstance(holder, PointerType):
+        holder = holder.target
+    return isinstance(whole, StructType) and holder == whole and not (member.indices or _has_array(whole))
 
 
 def _has_array(ctype: StructType) -> bool:

@@ -73,6 +73,8 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
          "Uint16 h = Now.hours, m = Now.minutes; Sum = h * 60 + m;", [("race", "Now")]),
         ("if (++Count == 9999) { Now.minutes++; Now.hours++; }",
          "struct TIME t; t = Now; Sum = t.hours * 60 + t.minutes;", [("race", "Now")]),
+        ("if (++Count == 9999) { Now.minutes = Sum; Now.hours = 3; }",
+         "struct TIME *p = &Seen; p->hours = Now.hours; p->minutes = Now.minutes;", [("race", "Now")]),
         ("Now.minutes++;", "volatile struct TIME *p = &Now; Sum = p->minutes; p->minutes = 0;", [("race", "Now")]),
         # The ring is never full in this run.
         ("if (((Head + 1) & 7) == Tail && Count > 999) Tail = (Tail + 1) & 7;", "Tail = (Tail + 1) % 8;",
@@ -183,6 +185,16 @@ def test_what_an_interrupt_can_come_into_is_told(
         ("if (++Count == 9999) { Now.minutes++; Now.hours++; }", "Sum = Now.hours; Copy = Now.minutes;"),
         ("if (++Count == 9999) { Now.minutes++; Now.hours++; }",
          "Uint16 h; do { h = Now.hours; Sum = h * 60 + Now.minutes; } while (h != Now.hours);"),
+        # Copied member by member, one that the routine does not set, or again if it has been there.
+        ("if (++Count == 9999) { Now.minutes = Sum; Now.hours = 3; }",
+         "struct TIME *p = &Seen; DINT; p->hours = Now.hours; p->minutes = Now.minutes; EINT;"),
+        ("if (++Count == 9999) { Now.minutes = Sum; Sum = 3; }",
+         "struct TIME *p = &Seen; p->hours = Now.hours; p->minutes = Now.minutes;"),
+        ("if (++Count == 9999) { Now.minutes = Sum; Now.hours = 3; }",
+         "struct TIME *p = &Seen;"
+         " do { p->hours = Now.hours; p->minutes = Now.minutes; } while (p->hours != Now.hours);"),
+        ("if (++Count == 9999) { Now.minutes = Sum; Now.hours = 3; Ready = 1; }",
+         "struct TIME *p = &Seen; if (Ready) { Ready = 0; p->hours = Now.hours; p->minutes = Now.minutes; }"),
         # Set anew when the routine has said that it is done, or while it is held off; a count that decides nothing.
         ("if (Ready) { Sum += Words[Head]; Head++; if (Head == 8) Ready = 0; }",
          "if (!Ready) { Head = 0; Ready = 1; }"),
