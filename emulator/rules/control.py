@@ -138,6 +138,10 @@ error, scaled, and of the integral, scaled, and the same function must limit it.
 that a statement limits on that side, that loses a part of itself in each pass (a filter), or that is no part of such a
 sum (a meter of energy, an odometer, a clock).
 
+If the source limits the output on both sides and the integral on one, it is reported before the program runs: a limit
+is missing. Not if the integral is added to or set back under a test of the error, or if the regulator is called under
+such a test, or in one state only: the error may be small there.
+
 **Fix:** limit the integral to the limits of the output, or add to it only while the output is within them.
 """,
         "K. J. Astrom, R. M. Murray, Feedback Systems, 11.4",

@@ -31,6 +31,7 @@ from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_na
 from emulator.c28x.passes.never_back import check_never_back
 from emulator.c28x.passes.null_tests import NullTests
 from emulator.c28x.passes.one_sided import check_one_sided
+from emulator.c28x.passes.open_integrals import check_open_integrals
 from emulator.c28x.passes.published import check_published
 from emulator.c28x.passes.quotients import check_quotients
 from emulator.c28x.passes.released import check_released
@@ -110,6 +111,7 @@ def check(
             object=state.declaration.path, declaration=state.declaration,
         )  # fmt: skip
     check_begun_again(whole, of_whole)
+    check_open_integrals(of_whole)
     check_one_sided(whole, of_whole)
     check_never_back(modules, reports)  # marks of data belong to their structures
     check_tables(modules, reports)

@@ -72,7 +72,7 @@ class RegulatorPart(NamedTuple):
     side: str = ""
 
 
-class _Sum(NamedTuple):
+class IntegralSum(NamedTuple):
     """A statement that adds to an integral: its function, the integral, what is added, and the new value."""
 
     function: Function
@@ -82,21 +82,34 @@ class _Sum(NamedTuple):
     value: Expr
 
 
+class OpenRegulator(NamedTuple):
+    """A regulator whose integral nothing limits on some sides, although its output is limited."""
+
+    added: IntegralSum
+    #: `high` and `low`, as far as nothing limits the integral there.
+    sides: frozenset[str]
+    #: The values that the output gets at its limits.
+    limited: list[Expr]
+    parts: dict[int, RegulatorPart]
+
+
 def wind_up(functions: Iterable[Function]) -> dict[int, RegulatorPart]:
     """The parts of the regulators whose integral nothing limits, by the identity of their expressions."""
+    return {number: part for each in open_regulators(functions) for number, part in each.parts.items()}
+
+
+def open_regulators(functions: Iterable[Function]) -> list[OpenRegulator]:
+    """The regulators whose integral nothing limits, or not on both sides."""
     functions = list(functions)
     sums = [found for function in functions for found in _sums(function)]
     if not sums:
-        return {}
+        return []
     free = _unlimited({found.key for found in sums}, functions, {id(found.value) for found in sums})
-    found: dict[int, RegulatorPart] = {}
-    for each in sums:
-        if free[each.key]:
-            found |= _regulator(each, "/".join(sorted(free[each.key])))
-    return found
+    found = [_regulator(each, frozenset(free[each.key])) for each in sums if free[each.key]]
+    return [each for each in found if each is not None]
 
 
-def _sums(function: Function) -> Iterator[_Sum]:
+def _sums(function: Function) -> Iterator[IntegralSum]:
     """The statements of a function that add to an object which outlasts it."""
     for s in statements(function.body):
         match s:
@@ -111,7 +124,7 @@ def _sums(function: Function) -> Iterator[_Sum]:
                 for old, addend in ((summed.left, summed.right), (summed.right, summed.left)):
                     grown = bare(old)
                     if isinstance(grown, Load) and grown.lvalue == target and not _mentions(addend, key):
-                        yield _Sum(function, target, key, addend, value)
+                        yield IntegralSum(function, target, key, addend, value)
                         break
 
 
@@ -141,17 +154,17 @@ def _mentions(e: Any, key: Key) -> bool:
     return any(isinstance(p, Load) and key_of(p.lvalue) == key for p in parts(e))
 
 
-def _regulator(added: _Sum, side: str) -> dict[int, RegulatorPart]:
-    """The parts of the regulator that has this integral; empty if there is none."""
+def _regulator(added: IntegralSum, sides: frozenset[str]) -> OpenRegulator | None:
+    """The regulator that has this integral."""
     function, key = added.function, added.key
-    error = _leaves(added.addend)
+    error = numbers_in(added.addend)
     for value, limited in _outputs(function):
         found = _share(value, key)
         if found is None:
             continue
         share, scale = found
-        common = error & _leaves(value, without=share)
-        if scale <= 0 or error & _leaves(share) or not common or not _differs(added, common):
+        common = error & numbers_in(value, without=share)
+        if scale <= 0 or error & numbers_in(share) or not common or not _differs(added, common):
             continue
         if any(_same(each, p) for each in limited for p in parts(added.addend)):
             continue
@@ -159,12 +172,13 @@ def _regulator(added: _Sum, side: str) -> dict[int, RegulatorPart]:
         name = f"{function.path}: {text}"
         of = {
             id(added.value): RegulatorPart("sum", name, text),
-            id(share): RegulatorPart("share", name, text, scale, side),
+            id(share): RegulatorPart("share", name, text, scale, "/".join(sorted(sides))),
             id(value): RegulatorPart("output", name, text),
         }
         if len(of) == 3:
-            return of | {id(each): RegulatorPart("limit", name, text) for each in limited}
-    return {}
+            of |= {id(each): RegulatorPart("limit", name, text) for each in limited}
+            return OpenRegulator(added, sides, limited, of)
+    return None
 
 
 def _outputs(function: Function) -> Iterator[tuple[Expr, list[Expr]]]:
@@ -302,7 +316,7 @@ def _scaled(e: Expr, key: Key, factor: float) -> tuple[Expr, float] | None:
     return None if found is None else (found[0], found[1] * factor)
 
 
-def _leaves(e: Any, without: Expr | None = None) -> set[Key]:
+def numbers_in(e: Any, without: Expr | None = None) -> set[Key]:
     """The numbers that an expression reads; `without`: a part that does not count."""
     aside = {id(p) for p in parts(without)} if without is not None else set()
     loads = (p for p in parts(e) if isinstance(p, Load) and isinstance(p.ctype, FloatType | IntType))
@@ -310,7 +324,7 @@ def _leaves(e: Any, without: Expr | None = None) -> set[Key]:
     return {key for key in keys if key is not None}
 
 
-def _differs(added: _Sum, common: set[Key]) -> bool:
+def _differs(added: IntegralSum, common: set[Key]) -> bool:
     """Whether what is added is an error: a difference, or a parameter."""
     if _subtracts(added.addend):
         return True
