@@ -45,7 +45,8 @@ buffer in turn, `main` must use the other half: it has only the time until the r
 before it has copied what the flag stands for lets the routine write again too early, if the routine tests this flag.
 What `main` did before it started a transfer is ordered before the interrupt at its end. If `main` sets the enable of a
 peripheral (`TXFFIENA = 1`) before the counts on which the routine depends, a request that waits lets the routine in:
-it finds nothing to do, and switches its interrupt off for good.
+it finds nothing to do, and switches its interrupt off for good. A port that `main` reads and writes back
+(`GPADAT.all |= BRAKE`) while a routine sets other pins of it is reported before the program runs.
 
 An index that `main` steps around the end of a ring (`out = (out + 1) % SIZE`) and a routine writes too, as to drop the
 oldest element of a full ring, is reported before the program runs.

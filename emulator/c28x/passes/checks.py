@@ -32,6 +32,7 @@ from emulator.c28x.passes.never_back import check_never_back
 from emulator.c28x.passes.null_tests import NullTests
 from emulator.c28x.passes.one_sided import check_one_sided
 from emulator.c28x.passes.open_integrals import check_open_integrals
+from emulator.c28x.passes.port_writes import check_port_writes
 from emulator.c28x.passes.published import check_published
 from emulator.c28x.passes.quotients import check_quotients
 from emulator.c28x.passes.released import check_released
@@ -120,6 +121,7 @@ def check(
     check_let_in(whole, of_whole)
     sides = sides_of(modules, reports)
     if sides is not None:
+        check_port_writes(sides)
         check_published(sides)
         check_released(sides)
         check_cleared(sides)

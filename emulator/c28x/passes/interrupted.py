@@ -47,8 +47,14 @@ from emulator.c28x.tree_queries import (
 Place = tuple[Variable | StructType, int]
 
 #: Names of functions that switch interrupts off, or on; and of registers that do either.
-_OFF: Final = re.compile(r"DINT|disable|mask|(?<![bcf])lock|enter", re.IGNORECASE)
-_ON: Final = re.compile(r"EINT|enable|unmask|unlock|restore|leave", re.IGNORECASE)
+#: To enter or leave a section is meant, not a state.
+_SECTION: Final = r"(?:crit|sect|gate|atomic|guard|lock|irq|hwi|swi|task)"
+_OFF: Final = re.compile(
+    rf"DINT|disable|mask|(?<![bcf])lock|{_SECTION}\w*enter|enter\w*{_SECTION}", re.IGNORECASE
+)  # fmt: skip
+_ON: Final = re.compile(
+    rf"EINT|enable|unmask|unlock|restore|{_SECTION}\w*leave|leave\w*{_SECTION}", re.IGNORECASE
+)  # fmt: skip
 _ENABLES: Final = re.compile(r"IER|INTENA|FIENA|INTM|ENA\b|TIE\b")
 
 
