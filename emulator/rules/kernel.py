@@ -292,6 +292,21 @@ call with time-out 0 is not reported.
 """, "BIOS, Mailbox_pend: returns FALSE on timeout",
     ),
     _rule(
+        "wait-untested", Severity.NOTE, "Nothing tests whether an interrupt came before the time-out of a wait.", """
+`Semaphore_pend` with a time-out returns FALSE when nobody has posted. If the interrupt that posts stops, a task that
+ignores the result goes on with the old measurement, for ever: it counts the same charge again, and the contactor stays
+closed.
+
+It is reported if only interrupts post the semaphore, and what follows the wait uses an object that the routine writes,
+or if the task has reset the semaphore before, to wait for what it then starts. A test that may show whether anything
+has come (of a count, a flag, an age, a register, a result) is enough. A cast to `void` says that it is meant.
+
+It is a note, because a display may be drawn again at the latest after the time-out.
+
+**Fix:** `if (!Semaphore_pend(...)) { ... }`: skip what needs the interrupt, and go to the safe state.
+""", "BIOS, Semaphore_pend: returns FALSE on timeout",
+    ),
+    _rule(
         "deadlock", Severity.ERROR, "Tasks wait for each other for ever: a deadlock.", """
 Each task of the ring waits for a gate that the next one holds. `GateMutexPri_enter` has no time-out, so none of them
 runs again, and their other gates stay taken. The details name the other places.

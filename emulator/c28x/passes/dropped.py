@@ -39,7 +39,7 @@ from emulator.c28x.tree_queries import assigned, bare, blocks, own_nodes, statem
 
 #: So many other calls must look at the result.
 _LOOKS: Final = 2
-_MEANT: Final = re.compile(r"\(\s*void\s*\)")
+_MEANT: Final = re.compile(r"\(\s*[vV]oid\s*\)")
 
 
 def check_dropped(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
@@ -132,4 +132,9 @@ def _is_meant(module: Module, s: Stmt) -> bool:
     """Whether the source casts the call to `void`."""
     lines = module.text.splitlines()
     inside = s.where.file == module.file and 0 < s.line <= len(lines)
-    return inside and _MEANT.search(lines[s.line - 1]) is not None
+    return inside and casts_to_void(lines[s.line - 1])
+
+
+def casts_to_void(line: str) -> bool:
+    """Whether a line of C casts to `void`: then it is meant that nothing uses the result."""
+    return _MEANT.search(line) is not None

@@ -128,6 +128,7 @@ class KernelWatch:
         self.gates.finish()
         self.standstill.finish()
         self.starvation.finish()
+        self.waits.finish()
 
     # Peripherals
 

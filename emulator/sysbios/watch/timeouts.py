@@ -1,25 +1,27 @@
-"""How waits with a timeout end: `gate-across-wait`, `timeout-ignored`.
+"""How waits with a timeout end: `gate-across-wait`, `timeout-ignored`, `wait-untested`.
 
 `gate-across-wait`: a task that waits while it holds a gate delays all other tasks that want the gate.  A driver may do
 so on purpose, for the interrupt that ends its transfer.  So it is reported only if another task waited at the gate for
 long, and only time ended the wait: a timeout or Task_sleep.
 
 `timeout-ignored`: a pend on a mailbox that timed out leaves the message unchanged.
+
+`wait-untested`: a pend on a semaphore that only interrupts post; what follows is for what the interrupt brings, and
+nothing tests whether it came.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import partial
 from typing import Any, Final
 
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked
-from emulator.c28x.tree import Call, Evaluate, Function
-from emulator.c28x.tree_queries import statements
 from emulator.clock import CYCLES_PER_MS, ms
-from emulator.sysbios.core import HWI
+from emulator.sysbios.core import HWI, WAIT_FOREVER
 from emulator.sysbios.mailbox import Mailbox
+from emulator.sysbios.semaphore import Semaphore
+from emulator.sysbios.watch.after_wait import ignored_waits, used_again
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.names import HandleNames
@@ -30,7 +32,6 @@ from emulator.sysbios.watch.threads import Thread, ThreadWatch
 #: time to write, a sonar needs time to measure (CHOICE).
 TIMEOUT_CYCLES: Final = 20 * CYCLES_PER_MS
 SLEEP_CYCLES: Final = 100 * CYCLES_PER_MS
-FOREVER: Final = 0xFFFF
 #: Report when this many pends in a row got no message.
 SILENCES: Final = 2
 
@@ -51,6 +52,8 @@ class TimeoutWatch:
         #: Statement -> how many of its pends in a row got no message, since the last that got one.
         self._silences: dict[StatementNumber, int] = {}
         self._ignored: set[tuple[str, int]] | None = None
+        #: Waits with a timeout for a semaphore: the statement, the semaphore and the ticks.
+        self._pends: dict[StatementNumber, tuple[Semaphore, int]] = {}
         calls.before("Semaphore_post", "Event_post", "Mailbox_post", callback=self._posting)
         for name in ("Semaphore_pend", "Event_pend", "Mailbox_pend", "Mailbox_post"):
             calls.before(name, callback=self._begins)
@@ -63,14 +66,41 @@ class TimeoutWatch:
         in_interrupt = self._threads.kernel.core.thread_type == HWI
         (self._by_interrupt if in_interrupt else self._by_others).add(what)
 
-    def _begins(self, *_arguments: Any) -> None:
+    def finish(self) -> None:
+        """Report waits for interrupts of which nothing tests the result."""
+        places = {self._locator.place(statement): pend for statement, pend in self._pends.items()}
+        waited = {place[:2]: (place, *pend) for place, pend in places.items() if place is not None}
+        functions = {function.path: function for function in self._names.functions}
+        for function in functions.values() if waited and self._names.whole else ():
+            for wait in ignored_waits(function, "Semaphore_pend"):
+                at = waited.get((wait.statement.where.file, wait.statement.where.line))
+                if at is None or at[1] not in self._by_interrupt or at[1] in self._by_others:
+                    continue
+                place, semaphore, timeout = at
+                posters = [functions[path] for path in self._names.callers("Semaphore_post", semaphore)]
+                used = used_again(wait, function, posters)
+                if used is None:
+                    continue
+                name = self._names.of(semaphore)
+                self._findings.report_at(
+                    place, "wait-untested",
+                    f"nothing tests whether an interrupt has posted {name} within {timeout} ticks: "
+                    + (f"what follows uses {used} again" if used else "what follows goes on without it"),
+                    object=name, how="dynamic",
+                )  # fmt: skip
+
+    def _begins(self, *arguments: Any) -> None:
+        if len(arguments) == 2 and isinstance(arguments[0], Semaphore):
+            timeout = arguments[1] & self._threads.kernel.tasks.timeout_mask
+            if timeout not in (0, WAIT_FOREVER):
+                self._pends[self._locator.here()] = arguments[0], timeout
         self._began[self._threads.current] = self._clock.now
 
     def _ended(self, function: str, result: int, what: Any, *arguments: Any) -> None:
         timeout = arguments[-1] if arguments else 0
         # A semaphore that nobody has posted yet may be one that an interrupt posts.
         unknown = function == "Semaphore_pend" and what not in self._by_others
-        if timeout and timeout != FOREVER and not result and what not in self._by_interrupt and not unknown:
+        if timeout and timeout != WAIT_FOREVER and not result and what not in self._by_interrupt and not unknown:
             self._check_gates(f"{function}({self._names.of(what)}), which times out", TIMEOUT_CYCLES)
 
     def _slept(self, _result: None, ticks: int) -> None:
@@ -97,7 +127,7 @@ class TimeoutWatch:
         statement = self._locator.here()
         if taken:
             self._silences[statement] = 0
-        elif timeout and timeout != FOREVER and statement in self._silences:
+        elif timeout and timeout != WAIT_FOREVER and statement in self._silences:
             self._silences[statement] += 1
             place = self._locator.place(statement)
             if self._silences[statement] == SILENCES and place is not None and place[:2] in self._ignored_pends():
@@ -111,18 +141,8 @@ class TimeoutWatch:
     def _ignored_pends(self) -> set[tuple[str, int]]:
         """File and line of the pends on a mailbox whose result the program does not use."""
         if self._ignored is None:
-            modules = self._linked.program.modules.values()
             self._ignored = {
-                at for module in modules for function in module.functions for at in _ignored_results(function)
-            }
+                (wait.statement.where.file, wait.statement.where.line)
+                for function in self._names.functions for wait in ignored_waits(function, "Mailbox_pend")
+            }  # fmt: skip
         return self._ignored
-
-
-def _ignored_results(function: Function) -> Iterator[tuple[str, int]]:
-    for statement in statements(function.body):
-        if (
-            isinstance(statement, Evaluate)
-            and isinstance(statement.value, Call)
-            and statement.value.function.name == "Mailbox_pend"
-        ):
-            yield statement.where.file, statement.where.line
