@@ -38,6 +38,7 @@ from emulator.c28x.passes.quotients import check_quotients
 from emulator.c28x.passes.released import check_released
 from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.ring_back import check_ring_back
+from emulator.c28x.passes.search_end import check_searches
 from emulator.c28x.passes.spans import check_spans
 from emulator.c28x.passes.stamps import Stamps
 from emulator.c28x.passes.state_tables import check_state_tables
@@ -117,6 +118,7 @@ def check(
     check_never_back(modules, reports)  # marks of data belong to their structures
     check_tables(modules, reports)
     check_ring_back(modules, reports)
+    check_searches(modules, reports)
     check_state_tables(whole, of_whole)
     check_let_in(whole, of_whole)
     sides = sides_of(modules, reports)
