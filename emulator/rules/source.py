@@ -253,6 +253,20 @@ looked at.
         "CERT MSC04-C",
     ),
     _rule(
+        "case-goes-on",
+        Severity.NOTE,
+        "One case of a switch has no break, and all others have one.",
+        """
+The case does what the next one does, too.
+
+Several other cases end, this one has statements and goes on, and no comment says so. That may be meant. If the next
+case overwrites or repeats what this one does, `case-falls` is told.
+
+**Fix:** `break`, or a comment (`/* falls through */`).
+""",
+        "ISO C 6.8.4.2; CERT MSC17-C",
+    ),
+    _rule(
         "line-unlimited",
         Severity.WARNING,
         "Nothing but the last character of a line limits its length.",

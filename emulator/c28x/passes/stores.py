@@ -51,10 +51,13 @@ def check_stores(function: Function, report: StaticReport) -> None:
             ended = sum(bool(body) and not isinstance(body[-1], FallThrough) for _, body in s.cases)
             for (_, body), (_, following) in zip(s.cases, s.cases[1:], strict=False):
                 if body and isinstance(end := body[-1], FallThrough):
-                    _falls(function, body[:-1], following, report, said=end.said)
+                    told = _falls(function, body[:-1], following, report, said=end.said)
                     if not end.said:
                         only = len(falling) == 1 and ended > LEAST_ENDED
-                        _check_fall_through(function, body[:-1], following, report, only=only)
+                        told |= _check_fall_through(function, body[:-1], following, report, only=only)
+                        if only and not told and body[:-1]:
+                            message = "this case goes on with the next one, and no comment says so; all others end"
+                            report.report(function, body[-2].where, "case-goes-on", message)
     for body in _bodies(function.body):
         for i, s in enumerate(body):
             if isinstance(s, Assign) and isinstance(s.target, LValue) and _seen_by_others(s.target):
@@ -82,11 +85,12 @@ def _twice(s: Assign, again: Assign, following: Stmt) -> bool:
 
 def _falls(
     function: Function, body: list[Stmt], following: list[Stmt], report: StaticReport, *, said: bool
-) -> None:  # fmt: skip
-    """Report stores of a case that are overwritten by the case to which it falls through.
+) -> bool:  # fmt: skip
+    """Report stores of a case that are overwritten by the case to which it falls through; false if there is none.
 
     `said`: a comment says that it does.  Then a register may be meant to have the first value for a moment.
     """
+    told = False
     for i, s in enumerate(body):
         if not isinstance(s, Assign):
             continue
@@ -98,12 +102,14 @@ def _falls(
             first = f"{_name(s)} is set to {source_text(s.value)}"
             message = f"{first}, and the next case sets it again: a break is missing"
             report.report(function, s.where, "case-falls", message, object=text)
+            told = True
+    return told
 
 
 def _check_fall_through(
     function: Function, body: list[Stmt], following: list[Stmt], report: StaticReport, *, only: bool
-) -> None:  # fmt: skip
-    """Report a case that falls through without a comment, into a case that is not its continuation.
+) -> bool:  # fmt: skip
+    """Report a case that falls through without a comment, into one that is not its continuation; false if it is none.
 
     The next case makes the same call again, or (`only`: all other cases end) stores the same value in another object.
     """
@@ -111,7 +117,7 @@ def _check_fall_through(
     if again is not None:
         message = f"the next case does {source_text(again.value)} again, and no comment says so: a break is missing"
         report.report(function, body[-1].where, "case-falls", message, object=source_text(again.value))
-        return
+        return True
     match body, following:
         case [Evaluate(value=Call() as one_call)], [Evaluate(value=Call() as other_call), *_] if (
             only and one_call.function.path == other_call.function.path
@@ -120,12 +126,15 @@ def _check_fall_through(
             text = source_text(one_call)
             message = f"the next case calls {one_call.function.name} with other numbers, and no comment says so: "
             report.report(function, body[-1].where, "case-falls", message + "a break is missing", object=text)
+            return True
         case [Assign(target=LValue() as one, value=value)], [Assign(target=LValue() as other, value=same), *_] if (
             only and value == same and one != other and not isinstance(bare(value), Const)
         ):
             text = source_text(value)
             message = f"{text} goes to {one.text}, and in the next case to {other.text}, and no comment says so: "
             report.report(function, body[-1].where, "case-falls", message + "a break is missing", object=one.text)
+            return True
+    return False
 
 
 def _name(s: Assign) -> str:

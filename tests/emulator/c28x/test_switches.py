@@ -204,6 +204,17 @@ def test_a_case_that_goes_on_without_a_word(was: str, now: str, line: int) -> No
     assert [found for found in findings if found[0] == "case-falls"] == [("case-falls", line)] * bool(line)
 
 
+@pytest.mark.parametrize(("now", "line"), [
+    ("kp = 2 * value;", 7),
+    ("kp = 2 * value; /* falls through */", 0),
+    ("kp = value;", 0),  # told: case-falls
+    ("return;", 0),
+])  # fmt: skip
+def test_the_one_case_that_goes_on_is_noted(now: str, line: int) -> None:
+    findings = findings_of(OBEY.replace("kp = value;\n        break;", now))
+    assert [found for found in findings if found[0] == "case-goes-on"] == [("case-goes-on", line)] * bool(line)
+
+
 def test_several_cases_that_go_on_add_up() -> None:
     text = OBEY.replace("kp = value;\n        break;", "kp = value;").replace("ki = value;\n        break;", "ki++;")
-    assert "case-falls" not in {rule for rule, _ in findings_of(text)}
+    assert not {"case-falls", "case-goes-on"} & {rule for rule, _ in findings_of(text)}
