@@ -36,10 +36,14 @@ class PhysicalUnit:
     prefix: float = 1.0
 
     def ratio(self, other: PhysicalUnit) -> float:
-        """How many of the `other` unit one of this is; 0: they are units of different quantities."""
+        """How many of the `other` unit one of this is; 0: they are units of different quantities, or it is not known.
+
+        Tenths beside mm may be those of a millimetre or of a metre.
+        """
         if self.scale and other.scale:
             if not self.quantity or not other.quantity:
-                return self.prefix / other.prefix
+                whole = self.quantity == other.quantity or 1.0 in (self.prefix, other.prefix)
+                return self.prefix / other.prefix if whole or self.prefix == other.prefix else 0.0
             if self.quantity == other.quantity or (self.is_degree and other.is_degree):
                 return self.scale / other.scale
         return 1.0 if self.name == other.name else 0.0
@@ -216,7 +220,7 @@ def unit_of_name(name: str) -> PhysicalUnit | None:
         return None
     if words[-1] in ("mHz", "MW", "MA", "MV") and not name.isupper():
         return None  # mega or milli
-    if len(small) > 2 and small[-2] + small[-1] in _ENDS:
+    if len(small) > 2 and small[-2] + small[-1] in _ENDS and small[-1] != "s":  # degrees a second
         return _ENDS[small[-2] + small[-1]]
     end = small[-1]
     before = _whole_word(written[-2]) if len(written) > 2 else None

@@ -524,7 +524,9 @@ class _Units:
             case Call(function=function) if _states_result(function):
                 name = function.name
         found = stated_in_context(name, said, self._identifiers) if other.factor == 1.0 and not other.named else None
-        return found if found is not None and name not in self._converted and found.unit.ratio(other.unit) else None
+        if found is None or name in self._converted or not other.unit.quantity or not found.unit.ratio(other.unit):
+            return None
+        return found
 
     def _value(self, e: Expr) -> Measured | None:
         """The unit of a value; None if it is not known."""

@@ -29,7 +29,7 @@ from hil.image import Build
     # No units: other words, rates, amounts, mega or milli.
     ("items", ""), ("params", ""), ("VRMS", ""), ("motorRPMs", ""), ("max_min", ""), ("filterDegree", ""),
     ("powerMeter", ""), ("RAMP_RPM_PER_MS", ""), ("RATE_6400_HZ", ""),
-    ("timeout500Ms", ""), ("power_MW", ""), ("speed_mm_s", ""), ("", ""),
+    ("timeout500Ms", ""), ("power_MW", ""), ("speed_mm_s", ""), ("rate_deg_s", ""), ("", ""),
 ])  # fmt: skip
 def test_the_end_of_a_name_states_a_unit(name: str, unit: str) -> None:
     found = unit_of_name(name)
@@ -208,10 +208,12 @@ MEANT = """#include <stdint.h>
 #define HOT_C          60
 #define BLOCK_MS       10
 #define STEPS_PER_MM   80
+#define LENGTH_MM      50
+#define TOP_A          7
 #define TENTHS_PER_MM  800     // tenths of a step
 typedef struct { uint16_t hold_s; int16_t load_A; } Stage;
 Stage stage;
-uint32_t now_ms, since_ms; int16_t load_mA, pack_cbar, temp_sixteenths, temp_errors;
+uint32_t now_ms, since_ms; int16_t load_mA, pack_cbar, temp_sixteenths, pos_tenths;
 int32_t charge_mAs, rest_mA_ms, steps, at, way; int16_t direction;
 uint16_t word;
 char line[40];
@@ -244,6 +246,8 @@ void f(void)
     ("if (now_ms > LATE_S || load_mA > LOAD_A) word = 0;", ""),
     ("stage.hold_s = now_ms / 1000; since_ms = stage.hold_s * 1000UL; if (pack_cbar > FULL_MBAR / 10) word = 0;", ""),
     ("rest_mA_ms += load_mA * BLOCK_MS; charge_mAs += rest_mA_ms / 1000; rest_mA_ms %= 1000;", ""),
+    # Tenths of a millimetre; tenths, and a letter that need not be a unit.
+    ("pos_tenths = LENGTH_MM * 10; if (pos_tenths > LENGTH_MM * 10 || pos_tenths > TOP_A) word = 0;", ""),
     # A value of two units, or of another one later; one that also goes elsewhere.
     ("temp = word; temp_sixteenths = temp; temp = temp / 16; if (temp > HOT_C) word = 0;", ""),
     ("temp = word; temp_sixteenths = temp; pack_cbar = temp; if (temp > HOT_C) word = 0;", ""),
