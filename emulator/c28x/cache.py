@@ -2,7 +2,8 @@
 
 The key of a program contains the request, the `CompileOptions` and the state of the translator.  A kept program is used
 only if every source file is unchanged, and reading each register still has the same effect.  If an entry cannot be read
-or written, the program is compiled.
+or written, the program is compiled.  A program with corrections takes what these do not reach from the first such
+program that the process compiled.
 
 The folder is the user's own cache (`HIL_CACHE`, else `XDG_CACHE_HOME`, else `~/.cache`); its files are trusted as the
 user's programs are.  `HIL_CACHE=off` keeps nothing.
@@ -20,6 +21,7 @@ import tempfile
 import zlib
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
@@ -28,7 +30,7 @@ from emulator.c28x.compiled_program import Compiled, CompileOptions
 from emulator.c28x.ctypes import CType
 from emulator.c28x.program import Program, digest, folders
 from emulator.c28x.readers.reading import reading
-from emulator.c28x.symbols import EnumType, Module, Symbol
+from emulator.c28x.symbols import EnumType, Module, NotAlike, SourceError, Symbol
 from emulator.c28x.tree import Function
 
 #: How many programs the folder keeps: the most recently used ones.  An audit of the robot makes 150, most of them with
@@ -36,6 +38,8 @@ from emulator.c28x.tree import Function
 MAX_PROGRAMS: Final = 256
 #: How many of them a process keeps in memory.
 IN_MEMORY: Final = 32
+#: From how many programs that it made a process can take over functions: they keep their trees.
+ALIKE: Final = 4
 PACKAGE: Final = Path(__file__).resolve().parent.parent
 #: Folders that a translation depends on in addition to the firmware, and whether their subfolders count too.
 TRANSLATOR: Final = (("", False), ("c28x", True), ("registers", False), ("sysbios", False))
@@ -58,21 +62,46 @@ def compiled(asked: dict[str, Any], options: CompileOptions, looked_at: Callable
             with suppress(OSError):
                 os.utime(file)
             return known.compiled
+    made = _make(asked, options, looked_at)
+    if file is not None:
+        stamped = {_real(path) for path, _, _ in (*_translator_files(), *_package_files(asked))}
+        digests = {name: known for name, known in made.digests.items() if _real(name) not in stamped}
+        _keep(file, CachedProgram(made.compiled, digests, made.looked_at))
+    return made.compiled
+
+
+def _make(asked: dict[str, Any], options: CompileOptions, looked_at: Callable[[str, str], bool]) -> CachedProgram:
+    """Translate a program.  Most of one with corrections is as in the first one that this process made with others."""
+    from emulator.c28x.compile import compile_program  # most runs find their program and do not need the translator
+
     asked_for: dict[tuple[str, str], bool] = {}
 
     def remembered(block: str, register: str) -> bool:
         answer = asked_for[block, register] = looked_at(block, register)
         return answer
 
-    from emulator.c28x.compile import compile_program  # most runs find their program and do not need the translator
-
+    corrected = bool(asked.get("fixes"))
+    others = {**asked, "fixes": ()}
+    first = _first_like(_described(others, replace(options, static=False))) if corrected else []
+    if first and first[0].fits(looked_at):
+        like = first[0].compiled
+        with suppress(NotAlike, SourceError):  # the errors of a whole program are raised below
+            program = Program(**asked, like=like.program)
+            compiled = compile_program(program, options, remembered, like)
+            return CachedProgram(compiled, first[0].digests, first[0].looked_at | asked_for)
     program = Program(**asked)
-    result = compile_program(program, options, remembered)
-    if file is not None:
-        stamped = {os.path.realpath(path) for path, _, _ in (*_translator_files(), *_package_files(asked))}
-        digests = {name: known for name, known in program.digests().items() if os.path.realpath(name) not in stamped}
-        _keep(file, CachedProgram(result, digests, asked_for))
-    return result
+    made = CachedProgram(compile_program(program, options, remembered), program.digests(), asked_for)
+    if corrected and not first:
+        with suppress(NotAlike):
+            program.reached_by(program.fixes)  # what this finds in the sources is kept for the next programs
+            first.append(made)
+    return made
+
+
+@lru_cache(maxsize=ALIKE)
+def _first_like(described: str) -> list[CachedProgram]:
+    """A list for the first program of a request without its corrections."""
+    return []
 
 
 class CachedProgram:
@@ -117,13 +146,21 @@ def _folder() -> Path | None:
 def _file(asked: dict[str, Any], options: CompileOptions) -> Path | None:
     """The file of a request; None if the cache is off, or a function in the request has no name."""
     folder = _folder()
-    if folder is None:
+    described = _described(asked, options)
+    if folder is None or not described:
         return None
+    packages = _state(_package_files(asked))
+    request = repr((described, os.getcwd(), sys.version, _translator(), packages))
+    return folder / f"{hashlib.sha256(request.encode()).hexdigest()[:32]}.program"
+
+
+def _described(asked: Mapping[str, Any], options: CompileOptions) -> str:
+    """The request as text; empty if a function in it has no name."""
     described = []
     for name, value in sorted({**asked, **vars(options)}.items()):
         if callable(value):
             if not hasattr(value, "__module__") or "<" in value.__qualname__:
-                return None
+                return ""
             value = (value.__module__, value.__qualname__)
         elif isinstance(value, set | frozenset):
             value = sorted(value)
@@ -132,9 +169,7 @@ def _file(asked: dict[str, Any], options: CompileOptions) -> Path | None:
         elif not isinstance(value, str | int | bool):
             value = list(map(str, value))
         described.append((name, value))
-    packages = _state(_package_files(asked))
-    request = repr((described, os.getcwd(), sys.version, _translator(), packages))
-    return folder / f"{hashlib.sha256(request.encode()).hexdigest()[:32]}.program"
+    return repr(described)
 
 
 @lru_cache(maxsize=1)
@@ -170,6 +205,10 @@ def _sources(folder: str, below: bool = True) -> list[File]:
     return files
 
 
+#: The path of a file with links resolved, asked for once: a process makes many programs of the same files.
+_real = lru_cache(maxsize=4096)(os.path.realpath)
+
+
 def _state(files: list[File]) -> str:
     """A digest of the names, sizes and times of files."""
     return hashlib.sha256(marshal.dumps(sorted(files), 0)).hexdigest()  # 0: no references, no interned strings
@@ -196,6 +235,10 @@ def _load(file: str, size: int, inode: int) -> CachedProgram | None:
     return found if isinstance(found, CachedProgram) else None
 
 
+#: What `_Pickler` may pickle in another way than `pickle` does.
+_SPECIAL: Final = (CachedProgram, CType, EnumType, Module, Function)
+
+
 class _Pickler(pickle.Pickler):
     """Pickles only what is needed after the code has been generated.
 
@@ -205,6 +248,8 @@ class _Pickler(pickle.Pickler):
 
     def reducer_override(self, obj: Any) -> Any:
         """How to pickle an object."""
+        if not isinstance(obj, _SPECIAL):
+            return NotImplemented
         if isinstance(obj, CachedProgram):
             self.trees = obj.compiled.options.watch
             self.functions = {compiled.function for compiled in obj.compiled.functions}
@@ -219,7 +264,7 @@ class _Pickler(pickle.Pickler):
             state["symbols"] = {name: s for name, s in state["symbols"].items() if self._is_looked_at(name, s)}
             return object.__new__, (Module,), state
         if isinstance(obj, Function) and not self.trees:
-            return object.__new__, (Function,), {**obj.__dict__, "body": []}
+            return object.__new__, (Function,), {**obj.__getstate__(), "body": []}
         return NotImplemented
 
     def _is_looked_at(self, name: str, symbol: Symbol) -> bool:
@@ -259,4 +304,3 @@ def _keep(file: Path, kept: CachedProgram) -> None:
                 os.unlink(temporary)
     finally:
         sys.setrecursionlimit(limit)
-

@@ -58,6 +58,16 @@ class CompileOptions:
     calibration: dict[str, float] = field(default_factory=dict)
 
 
+@dataclass(frozen=True)
+class Depends:
+    """What the code of a function depends on besides the function: a program in which it is equal has the same code."""
+
+    #: The end of the names that belong to the function alone.
+    owner: str
+    #: `ImageFacts.about`.
+    facts: list[Any]
+
+
 @dataclass
 class CompiledFunction:
     """A function as Python code, and the source file that its line numbers refer to."""
@@ -65,6 +75,7 @@ class CompiledFunction:
     function: Function
     file: str
     written: EmittedFunction
+    depends: Depends | None = field(default=None, repr=False)
     _code: CodeType | None = field(default=None, repr=False)
 
     @property
@@ -83,7 +94,7 @@ class CompiledFunction:
         self._code = code
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_code": None}  # code objects cannot be pickled
+        return {**self.__dict__, "_code": None, "depends": None}  # code objects cannot be pickled
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,10 @@ class NoModule(ValueError):
     """A module that cannot be found."""
 
 
+class NotAlike(Exception):
+    """Nothing can be taken from a program with other corrections."""
+
+
 class SourceError(ValueError):
     """An error in firmware source: file, line, column (0: not known), the construct, and what would be right."""
 

@@ -181,6 +181,12 @@ class Function:
     #: Pass `frame`: the size of its frame in words, and the objects in it that a pointer can reach.
     frame_words: int = field(default=0, kw_only=True, repr=False, compare=False, metadata=FOUND)
     live: list[Variable] = field(default_factory=list, repr=False)
+    #: What `tree_queries.once` has been told.
+    answers: dict[Any, Any] = field(default_factory=dict, init=False, repr=False, compare=False, metadata=FOUND)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The fields without answers, which a copy gets anew."""
+        return {**self.__dict__, "answers": {}}
 
     @property
     def path(self) -> str:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from dataclasses import fields
 from itertools import chain
-from typing import Any, Final, get_args, get_type_hints
+from typing import Any, Final, TypeVar, get_args, get_type_hints
 
 from emulator.c28x import tree
 from emulator.c28x.ctypes import FloatType, IntType, PointerType, StructType
@@ -268,28 +268,25 @@ def statements(body: Iterable[Stmt]) -> list[Stmt]:
     found: list[Stmt] = []
     for s in body:
         found.append(s)
-        if type(s) in _WITH_BLOCKS:
-            for inner in blocks(s):
-                found += statements(inner)
+        if (inner := _BLOCKS.get(type(s))) is not None:  # most statements have no blocks, and every pass asks
+            for block in inner(s):
+                found += statements(block)
     return found
 
 
 def blocks(s: Stmt) -> list[list[Stmt]]:
     """The blocks within a statement."""
-    match s:
-        case If(then=a, otherwise=b):
-            return [a, b]
-        case While(body=inner, step=step):
-            return [inner, step]
-        case For(body=inner):
-            return [inner]
-        case Switch(cases=cases):
-            return [inner for _, inner in cases]
-    return []
+    inner = _BLOCKS.get(type(s))
+    return [] if inner is None else inner(s)
 
 
-#: The kinds of statements for which `blocks` lists any: most statements have none, and every pass asks.
-_WITH_BLOCKS: Final = (If, While, For, Switch)
+#: The kinds of statements that have blocks -> the blocks.
+_BLOCKS: Final[dict[type[Stmt], Callable[[Any], list[list[Stmt]]]]] = {
+    If: lambda s: [s.then, s.otherwise],
+    While: lambda s: [s.body, s.step],
+    For: lambda s: [s.body],
+    Switch: lambda s: [inner for _, inner in s.cases],
+}
 
 
 def all_blocks(body: list[Stmt]) -> Iterator[list[Stmt]]:
@@ -375,14 +372,33 @@ def variables(nodes: Iterable[Any]) -> set[Variable]:
     return {p.root for p in nodes if isinstance(p, LValue) and isinstance(p.root, Variable)}
 
 
+Answer = TypeVar("Answer")
+
+
+def once(query: Callable[[Function], Answer]) -> Callable[[Function], Answer]:
+    """Ask a query only once for each function, because programs share functions (`Program.like`).
+
+    It may use what the builder and the pass `intervals` made, which later passes do not change.
+    """
+
+    def ask(function: Function) -> Answer:
+        if query not in function.answers:
+            function.answers[query] = query(function)
+        answer: Answer = function.answers[query]
+        return answer
+
+    return ask
+
+
 def compared(functions: Iterable[Function]) -> set[Variable]:
     """The variables that occur in a comparison or a subscript."""
-    found: set[Variable] = set()
-    for function in functions:
-        for p in within(function.body):
-            if isinstance(p, Compare | Index):
-                found |= variables(parts(p))
-    return found
+    return set[Variable]().union(*map(_compared, functions))
+
+
+@once
+def _compared(function: Function) -> set[Variable]:
+    nodes = [p for p in within(function.body) if isinstance(p, Compare | Index)]
+    return variables(part for p in nodes for part in parts(p))
 
 
 #: A scalar by what holds it, whichever object that is: the object itself or the structure, and the offset in words.
@@ -414,13 +430,17 @@ def fixed_words(lvalue: LValue) -> int | None:
 
 def limited(functions: Iterable[Function]) -> set[NamedScalar]:
     """The unsigned scalars that the source limits: a larger value is replaced by the limit."""
+    return set[NamedScalar]().union(*map(_limited, functions))
+
+
+@once
+def _limited(function: Function) -> set[NamedScalar]:
     found: set[NamedScalar] = set()
-    for function in functions:
-        for larger, limit, chosen in _choices(function.body):
-            match _as_it_is(larger):
-                case Load(lvalue=lvalue, ctype=IntType(signed=False)) if any(_same(value, limit) for value in chosen):
-                    if (scalar := named_scalar(lvalue)) is not None:
-                        found.add(scalar)
+    for larger, limit, chosen in _choices(function.body):
+        match _as_it_is(larger):
+            case Load(lvalue=lvalue, ctype=IntType(signed=False)) if any(_same(value, limit) for value in chosen):
+                if (scalar := named_scalar(lvalue)) is not None:
+                    found.add(scalar)
     return found
 
 
@@ -447,26 +467,34 @@ def _sides(test: Compare, chosen: list[Expr], *, holds: bool) -> Iterator[tuple[
 
 def made_float(functions: Iterable[Function]) -> set[NamedScalar]:
     """The unsigned scalars of 16 bits whose value some expression converts to a float."""
+    return set[NamedScalar]().union(*map(_made_float, functions))
+
+
+@once
+def _made_float(function: Function) -> set[NamedScalar]:
     found: set[NamedScalar] = set()
-    for function in functions:
-        for p in within(function.body):
-            match p:
-                case Convert(ctype=FloatType(), operand=Load(ctype=IntType(signed=False, bits=16), lvalue=lvalue)):
-                    if (named := named_scalar(lvalue)) is not None:
-                        found.add(named)
+    for p in within(function.body):
+        match p:
+            case Convert(ctype=FloatType(), operand=Load(ctype=IntType(signed=False, bits=16), lvalue=lvalue)):
+                if (named := named_scalar(lvalue)) is not None:
+                    found.add(named)
     return found
 
 
 def limited_scalars(functions: Iterable[Function]) -> set[NamedScalar]:
     """The scalars that some expression compares by order with a constant."""
+    return set[NamedScalar]().union(*map(_limited_scalars, functions))
+
+
+@once
+def _limited_scalars(function: Function) -> set[NamedScalar]:
     found: set[NamedScalar] = set()
-    for function in functions:
-        for p in within(function.body):
-            if isinstance(p, Compare) and p.op not in ("==", "!="):
-                for side, other in ((bare(p.left), p.right), (bare(p.right), p.left)):
-                    named = named_scalar(side.lvalue) if isinstance(side, Load) and isinstance(other, Const) else None
-                    if named is not None:
-                        found.add(named)
+    for p in within(function.body):
+        if isinstance(p, Compare) and p.op not in ("==", "!="):
+            for side, other in ((bare(p.left), p.right), (bare(p.right), p.left)):
+                named = named_scalar(side.lvalue) if isinstance(side, Load) and isinstance(other, Const) else None
+                if named is not None:
+                    found.add(named)
     return found
 
 
@@ -549,11 +577,16 @@ def only_compute(functions: Iterable[Function]) -> set[str]:
 
     They access no register and no object at file scope that is not constant.
     """
-    found = {f.path: f.calls for f in functions if not any(map(_of_others, within(f.body)))}
+    found = {f.path: f.calls for f in functions if not _sees_others(f)}
     while more := [path for path, called in found.items() if called - found.keys()]:
         for path in more:
             del found[path]
     return set(found)
+
+
+@once
+def _sees_others(function: Function) -> bool:
+    return any(map(_of_others, within(function.body)))
 
 
 def _of_others(node: Any) -> bool:

@@ -19,18 +19,21 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Final
 
 from firmware_model.catalogue import CATALOGUE, Defect, DefectKind
 from firmware_model.corrections import ALL, resolve
 from hil.audit import forked
 from hil.audit.demonstrations import DEMONSTRATIONS
 from hil.audit.evidence import Evidence, EvidenceKind
-from hil.audit.rig import Rig, Variant
+from hil.audit.rig import Rig, Variant, robot
 from hil.audit.templates import Templates
 from hil.collector import uncollected
 from hil.reports.json_report import finding_of
 from hil.workers import workers
+
+#: With more entries than these, several need a program with static checks, and several a watched one.
+_MANY: Final = 40
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,10 +145,14 @@ def _audit_forked(
 ) -> Generator[DemonstrationOutcome, None, None]:
     """Run each entry in a copy of this process.  This process prepares what several entries need."""
     templates = Templates()
-    if len(names) > 2:
-        # Every entry links a program of its own.  Most of what is parsed and written for one is the same for all.
-        with uncollected():
-            Rig(resolve([next(name for name, entry in CATALOGUE.items() if entry.kind is not DefectKind.FIGURE)]))
+    with uncollected():
+        # Every entry links a program of its own.  Most of what is read and written for one is the same for all.
+        one = resolve([next(name for name, entry in CATALOGUE.items() if entry.kind is not DefectKind.FIGURE)])
+        if len(names) > 2:
+            Rig(one, static=len(names) > _MANY)
+        if len(names) > _MANY:
+            with robot(one, boot=False):  # its program is watched
+                pass
     calls = ((name, partial(templates.using, partial(show, name))) for name in names)
     with closing(forked.in_children(calls, at_once=max(1, processes))) as running:
         for done, answer in running:

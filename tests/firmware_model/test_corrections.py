@@ -12,12 +12,17 @@ from hypothesis import strategies as st
 
 import firmware_model
 import firmware_model.corrections
+from emulator.c28x.compile import compile_program
+from emulator.c28x.compiled_program import Compiled, CompileOptions
+from emulator.c28x.program import Program
 from emulator.c28x.readers.python.preprocessor import fixed_ids, preprocess
+from emulator.c28x.symbols import NotAlike
 from firmware_model.catalogue import CATALOGUE
-from firmware_model.corrections import ALL, resolve
-from firmware_model.image import link
+from firmware_model.corrections import ALL, overlays, resolve
+from firmware_model.image import MODULES, link
 from hil.audit.rig import Rig
 from hil.robot.board import RobotBoard
+from tests.emulator.c28x.likeness import parts
 
 OVERLAYS = sorted(p for p in Path(firmware_model.corrections.__file__).parent.glob("*.py") if p.stem != "__init__")
 
@@ -87,3 +92,30 @@ def test_what_an_overlay_adds_is_used_by_some_correction() -> None:
 def test_an_unknown_correction_is_named_with_its_neighbours() -> None:
     with pytest.raises(ValueError, match=r"'US-acumulator' is no correction: did you mean US-accumulator"):
         resolve(["US-acumulator"])
+
+
+IDS = sorted(d.id for d in CATALOGUE.values() if d.in_firmware)
+#: Corrections of functions, of objects and of constants, in several files.
+SOME = {"US-median-even", "MAIN-hidden-names", "GYRO-dead-band", "SERV-distances-apart", "MAIN-comp-undefined"}
+
+
+def translated(fix: str, like: Compiled | None = None) -> Compiled:
+    board = RobotBoard()
+    corrected = overlays((*MODULES, "firmware_model.board_support.xbee"))
+    program = Program(MODULES, overlays=corrected, fixes=resolve([fix]), like=like and like.program)
+    return compile_program(
+        program, CompileOptions(static=True), lambda block, name: board.register(block, name).looked_at, like
+    )
+
+
+@pytest.mark.parametrize("fix", [pytest.param(i, marks=[] if i in SOME else pytest.mark.slow) for i in IDS])
+def test_a_program_with_one_correction_may_be_like_one_with_another(fix: str) -> None:
+    like = translated("US-accumulator" if fix != "US-accumulator" else "US-start-before-ready")
+    before = parts(like)
+    try:
+        made = translated(fix, like)
+    except NotAlike:  # a few change what is known of objects that other functions use
+        assert fix not in SOME
+        return
+    assert parts(made) == parts(translated(fix))
+    assert parts(like) == before

@@ -54,8 +54,8 @@ from emulator.c28x.passes.values import ValueChecks, file_scope, flag_words, mac
 from emulator.c28x.passes.waiting import WriterAnalysis, check_waiting
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
-from emulator.c28x.tree import Variable
-from emulator.c28x.tree_queries import source_text
+from emulator.c28x.tree import Function, Variable
+from emulator.c28x.tree_queries import once, source_text
 
 
 def check(
@@ -83,16 +83,9 @@ def check(
             found.append(StaticFinding(place, remark.rule, remark.message, remark.name, "", None))
         for function in module.functions:
             unit = module.unit(function.name)
-            FlowReport(function, report).run()
+            found += _of_flow(function)
             ValueChecks(function, report, unit.symbols, flags, masks, results).run()
-            Liveness(function, report).run()
-            check_stores(function, report)
-            check_copies(function, report)
-            check_admitted(function, report)
-            check_decided(function, report)
-            check_masked(function, report)
-            check_begun_anew(function, report)
-            NullTests(function, report).run()
+            found += _of_function(function)
             check_waiting(function, threads, report)
             if not in_header(function.where, unit.file):
                 used = mentions.by[function]
@@ -154,4 +147,28 @@ def check(
         owners[function].report(function, s.where, "stamp-compare", message, object=text)
     check_image(modules, mentions, reports, entered, entries=bool(entries))
     check_timer_clocks(reports)
+    return found
+
+
+@once
+def _of_flow(function: Function) -> list[StaticFinding]:
+    """What the walk over one function found."""
+    found: list[StaticFinding] = []
+    FlowReport(function, StaticReport(function.c_file, found)).run()
+    return found
+
+
+@once
+def _of_function(function: Function) -> list[StaticFinding]:
+    """The findings for which one function, and those that it calls, are enough."""
+    found: list[StaticFinding] = []
+    report = StaticReport(function.c_file, found)
+    Liveness(function, report).run()
+    check_stores(function, report)
+    check_copies(function, report)
+    check_admitted(function, report)
+    check_decided(function, report)
+    check_masked(function, report)
+    check_begun_anew(function, report)
+    NullTests(function, report).run()
     return found

@@ -45,7 +45,7 @@ from emulator.c28x.tree import (
     Unary,
     Variable,
 )
-from emulator.c28x.tree_queries import bare, own_nodes, parts, source_text, statements
+from emulator.c28x.tree_queries import bare, once, own_nodes, parts, source_text, statements, within
 
 _WORD: Final = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 #: Words that say that a value is the wanted one; `set` and `point` count together.
@@ -92,11 +92,16 @@ def reversed_errors(functions: Iterable[Function]) -> dict[int, SignedWord]:
     return found
 
 
+@once
+def _has_errors(function: Function) -> bool:
+    return any(isinstance(p, Binary) and p.op == "-" and _is_backwards(p) for p in within(function.body))
+
+
 def _errors(function: Function) -> Iterator[_Error]:
     """The differences in a function whose names say that they are the measured value less the wanted one."""
-    body = list(statements(function.body))
-    if not any(isinstance(p, Binary) and p.op == "-" and _is_backwards(p) for s in body for p in own_nodes(s)):
+    if not _has_errors(function):
         return
+    body = list(statements(function.body))
     names = [function.name, *(target.text for s in body if (target := _target(s)) is not None)]
     names += [p.function.name for s in body for p in own_nodes(s) if isinstance(p, Call)]
     if (_LOWERED | _LOWERING).intersection(_words(function.name)) or _LOWERING.intersection(_words(" ".join(names))):

@@ -13,7 +13,7 @@ from typing import Any, Final
 from emulator.c28x.ctypes import IntType
 from emulator.c28x.passes.intervals import bounds_of
 from emulator.c28x.tree import Assign, Binary, Call, Const, Convert, Expr, Function, Load, LValue
-from emulator.c28x.tree_queries import NamedScalar, bare, children, named_scalar, source_text, statements
+from emulator.c28x.tree_queries import NamedScalar, bare, children, named_scalar, once, source_text, statements
 
 #: CHOICE: a word of two bitmaps that may meet (a picture, keys) shifts by less.  With three fields any shift counts.
 _FIELD: Final = 4
@@ -22,14 +22,18 @@ _COMPUTED: Final = ("+", "-", "*", "/", "%", ">>")
 
 def flag_scalars(functions: Iterable[Function]) -> set[NamedScalar]:
     """The scalars into which some statement ORs something: flags."""
+    return set[NamedScalar]().union(*map(_flag_scalars, functions))
+
+
+@once
+def _flag_scalars(function: Function) -> set[NamedScalar]:
     found: set[NamedScalar] = set()
-    for function in functions:
-        for s in statements(function.body):
-            match s:
-                case Assign(target=LValue() as target, value=value) if (named := named_scalar(target)) is not None:
-                    whole = bare(value)
-                    if isinstance(whole, Binary) and any(_loads(term, target) for term in or_terms(whole)):
-                        found.add(named)
+    for s in statements(function.body):
+        match s:
+            case Assign(target=LValue() as target, value=value) if (named := named_scalar(target)) is not None:
+                whole = bare(value)
+                if isinstance(whole, Binary) and any(_loads(term, target) for term in or_terms(whole)):
+                    found.add(named)
     return found
 
 

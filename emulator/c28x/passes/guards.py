@@ -41,7 +41,7 @@ Kinds of guards:
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Set
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any, Final
 
@@ -63,9 +63,8 @@ from emulator.c28x.ctypes import (
     StructType,
 )
 from emulator.c28x.passes.fields import meeting, or_terms, shift_of
+from emulator.c28x.passes.image_facts import ImageFacts
 from emulator.c28x.passes.intervals import LONGEST, RING, bounds_of, combine
-from emulator.c28x.passes.signs import SignedWord
-from emulator.c28x.passes.wind_up import RegulatorPart
 from emulator.c28x.sites import Site, StackFrame
 from emulator.c28x.tree import (
     AddressOf,
@@ -155,36 +154,17 @@ class Guards:
     """Makes the decisions for one function.
 
     `watch`: the image is watched; `ieee`: float division follows IEEE; `room`: path of an array -> its length, instead
-    of that of its type; `compared`: variables that occur in a comparison or a subscript; `limited`: unsigned scalars
-    that some function limits; `made_float`: unsigned scalars that some function makes floats of; `in_a_range`: scalars
-    that some function compares by order with a constant; `stamps`: the suspicions of pass `stamps`; `pulses`: the
-    result of pass `pulses`; `regulators`, `words`: those of passes `wind_up` and `signs`; `flags`: scalars that hold
-    flags; `numbers`, `sums`: scalars used as numbers, and the assignments that add samples (pass `sums`).
+    of that of its type; `facts`: those about the image.
     """
 
     def __init__(
-        self, function: Function, *, watch: bool, ieee: bool, room: Mapping[str, int], compared: Set[Variable],
-        limited: Set[NamedScalar], made_float: Set[NamedScalar], in_a_range: Set[NamedScalar],
-        stamps: Mapping[int, str], pulses: Mapping[int, str], regulators: Mapping[int, RegulatorPart],
-        words: Mapping[int, SignedWord], flags: Set[NamedScalar], numbers: Set[NamedScalar], sums: Set[int],
-        computing: Set[str],
+        self, function: Function, facts: ImageFacts, *, watch: bool, ieee: bool, room: Mapping[str, int]
     ) -> None:  # fmt: skip
         self.function = function
         self.watch = watch
         self.ieee = ieee
         self.room = room
-        self.compared = compared
-        self.limited = limited
-        self.made_float = made_float
-        self.in_a_range = in_a_range
-        self.stamps = stamps
-        self.pulses = pulses
-        self.regulators = regulators
-        self.words = words
-        self.flags = flags
-        self.numbers = numbers
-        self.sums = sums
-        self.computing = computing
+        self.facts = facts
         #: The object that the statement assigns to; the ORs within one that is checked.
         self.assigned: LValue | None = None
         self.composed: set[int] = set()
@@ -222,12 +202,12 @@ class Guards:
 
     def follow_parts(self, s: Stmt) -> None:
         """Check the words that have a sign in a statement, and follow the parts of regulators in it."""
-        for p in own_nodes(s) if self.regulators or self.words else ():
-            word = self.words.get(id(p))
+        for p in own_nodes(s) if self.facts.regulators or self.facts.words else ():
+            word = self.facts.words.get(id(p))
             if word is not None and p.leaving is None:
                 site = self.site(p.ctype, source_text(p), at=p.where, bound=word.largest, widened=word.use)
                 p.leaving = Guard(word.kind, site)
-            part = self.regulators.get(id(p))
+            part = self.facts.regulators.get(id(p))
             if part is not None:
                 name = part.integral if part.kind == "sum" else source_text(p)
                 site = self.site(
@@ -243,7 +223,7 @@ class Guards:
                 if isinstance(target, LValue):
                     if id(s) in self.stepped:
                         self.unwrapped(value, "unsigned-wrap", "is compared by the loop around it")
-                    elif id(s) in self.sums:
+                    elif id(s) in self.facts.sums:
                         self.unwrapped(value, "unsigned-wrap", "is divided or widened further down")
                     else:
                         self.sum_value(target, value)
@@ -281,7 +261,7 @@ class Guards:
                 self.condition(test)
                 if polls(s):
                     s.endless = Guard("poll", self.site(INT, polled(test)))
-                elif computes_alone(s) or (not without_end(s) and computes_alone(s, self.computing)):
+                elif computes_alone(s) or (not without_end(s) and computes_alone(s, self.facts.computing)):
                     kind = "idle" if without_end(s) else ""
                     s.endless = Guard("endless", self.site(INT, source_text(test), kind=kind))
             case For():
@@ -344,7 +324,7 @@ class Guards:
 
     def limited_later(self, scalar: NamedScalar | None, value: Expr) -> None:
         """Check a value of a scalar that is limited as unsigned: a negative number would become the largest."""
-        if scalar in self.limited:
+        if scalar in self.facts.limited:
             self.not_negative(value, "is limited")
 
     def float_later(self, target: LValue, value: Expr) -> None:
@@ -353,12 +333,12 @@ class Guards:
         A small negative number is none of the upper half of an unsigned range.
         """
         cast = as_unsigned(value)
-        if isinstance(cast, Convert) and cast.explicit and named_scalar(target) in self.made_float:
+        if isinstance(cast, Convert) and cast.explicit and named_scalar(target) in self.facts.made_float:
             later = "becomes a float later"
             site = self.site(cast.ctype, source_text(cast), at=cast.where, widened=later, kind="small")
             cast.leaving = Guard("sign-lost", site)
         named = named_scalar(target)
-        if named in self.made_float and named not in self.in_a_range:
+        if named in self.facts.made_float and named not in self.facts.in_a_range:
             self.gone_back(value, "becomes a float later")
 
     def cut_capture(self, target: LValue, value: Expr) -> None:
@@ -370,7 +350,7 @@ class Guards:
             case Convert(
                 ctype=IntType(signed=False, bits=16), explicit=False,
                 operand=RegisterLoad(register=RegisterRef(bits=32, field=None) as register) as read,
-            ) if register.register in CAPTURES and value.guard is None and named_scalar(target) in self.numbers:
+            ) if register.register in CAPTURES and value.guard is None and named_scalar(target) in self.facts.numbers:
                 value.guard = Guard("narrowed", self.site(value.ctype, source_text(read), at=value.where))
 
     def gone_back(self, e: Expr, then: str) -> None:
@@ -406,7 +386,7 @@ class Guards:
             ):
                 self.unwrapped(e, "unsigned-wrap", "is divided or widened further down")
             case _, Binary(op="+" | "-", ctype=IntType(signed=False), left=Load(lvalue=stepped), right=by) if (
-                stepped == target and named_scalar(target) in self.limited
+                stepped == target and named_scalar(target) in self.facts.limited
                 and not (isinstance(by, Const) and by.value == 1)  # down from 0 to the limit: a ring, a digit
             ):
                 self.unwrapped(e, "unsigned-wrap", "is limited")
@@ -463,8 +443,8 @@ class Guards:
         """Decide for a controlling expression."""
         match e:
             case Compare(op=op, left=left, right=right):
-                if id(e) in self.stamps:
-                    site = self.site(left.ctype, source_text(e), at=e.where, kind=self.stamps[id(e)])
+                if id(e) in self.facts.stamps:
+                    site = self.site(left.ctype, source_text(e), at=e.where, kind=self.facts.stamps[id(e)])
                     e.guard = Guard("stamps", site)
                 pointers = isinstance(left.ctype, PointerType | HandleType | FunctionType)
                 if pointers or op in ("==", "!="):
@@ -634,7 +614,7 @@ class Guards:
         self.composed |= {id(side) for side in (e.left, e.right) if side.ctype == e.ctype}
         if id(e) in self.composed:
             return
-        pairs = meeting(e, self.flags, self.assigned)
+        pairs = meeting(e, self.facts.flags, self.assigned)
         if pairs:
             terms = or_terms(e)
             named = tuple((shift_of(term), source_text(term)) for term in terms)
@@ -688,10 +668,10 @@ class Guards:
     def convert(self, e: Convert) -> None:
         target, operand = e.ctype, e.operand
         source = operand.ctype
-        if id(e) in self.pulses and e.guard is None:
+        if id(e) in self.facts.pulses and e.guard is None:
             self.value(operand)
             kind = "cut" if isinstance(source, IntType) and source.bits == 32 else "read"
-            text = self.pulses[id(e)]
+            text = self.facts.pulses[id(e)]
             e.guard = Guard("pulse", self.site(source, source_text(operand), at=e.where, kind=kind, text=text))
             return
         if isinstance(source, IntType) and (
@@ -731,7 +711,7 @@ class Guards:
             self.signed_character(e)
         if target.low <= low and high <= target.high:
             return
-        if id(e) in self.stamps:
+        if id(e) in self.facts.stamps:
             e.guard = Guard("past", self.site(target, source_text(operand), at=e.where))
             return
         if (e.explicit or not target.signed) and not is_character(target) and loses_high_bits(operand, target):
@@ -756,7 +736,7 @@ class Guards:
         if (low <= least and largest <= high) or isinstance(e.operand, Const):
             return False
         counter = None if e.explicit else _stepped(e.operand)
-        if counter is not None and (counter.kind != "global" or counter in self.compared):
+        if counter is not None and (counter.kind != "global" or counter in self.facts.compared):
             return False  # a counter with a limit: it is meant to have 16 bits
         e.guard = Guard("octet", self.site(target, source_text(e.operand), at=e.where))
         return True

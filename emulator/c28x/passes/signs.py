@@ -24,7 +24,7 @@ The result are the expressions that must not have their highest bit set.  The ru
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import Final, NamedTuple
 
 from emulator.c28x.ctypes import FloatType, IntType
@@ -51,6 +51,7 @@ from emulator.c28x.tree_queries import (
     addressed,
     bare,
     named_scalar,
+    once,
     parts,
     source_text,
     statements,
@@ -75,7 +76,13 @@ class SignedWord(NamedTuple):
 def signed_words(functions: Iterable[Function]) -> dict[int, SignedWord]:
     """Identities of unsigned expressions whose highest bit is a sign for the source."""
     functions = list(functions)
-    return _widened(functions) | _compared(functions) | _shift_registers(functions) | _words_of_24_bits(functions)
+    found = _widened(functions) | _compared(functions)
+    for function in functions:
+        found |= _shift_registers(function)
+    words = [_words_of_24_bits(function) for function in functions]
+    for of_function in words if None not in words else ():
+        found |= of_function or {}
+    return found
 
 
 def _widened(functions: list[Function]) -> dict[int, SignedWord]:
@@ -83,7 +90,7 @@ def _widened(functions: list[Function]) -> dict[int, SignedWord]:
     asked = dict(found for function in functions for found in _asked(function))
     if not asked:
         return {}
-    taken = {variable for function in functions for variable in addressed(within(function.body))}
+    taken = set[Variable]().union(*map(_addressed, functions))
     given: dict[NamedScalar, list[Expr]] = {}
     lost: set[NamedScalar] = {(variable, 0) for variable in taken}
     for function in functions:
@@ -111,8 +118,15 @@ def _widened(functions: list[Function]) -> dict[int, SignedWord]:
     return found
 
 
-def _asked(function: Function) -> Iterator[tuple[NamedScalar, str]]:
+@once
+def _addressed(function: Function) -> set[Variable]:
+    return addressed(within(function.body))
+
+
+@once
+def _asked(function: Function) -> list[tuple[NamedScalar, str]]:
     """The signed scalars that a function compares by order with a number below -1, each with the comparison."""
+    found: list[tuple[NamedScalar, str]] = []
     for p in within(function.body):
         if isinstance(p, Compare) and p.op not in ("==", "!="):
             for side, other in ((p.left, p.right), (p.right, p.left)):
@@ -121,7 +135,8 @@ def _asked(function: Function) -> Iterator[tuple[NamedScalar, str]]:
                     ctype, named = load.ctype, named_scalar(load.lvalue)
                     signed = isinstance(ctype, FloatType) or (isinstance(ctype, IntType) and ctype.signed)
                     if signed and named is not None:
-                        yield named, f"{source_text(p)} expects negative ones"
+                        found.append((named, f"{source_text(p)} expects negative ones"))
+    return found
 
 
 def _word(e: Expr) -> Expr | None:
@@ -179,15 +194,7 @@ def _results(call: Call) -> list[Expr]:
 
 def _compared(functions: list[Function]) -> dict[int, SignedWord]:
     """The sides of comparisons by order of two numbers that casts have made unsigned."""
-    pairs: list[tuple[Compare, Expr, Load, Key]] = []
-    for function in functions:
-        for p in within(function.body):
-            if isinstance(p, Compare) and p.op not in ("==", "!="):
-                for side, other in ((p.left, p.right), (p.right, p.left)):
-                    load = other
-                    key = key_of(load.lvalue) if isinstance(load, Load) else None
-                    if _cast(side) and isinstance(load, Load) and key is not None and _is_word(load):
-                        pairs.append((p, side, load, key))
+    pairs = [pair for function in functions for pair in _pairs(function)]
     if not pairs:
         return {}
     keys = {key for _, _, _, key in pairs}
@@ -207,25 +214,38 @@ def _compared(functions: list[Function]) -> dict[int, SignedWord]:
     return found
 
 
-def _shift_registers(functions: list[Function]) -> dict[int, SignedWord]:
+@once
+def _pairs(function: Function) -> list[tuple[Compare, Expr, Load, Key]]:
+    """The comparisons by order of a function that have a cast on one side and an unsigned object on the other."""
+    pairs: list[tuple[Compare, Expr, Load, Key]] = []
+    for p in within(function.body):
+        if isinstance(p, Compare) and p.op not in ("==", "!="):
+            for side, other in ((p.left, p.right), (p.right, p.left)):
+                key = key_of(other.lvalue) if isinstance(other, Load) else None
+                if _cast(side) and isinstance(other, Load) and key is not None and _is_word(other):
+                    pairs.append((p, side, other, key))
+    return pairs
+
+
+@once
+def _shift_registers(function: Function) -> dict[int, SignedWord]:
     """The signed scalars, where they are shifted to the right, that an exclusive or shows to be shift registers."""
     found: dict[int, SignedWord] = {}
-    for function in functions:
-        mixed = {
-            named: polynomial for s in statements(function.body)
-            if isinstance(s, Assign) and isinstance(s.target, LValue) and (named := named_scalar(s.target)) is not None
-            for p in parts(s.value) if (polynomial := _polynomial(p, s.target)) is not None
-        }  # fmt: skip
-        nodes = list(within(function.body)) if mixed else []
-        masked = {id(bare(side)) for p in nodes if isinstance(p, Binary) and p.op == "&" for side in (p.left, p.right)}
-        for p in nodes:
-            match p:
-                case Binary(
-                    op=">>", ctype=IntType(signed=True), left=Load(ctype=IntType() as ctype, lvalue=lvalue) as register
-                ) if (named := named_scalar(lvalue)) in mixed and id(p) not in masked:
-                    assert named is not None
-                    use = f"{source_text(p)} copies its sign; {mixed[named]:#x} needs all {ctype.bits} bits"
-                    found[id(register)] = SignedWord(ctype.high, use, "shifted-sign")
+    mixed = {
+        named: polynomial for s in statements(function.body)
+        if isinstance(s, Assign) and isinstance(s.target, LValue) and (named := named_scalar(s.target)) is not None
+        for p in parts(s.value) if (polynomial := _polynomial(p, s.target)) is not None
+    }  # fmt: skip
+    nodes = list(within(function.body)) if mixed else []
+    masked = {id(bare(side)) for p in nodes if isinstance(p, Binary) and p.op == "&" for side in (p.left, p.right)}
+    for p in nodes:
+        match p:
+            case Binary(
+                op=">>", ctype=IntType(signed=True), left=Load(ctype=IntType() as ctype, lvalue=lvalue) as register
+            ) if (named := named_scalar(lvalue)) in mixed and id(p) not in masked:
+                assert named is not None
+                use = f"{source_text(p)} copies its sign; {mixed[named]:#x} needs all {ctype.bits} bits"
+                found[id(register)] = SignedWord(ctype.high, use, "shifted-sign")
     return found
 
 
@@ -246,39 +266,39 @@ def _polynomial(e: Expr, register: LValue) -> int | None:
     return None
 
 
-def _words_of_24_bits(functions: list[Function]) -> dict[int, SignedWord]:
-    """The words of three octets where they become signed, if no statement of the program extends their sign."""
+@once
+def _words_of_24_bits(function: Function) -> dict[int, SignedWord] | None:
+    """The words of three octets where they become signed; None if a statement extends the sign of such a word."""
     found: dict[int, SignedWord] = {}
-    for function in functions:
-        nodes = list(within(function.body))
-        for p in nodes:
-            match p:
-                case Const(value=constant) if constant in _KNOWS_BIT_23:
-                    return {}
-                case Binary(op="<<", left=Load(ctype=IntType(bits=32)), right=Const(value=8)):
-                    return {}  # the sign comes to bit 31, and back by a shift to the right
-        composed: dict[Variable, set[int]] = {}
-        for s in statements(function.body):
-            match s:
-                case Assign(target=LValue(root=Variable() as variable, indices=[]), value=value):
-                    composed.setdefault(variable, set()).update(_shifts(value))
-                case Declare(variable=variable, value=Expr() as value):
-                    composed.setdefault(variable, set()).update(_shifts(value))
-        for p in nodes:
-            match p:
-                case Convert(ctype=IntType(signed=True, bits=32), operand=Expr(ctype=IntType(bits=32)) as whole):
-                    pass
-                case Binary(op="|" | "+", ctype=IntType(signed=True, bits=32), left=left, right=right) as whole:
-                    if _OCTETS in (_shifts(left), _shifts(right)):
-                        continue  # more than the word
-                case _:
-                    continue
-            shifts = _shifts(whole)
-            match whole:
-                case Load(lvalue=LValue(root=Variable(kind="local") as variable, indices=[])):
-                    shifts = composed.get(variable, set())
-            if shifts == _OCTETS:
-                found[id(whole)] = SignedWord(0xFF_FFFF, "becomes a number of 32 bits without it", "word-of-24")
+    nodes = list(within(function.body))
+    for p in nodes:
+        match p:
+            case Const(value=constant) if constant in _KNOWS_BIT_23:
+                return None
+            case Binary(op="<<", left=Load(ctype=IntType(bits=32)), right=Const(value=8)):
+                return None  # the sign comes to bit 31, and back by a shift to the right
+    composed: dict[Variable, set[int]] = {}
+    for s in statements(function.body):
+        match s:
+            case Assign(target=LValue(root=Variable() as variable, indices=[]), value=value):
+                composed.setdefault(variable, set()).update(_shifts(value))
+            case Declare(variable=variable, value=Expr() as value):
+                composed.setdefault(variable, set()).update(_shifts(value))
+    for p in nodes:
+        match p:
+            case Convert(ctype=IntType(signed=True, bits=32), operand=Expr(ctype=IntType(bits=32)) as whole):
+                pass
+            case Binary(op="|" | "+", ctype=IntType(signed=True, bits=32), left=left, right=right) as whole:
+                if _OCTETS in (_shifts(left), _shifts(right)):
+                    continue  # more than the word
+            case _:
+                continue
+        shifts = _shifts(whole)
+        match whole:
+            case Load(lvalue=LValue(root=Variable(kind="local") as variable, indices=[])):
+                shifts = composed.get(variable, set())
+        if shifts == _OCTETS:
+            found[id(whole)] = SignedWord(0xFF_FFFF, "becomes a number of 32 bits without it", "word-of-24")
     return found
 
 

@@ -46,7 +46,18 @@ from emulator.c28x.tree import (
     Unary,
     Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import addressed, assigned, bare, different, own_nodes, parts, roots, statements, within
+from emulator.c28x.tree_queries import (
+    addressed,
+    assigned,
+    bare,
+    different,
+    once,
+    own_nodes,
+    parts,
+    roots,
+    statements,
+    within,
+)
 
 #: The kinds of expressions: neither of the others; a stamp; a deadline, which is a stamp plus or minus something.
 NONE: Final = 0
@@ -73,10 +84,9 @@ class Stamps:
         modules = list(modules)
         self.functions = [function for module in modules for function in module.functions]
         starts = [e for module in modules for variable in module.variables for e in different(variable.initial or ())]
-        nodes = [p for e in starts for p in parts(e)]
-        nodes += [p for function in self.functions for p in within(function.body)]
+        started = {p.function.path for e in starts for p in parts(e) if isinstance(p, FunctionRef)}
         #: The functions that are called by a pointer or the board, such as interrupt routines.
-        self.entered = entries | {p.function.path for p in nodes if isinstance(p, FunctionRef)}
+        self.entered = entries.union(started, *map(_referred, self.functions))
         self.kinds: dict[Key, int] = {}
         #: Pairs of keys of the same object: the target of a parameter, and the object whose address is passed.
         self.same: list[tuple[Key, Key]] = []
@@ -122,31 +132,9 @@ class Stamps:
 
     def read(self, function: Function) -> None:
         """Collect what a function assigns, returns and passes."""
-        for s in statements(function.body):
-            match s:
-                case Assign(target=LValue() as target, value=value):
-                    key = key_of(target)
-                    if key is not None and not _counts(s):
-                        self.given.append((key, value))
-                case Declare(variable=variable, value=Expr() as value):
-                    self.given.append(((variable, 0), value))
-                case Return(value=Expr() as value):
-                    self.given.append((("result", function.path), value))
-            for p in own_nodes(s):
-                if isinstance(p, Call):
-                    self.passed(p)
-
-    def passed(self, call: Call) -> None:
-        """Collect the arguments of a call."""
-        for parameter, argument in zip(call.function.parameters, call.arguments, strict=False):
-            match bare(argument):
-                case AddressOf(lvalue=lvalue):
-                    key = key_of(lvalue)
-                    if key is not None:
-                        self.same.append((("pointee", parameter), key))
-                case Load(lvalue=LValue(root=Variable() as root, indices=[])) if root.kind == "parameter":
-                    self.same.append((("pointee", parameter), ("pointee", root)))
-            self.given.append(((parameter, 0), argument))
+        given, same = _collected(function)
+        self.given += given
+        self.same += same
 
     def grows(self) -> bool:
         """Do one more round.  Returns whether it has found anything new."""
@@ -306,6 +294,46 @@ class Stamps:
             case Convert(ctype=IntType(signed=True), operand=Binary(op="-", left=now, right=past), explicit=True):
                 return self.kind(now) == STAMP == self.kind(past)
         return False
+
+
+@once
+def _referred(function: Function) -> set[str]:
+    """The paths of the functions to which a function makes a pointer."""
+    return {p.function.path for p in within(function.body) if isinstance(p, FunctionRef)}
+
+
+@once
+def _collected(function: Function) -> tuple[list[tuple[Key, Expr]], list[tuple[Key, Key]]]:
+    """What a function assigns, returns and passes; the pairs of keys of one object (`Stamps.given`, `Stamps.same`)."""
+    given: list[tuple[Key, Expr]] = []
+    same: list[tuple[Key, Key]] = []
+    for s in statements(function.body):
+        match s:
+            case Assign(target=LValue() as target, value=value):
+                key = key_of(target)
+                if key is not None and not _counts(s):
+                    given.append((key, value))
+            case Declare(variable=variable, value=Expr() as value):
+                given.append(((variable, 0), value))
+            case Return(value=Expr() as value):
+                given.append((("result", function.path), value))
+        for p in own_nodes(s):
+            if isinstance(p, Call):
+                _collect_passed(p, given, same)
+    return given, same
+
+
+def _collect_passed(call: Call, given: list[tuple[Key, Expr]], same: list[tuple[Key, Key]]) -> None:
+    """Collect the arguments of a call."""
+    for parameter, argument in zip(call.function.parameters, call.arguments, strict=False):
+        match bare(argument):
+            case AddressOf(lvalue=lvalue):
+                key = key_of(lvalue)
+                if key is not None:
+                    same.append((("pointee", parameter), key))
+            case Load(lvalue=LValue(root=Variable() as root, indices=[])) if root.kind == "parameter":
+                same.append((("pointee", parameter), ("pointee", root)))
+        given.append(((parameter, 0), argument))
 
 
 def _wide(e: Expr) -> bool:

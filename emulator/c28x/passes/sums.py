@@ -26,7 +26,7 @@ from emulator.c28x.tree import (
     Stmt,
     Unary,
 )  # fmt: skip
-from emulator.c28x.tree_queries import NamedScalar, bare, blocks, named_scalar, own_nodes, statements, within
+from emulator.c28x.tree_queries import NamedScalar, bare, blocks, named_scalar, once, own_nodes, statements, within
 
 #: The quotient that takes a word's octets apart.
 _OCTET: Final = 256
@@ -36,23 +36,10 @@ _MEAN: Final = 4
 
 def used_as_numbers(functions: Sequence[Function]) -> set[NamedScalar]:
     """The scalars whose value is a number wherever it goes."""
-    found: set[NamedScalar] = set()
-    bits: set[NamedScalar] = set()
-    copies: list[tuple[NamedScalar, NamedScalar]] = []
-    for function in functions:
-        for p in within(function.body):
-            _use(p, found, bits)
-        for s in statements(function.body):
-            match s:
-                case Assign(target=LValue() as target, value=value):
-                    to = named_scalar(target)
-                case Declare(variable=variable, value=Expr() as value):
-                    to = (variable, 0)
-                case _:
-                    continue
-            read = _scalar(value)
-            if to is not None and read is not None:
-                copies.append((to, read))
+    uses = [_uses(function) for function in functions]
+    found = set[NamedScalar]().union(*(numbers for numbers, _, _ in uses))
+    bits = set[NamedScalar]().union(*(bits for _, bits, _ in uses))
+    copies = [copy for _, _, own in uses for copy in own]
     grown = True
     while grown:
         more = {read for to, read in copies if to in found} - found
@@ -61,20 +48,49 @@ def used_as_numbers(functions: Sequence[Function]) -> set[NamedScalar]:
     return found - bits
 
 
+@once
+def _uses(function: Function) -> tuple[set[NamedScalar], set[NamedScalar], list[tuple[NamedScalar, NamedScalar]]]:
+    """The scalars that a function takes for numbers, and for bits; its copies of one scalar to another."""
+    numbers: set[NamedScalar] = set()
+    bits: set[NamedScalar] = set()
+    copies: list[tuple[NamedScalar, NamedScalar]] = []
+    for p in within(function.body):
+        _use(p, numbers, bits)
+    for s in statements(function.body):
+        match s:
+            case Assign(target=LValue() as target, value=value):
+                to = named_scalar(target)
+            case Declare(variable=variable, value=Expr() as value):
+                to = (variable, 0)
+            case _:
+                continue
+        read = _scalar(value)
+        if to is not None and read is not None:
+            copies.append((to, read))
+    return numbers, bits, copies
+
+
 def sums_of_samples(functions: Sequence[Function], numbers: Set[NamedScalar]) -> set[int]:
     """The assignments that add a sample to an unsigned sum of 16 bits: a number that is taken and then begins again."""
-    again: set[NamedScalar] = set()
+    sums = [_sums(function) for function in functions]
+    again = set[NamedScalar]().union(*(taken for taken, _ in sums))
+    return {identity for _, added in sums for identity, named in added.items() if named in numbers and named in again}
+
+
+@once
+def _sums(function: Function) -> tuple[set[NamedScalar], dict[int, NamedScalar]]:
+    """The scalars that a function takes and sets to 0; the assignments in it that add to a scalar."""
+    every = statements(function.body)
+    again = set[NamedScalar]().union(*map(_taken, [function.body, *(b for s in every for b in blocks(s))]))
     added: dict[int, NamedScalar] = {}
-    for function in functions:
-        again.update(*map(_taken, [function.body, *(b for s in statements(function.body) for b in blocks(s))]))
-        for s in statements(function.body):
-            match s:
-                case Assign(
-                    target=LValue(ctype=IntType(signed=False, bits=16)) as target,
-                    value=Binary(op="+", left=Load(lvalue=before), right=right),
-                ) if before == target and not _signed(right) and (named := named_scalar(target)):
-                    added[id(s)] = named
-    return {identity for identity, named in added.items() if named in numbers and named in again}
+    for s in every:
+        match s:
+            case Assign(
+                target=LValue(ctype=IntType(signed=False, bits=16)) as target,
+                value=Binary(op="+", left=Load(lvalue=before), right=right),
+            ) if before == target and not _signed(right) and (named := named_scalar(target)):
+                added[id(s)] = named
+    return again, added
 
 
 def _taken(block: list[Stmt]) -> set[NamedScalar]:

@@ -13,6 +13,7 @@ from emulator.c28x.build.scope import BLOCK_NESTING, EXPRESSION_NESTING
 from emulator.c28x.readers.python.declarations import ANCHOR, PythonDeclarationReader
 from emulator.c28x.readers.python.hints import spelling
 from emulator.c28x.readers.python.preprocessor import fixed_ids, preprocess
+from emulator.c28x.readers.python.reach import declared
 from emulator.c28x.readers.python.types import PythonTypeReader, source_lines
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import Module, SourceError
@@ -32,16 +33,36 @@ def new_module(name: str, file: str, text: str) -> Module:
     return Module(name, file, text, anchors[0][0] if anchors else name.rsplit(".", 1)[-1] + ".c")
 
 
-def read(module: Module, find: Finder) -> None:
-    """Read the declarations of `module` from its text.  Raises SourceError."""
+def read(module: Module, find: Finder, names: Set[str] | None = None) -> None:
+    """Read the declarations of `module` from its text, or only those of `names`.  Raises SourceError."""
     tree = parse(module)
+    if names is not None:
+        tree = ast.Module(_about(tree.body, names), [])
     PythonDeclarationReader(module, tree, find).read()
 
 
-def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) -> None:
-    """Replace faithful functions by the corrected ones of an overlay.  Both share one scope.
+def _about(body: list[ast.stmt], names: Set[str]) -> list[ast.stmt]:
+    """The statements at file scope that declare one of `names`; imports only of these."""
+    found: list[ast.stmt] = []
+    for node in body:
+        match node:
+            case ast.ImportFrom(module=module, names=aliases, level=level):
+                wanted = [alias for alias in aliases if alias.name == "*" or (alias.asname or alias.name) in names]
+                if wanted:
+                    found.append(ast.copy_location(ast.ImportFrom(module, wanted, level), node))
+            case ast.If(test=test, body=inner) if not declared(node):  # if TYPE_CHECKING
+                found.append(ast.copy_location(ast.If(test, _about(inner, names), []), node))
+            case _ if not declared(node).isdisjoint(names):
+                found.append(node)
+    return found
 
-    `FIXED` has an effect only in the overlay.
+
+def lay_over(
+    base: Module, file: str, text: str, fixes: Set[str], find: Finder, names: Set[str] | None = None
+) -> Module:  # fmt: skip
+    """Replace faithful functions by the corrected ones of an overlay, or only those of `names`; returns the overlay.
+
+    Both share one scope.  `FIXED` has an effect only in the overlay.
     """
     overlay = Module(
         base.name, file, text, base.c_file, base.symbols, base.own, base.variables, base.functions, base.bodies,
@@ -53,7 +74,8 @@ def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) 
     for node, ids in zip(parsed.body, _ids(file, text), strict=True):
         if isinstance(node, ast.FunctionDef) and node.name in known and not ids & fixes:
             continue
-        body += _decided(overlay, node, fixes) if ids else [node]
+        for each in [node] if names is None else _about([node], names):
+            body += _decided(overlay, each, fixes) if ids else [each]
     before = dict(base.symbols)
     PythonDeclarationReader(overlay, ast.Module(body, []), find, overlay=True).read()
     for name in {**before, **base.symbols}:  # also names that a `del` after a corrected function removes
@@ -68,6 +90,34 @@ def lay_over(base: Module, file: str, text: str, fixes: Set[str], find: Finder) 
             base.functions.remove(old)
         elif isinstance(old, Variable) and old in base.variables:
             base.variables.remove(old)
+    return overlay
+
+
+def take_over(module: Module, old: Module, overlay: Module | None, names: Set[str]) -> None:
+    """Complete `module`, of which only `names` were read, with the rest of `old`: it is in the order of the source."""
+    kept = {name: symbol for name, symbol in old.symbols.items() if name not in names}
+    for name in module.symbols.keys() - kept.keys() - names:  # an import brings it, and a correction deletes it
+        del module.symbols[name]
+    module.symbols.update(kept)
+    if overlay is not None:
+        module.units |= {name: overlay for name in old.units if name not in names}
+    module.added |= old.added - names
+    module.remarks += [r for r in old.remarks if names.isdisjoint((r.name, r.function))]
+
+    def place(name: str, line: int, column: int = 0) -> tuple[bool, int, int]:
+        return name in module.units, line, column
+
+    module.functions += [function for function in old.functions if function.name not in names]
+    module.functions.sort(key=lambda f: place(f.name, f.line))
+    module.variables += [v for v in old.variables if _of(v) not in names]
+    module.variables.sort(
+        key=lambda v: (v.declaration.function != "", *place(_of(v), v.declaration.line, v.declaration.column))
+    )
+
+
+def _of(variable: Variable) -> str:
+    """The name at file scope with which an object is declared: a `static` local is declared with its function."""
+    return variable.declaration.function or variable.declaration.name
 
 
 def parse(module: Module) -> ast.Module:
