@@ -10,7 +10,8 @@
     Line[Length] = '\\0';
 
 The number is only counted up by 1 behind one test, and set to constants; no other test asks for it.  So it reaches the
-limit, and one more behind it.  Silent in loops with a number of turns: these may be fewer than the limit.
+limit, and one more behind it.  Silent in loops with a number of turns: these may be fewer than the limit.  For an
+object at file scope the check needs the source of a whole program (one with a `main`).
 """
 
 from __future__ import annotations
@@ -78,11 +79,12 @@ class _Beyond(NamedTuple):
 def check_let_in(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
     """Report the tests of a number behind which it goes beyond the end of an array."""
     owners = {function: report for module, report in reports.items() for function in module.functions}
+    whole = any(function.name == "main" and function.body for function in owners)
     gates = [gate for function in owners for gate in _gates(function)]
     for gate in gates:
         local = isinstance(gate.number[0], Variable) and gate.number[0].kind != "global"
         functions = [gate.function] if local else list(owners)
-        if not _only_counted(gate, functions):
+        if not (local or whole) or not _only_counted(gate, functions):
             continue
         for function in functions:
             found = _beyond(gate, function)

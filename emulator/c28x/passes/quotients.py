@@ -19,7 +19,7 @@ from emulator.c28x.passes.intervals import combine, interval
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.state_values import constant_of
 from emulator.c28x.symbols import Module
-from emulator.c28x.tree import Binary, Call, Compare, Convert, Expr, Function, Load, Stmt
+from emulator.c28x.tree import Binary, Call, Compare, Convert, Expr, Function, Load, Stmt, Variable
 from emulator.c28x.tree_queries import bare, named_scalar, own_nodes, source_text, statements
 
 #: Through how many objects and functions a quotient is followed.
@@ -64,6 +64,8 @@ class _Quotients:
     def __init__(self, functions: Iterable[Function]) -> None:
         functions = list(functions)
         self._given = GivenValues(functions)
+        #: Whether nothing but these functions gives values to objects and parameters.
+        self._whole = any(function.name == "main" and function.body for function in functions)
         #: Identity of a product -> its function and its statement.
         self.places: dict[int, tuple[Function, Stmt]] = {
             id(p): (function, s) for function in functions for s in statements(function.body)
@@ -86,7 +88,8 @@ class _Quotients:
                     if scaled and meant is not None and meant[1] > product.ctype.high and product.ctype == e.ctype:
                         return _Quotient(product, high // divisor, (-(-meant[0] // divisor), meant[1] // divisor))
             case Load(lvalue=lvalue) if (scalar := named_scalar(lvalue)) is not None:
-                given = self._given.of(scalar)
+                known = self._whole or (isinstance(scalar[0], Variable) and scalar[0].kind == "local")
+                given = self._given.of(scalar) if known else []
                 return self.of(given[0].value, depth + 1) if len(given) == 1 and given[0].value is not None else None
             case Call(function=function):
                 given = self._given.results.get(function.path, [])
