@@ -20,6 +20,7 @@ from emulator.c28x.passes.dropped import check_dropped
 from emulator.c28x.passes.entrances import check_entrances
 from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.future_stamps import unreachable_exits
+from emulator.c28x.passes.given import GivenValues
 from emulator.c28x.passes.interrupted import sides_of
 from emulator.c28x.passes.let_in import check_let_in
 from emulator.c28x.passes.likes import check_likes
@@ -109,9 +110,10 @@ def check(
     check_open_integrals(of_whole)
     check_one_sided(whole, of_whole)
     check_never_back(modules, reports)  # marks of data belong to their structures
-    check_tables(modules, reports)
-    check_ring_back(modules, reports)
-    check_searches(modules, reports)
+    given = GivenValues(functions)
+    check_tables(modules, reports, given)
+    check_ring_back(reports, given)
+    check_searches(reports, given)
     check_state_tables(whole, of_whole)
     check_let_in(whole, of_whole)
     sides = sides_of(modules, reports)
@@ -124,7 +126,7 @@ def check(
     check_dropped(modules, reports)
     check_likes(modules, reports)
     check_messages(modules, reports)
-    check_quotients(modules, reports)
+    check_quotients(reports, given)
     check_spans(modules, reports)
     check_drained(whole, of_whole)
     check_unlimited_lines(whole, of_whole)

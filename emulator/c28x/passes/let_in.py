@@ -17,6 +17,7 @@ object at file scope the check needs the source of a whole program (one with a `
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import chain
 from typing import Any, NamedTuple
 
 from emulator.c28x.ctypes import IntType
@@ -116,7 +117,9 @@ def _gates(function: Function) -> Iterator[_Gate]:
             for body, limits in ways:
                 for lvalue, limit, test in limits:
                     number = named_scalar(lvalue)
-                    if number is not None and any(_steps(x, number) for x in body):
+                    if number is None or any(_sets(x, number) for x in block[:at]):
+                        continue
+                    if any(_steps(x, number) for x in body):
                         yield _Gate(function, test, number, limit, body)
 
 
@@ -179,16 +182,16 @@ def _has(e: Any, number: NamedScalar) -> bool:
 def _beyond(gate: _Gate, function: Function) -> _Beyond | None:
     """An element that the number goes beyond, with the length of its array and the largest value of the number."""
     within = {id(x) for s in gate.body for block in blocks(s) for x in statements(block)}
-    return next(_elements(gate, function.body, within), None)
+    inside = _elements(gate, gate.body, within, gate.limit) if function is gate.function else iter(())
+    return next(chain(inside, _elements(gate, function.body, within, gate.limit + 1)), None)
 
 
-def _elements(gate: _Gate, body: list[Stmt], within: set[int]) -> Iterator[_Beyond]:
-    """What `_beyond` looks for, in a block up to a statement that sets the number back."""
-    most = gate.limit + 1
+def _elements(gate: _Gate, body: list[Stmt], within: set[int], most: int) -> Iterator[_Beyond]:
+    """What `_beyond` looks for, in a block up to a statement that sets the number back; it is `most` at the start."""
     old: set[Variable] = set()
     for s in body:
-        if gate.body and s is gate.body[0]:
-            most = gate.limit
+        if s is gate.body[0] and body is not gate.body:
+            return
         match s:
             case Declare(variable=Variable(kind="temporary") as kept, value=Expr() as value) if _is(value, gate.number):
                 old.add(kept)
@@ -204,7 +207,7 @@ def _elements(gate: _Gate, body: list[Stmt], within: set[int]) -> Iterator[_Beyo
             if index.bound and index.bound <= reached and (before or _is(index.expr, gate.number)):
                 yield _Beyond(lvalue, index.bound, reached)
         for block in blocks(s):
-            yield from _elements(gate, block, within)
+            yield from _elements(gate, block, within, most)
         if _steps(s, gate.number):
             most = gate.limit + 1
         elif _sets(s, gate.number):

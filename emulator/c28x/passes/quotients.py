@@ -10,7 +10,6 @@ The check follows the quotient through results of functions and through scalars 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import NamedTuple
 
 from emulator.c28x.ctypes import IntType
@@ -34,10 +33,10 @@ class _Quotient(NamedTuple):
     meant: tuple[int, int]
 
 
-def check_quotients(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
+def check_quotients(reports: dict[Module, StaticReport], given: GivenValues) -> None:
     """Report the products that overflow before a comparison of their quotient can hold."""
     owners = {function: report for module, report in reports.items() for function in module.functions}
-    quotients = _Quotients(owners)
+    quotients = _Quotients(list(owners), given)
     told: set[int] = set()
     for function in owners:
         for s in statements(function.body):
@@ -61,9 +60,8 @@ def check_quotients(modules: Iterable[Module], reports: dict[Module, StaticRepor
 class _Quotients:
     """The quotients of products that scalars and functions of a program have."""
 
-    def __init__(self, functions: Iterable[Function]) -> None:
-        functions = list(functions)
-        self._given = GivenValues(functions)
+    def __init__(self, functions: list[Function], given: GivenValues) -> None:
+        self._given = given
         #: Whether nothing but these functions gives values to objects and parameters.
         self._whole = any(function.name == "main" and function.body for function in functions)
         #: Identity of a product -> its function and its statement.

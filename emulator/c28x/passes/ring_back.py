@@ -10,7 +10,7 @@ The index gets nothing but 0 and such steps, over the whole ring.  So it is 0 no
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 from emulator.c28x.ctypes import IntType
@@ -36,10 +36,8 @@ from emulator.c28x.tree import (
 from emulator.c28x.tree_queries import NamedScalar, bare, named_scalar, own_nodes, parts, source_text, statements
 
 
-def check_ring_back(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
+def check_ring_back(reports: dict[Module, StaticReport], given: GivenValues) -> None:
     """Report the subscripts that are below the first element of a ring once its index has begun again."""
-    modules = list(modules)
-    given = GivenValues(function for module in modules for function in module.functions)
     for module, report in reports.items():
         for function in module.functions:
             for s in statements(function.body):

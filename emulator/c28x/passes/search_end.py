@@ -15,7 +15,6 @@ is known.  Silent if that is the end of a scale (4095, 32767), or if something e
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Final, NamedTuple
 
 from emulator.c28x.ctypes import IntType
@@ -74,12 +73,9 @@ class _Search(NamedTuple):
     test: Compare
 
 
-def check_searches(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
+def check_searches(reports: dict[Module, StaticReport], given: GivenValues) -> None:
     """Report the elements that are used where a search has ended, if that may be behind the end."""
-    modules = list(modules)
-    functions = [function for module in modules for function in module.functions]
-    given = GivenValues(functions)
-    homes = {id(s): function for function in functions for s in statements(function.body)}
+    homes = {id(s): f for module in reports for f in module.functions for s in statements(f.body)}
     for module, report in reports.items():
         for function in module.functions:
             for block in all_blocks(function.body):

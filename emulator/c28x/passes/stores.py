@@ -57,7 +57,7 @@ def check_stores(function: Function, report: StaticReport) -> None:
                         told |= _check_fall_through(function, body[:-1], following, report, only=only)
                         if only and not told and body[:-1]:
                             message = "this case goes on with the next one, and no comment says so; all others end"
-                            report.report(function, body[-2].where, "case-goes-on", message)
+                            report.report(function, statements(body[:-1])[-1].where, "case-goes-on", message)
     for body in _bodies(function.body):
         for i, s in enumerate(body):
             if isinstance(s, Assign) and isinstance(s.target, LValue) and _seen_by_others(s.target):

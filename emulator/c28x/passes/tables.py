@@ -67,9 +67,9 @@ class _Reach(NamedTuple):
     by: Binary | Compare | None
 
 
-def check_tables(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
+def check_tables(modules: Iterable[Module], reports: dict[Module, StaticReport], given: GivenValues) -> None:
     """Report subscripts that a remainder, a mask or the end of a count lets go beyond the end of a table."""
-    indices = _Indices([function for module in modules for function in module.functions])
+    indices = _Indices([function for module in modules for function in module.functions], given)
     for module, report in reports.items():
         for function in module.functions:
             indices.check(function, report)
@@ -78,8 +78,8 @@ def check_tables(modules: Iterable[Module], reports: dict[Module, StaticReport])
 class _Indices:
     """What the objects of a program get, and which of them it tests."""
 
-    def __init__(self, functions: list[Function]) -> None:
-        self._given = GivenValues(functions)
+    def __init__(self, functions: list[Function], given: GivenValues) -> None:
+        self._given = given
         self._parameters = {(parameter, 0) for function in functions for parameter in function.parameters}
         self._tested: set[NamedScalar] = set()
         #: Identity of the value of a step -> how far it leads; the identities of the tests that end a count.

@@ -26,6 +26,7 @@ def told(take: str, rest: str, main: str = "int main(void) { for (;;) Take(in); 
     [
         ("if (c == '\\n') { Obey(); n = 0; } else if (n <= 8) line[n++] = c;", ""),
         ("if (n <= 8) line[n++] = c;", "int At(struct { Uint16 at; } *p) { return line[p->at]; }"),
+        ("if (in) n = 0; if (c == '\\n') { line[n] = 0; } else if (n <= 8) { line[n++] = c; }", ""),
         ("if (n < 9 && c != 0) { line[n] = c; n++; } else n = 0;", ""),
         ("if (n > 8) { n = 0; } line[n++] = c;", ""),
         ("if (n >= 9) return; line[n++] = c;", "void Clear(void) { n = 0; }"),
@@ -56,6 +57,7 @@ def test_one_element_too_many_is_told(take: str, rest: str) -> None:
         # It is set back before.
         ("if (n < 8) { line[n++] = c; } else { n = 0; line[n] = c; }", ""),
         ("if (c == '\\r') n = 0; if (in) line[n] = c; if (n < 8) n++;", ""),
+        ("n = 0; if (n <= 8) line[n++] = c;", ""),
         # In a loop, the turns may be the limit.
         ("n = 0; for (m = 0; m < 8; m++) { if (n <= 8) line[n++] = more[m]; }", ""),
         # It is counted down elsewhere, or gets what nobody knows.
