@@ -57,6 +57,8 @@ from emulator.registers.gpio import PORTS
 FIRST_SOCA: Final = 5
 #: TRIGSEL of the CPU timers.
 TIMERS: Final = range(1, 4)
+#: A statement that sets up one module writes registers of so many blocks: its own, its clock gate, its interrupt, pins.
+_ONE_MODULE: Final = 5
 #: Values of TBCTL.CTRMODE.
 UP: Final = 0
 DOWN: Final = 1
@@ -216,10 +218,17 @@ class Connections:
         if waits is None:
             return
         place = self._place(missing, whole=whole) or waits
+        if self._blocks_of(place) > _ONE_MODULE:
+            place = waits  # a call that starts the whole chip says nothing about this link
         details = () if place == waits else (f"wanted by {waits}",)
         self._chip.findings.report_at(
             place, "not-connected", f"{message}: {missing.why}", object=object, how="dynamic", details=details
         )
+
+    def _blocks_of(self, place: Place) -> int:
+        """In how many blocks a statement sets registers, with what it calls of a library."""
+        of_register = self._source.writes.items()
+        return len({block for (block, _), writes in of_register if any(write.place == place for write in writes)})
 
     # The checks
 

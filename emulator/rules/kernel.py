@@ -46,7 +46,8 @@ before it has copied what the flag stands for lets the routine write again too e
 What `main` did before it started a transfer is ordered before the interrupt at its end. If `main` sets the enable of a
 peripheral (`TXFFIENA = 1`) before the counts on which the routine depends, a request that waits lets the routine in:
 it finds nothing to do, and switches its interrupt off for good. A port that `main` reads and writes back
-(`GPADAT.all |= BRAKE`) while a routine sets other pins of it is reported before the program runs.
+(`GPADAT.all |= BRAKE`) while a routine sets other pins of it is reported before the program runs. So is a buffer that
+is filled while a routine may still send it, if another function asks for that before it fills the buffer.
 
 An index that `main` steps around the end of a ring (`out = (out + 1) % SIZE`) and a routine writes too, as to drop the
 oldest element of a full ring, is reported before the program runs.

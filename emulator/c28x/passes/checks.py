@@ -40,6 +40,7 @@ from emulator.c28x.passes.released import check_released
 from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.ring_back import check_ring_back
 from emulator.c28x.passes.search_end import check_searches
+from emulator.c28x.passes.sent_buffers import check_sent_buffers
 from emulator.c28x.passes.spans import check_spans
 from emulator.c28x.passes.stamps import Stamps
 from emulator.c28x.passes.state_tables import check_state_tables
@@ -121,6 +122,7 @@ def check(
         check_port_writes(sides)
         check_published(sides)
         check_released(sides)
+        check_sent_buffers(sides)
         check_cleared(sides)
         check_lost_writes(sides)
     check_dropped(modules, reports)

@@ -46,9 +46,9 @@ from emulator.c28x.tree_queries import (
 #: An object: the variable or the structure that holds it, and the offset in words.
 Place = tuple[Variable | StructType, int]
 
-#: Names of functions that switch interrupts off, or on; and of registers that do either.
-#: To enter or leave a section is meant, not a state.
+#: What a function enters or leaves that keeps others off; it may also be a state.
 _SECTION: Final = r"(?:crit|sect|gate|atomic|guard|lock|irq|hwi|swi|task)"
+#: Names of functions that switch interrupts off, or on; and of registers that do either.
 _OFF: Final = re.compile(
     rf"DINT|disable|mask|(?<![bcf])lock|{_SECTION}\w*enter|enter\w*{_SECTION}", re.IGNORECASE
 )  # fmt: skip

@@ -17,12 +17,11 @@ test, or in one state only, for both keep the error small.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import NamedTuple
+from collections.abc import Mapping
 
+from emulator.c28x.passes.on_the_way import Turn, ways_to, with_turns
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.stamps import Key, key_of
-from emulator.c28x.passes.state_values import constant_of
 from emulator.c28x.passes.wind_up import OpenRegulator, numbers_in, open_regulators
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
@@ -32,27 +31,12 @@ from emulator.c28x.tree import (
     Declare,
     Expr,
     Function,
-    If,
     Load,
     LValue,
     Return,
     Stmt,
-    Switch,
 )  # fmt: skip
-from emulator.c28x.tree_queries import bare, blocks, leaves, own_nodes, parts, statements
-
-#: So many calls up, the tests on the way to a regulator are read.
-_DEPTH = 4
-
-
-class _Turn(NamedTuple):
-    """A test on the way to a statement: the block is entered by it, or it leaves the function otherwise."""
-
-    function: Function
-    test: Expr
-    enters: bool
-    #: The values that the tested word has then, if it is compared with some.
-    values: tuple[int, ...] = ()
+from emulator.c28x.tree_queries import bare, blocks, parts, statements
 
 
 def check_open_integrals(reports: Mapping[Module, StaticReport]) -> None:
@@ -88,7 +72,7 @@ def _always_added(regulator: OpenRegulator, place: Stmt) -> bool:
         return False
     return all(
         s is place or not _sets(s, added.key) or any(added.key in numbers_in(turn.test) for turn in turns)
-        for turns, s in _statements(added.function, added.function.body, ())
+        for turns, s in with_turns(added.function)
     )
 
 
@@ -101,59 +85,22 @@ def _kept_small(regulator: OpenRegulator, functions: list[Function]) -> bool:
     added = regulator.added
     operands = _through_locals(added.function, numbers_in(added.addend)) - {added.key}
     for function in functions:
-        for turns, s in _statements(function, function.body, ()):
+        for turns, s in with_turns(function):
             if _sets(s, added.key) and any(_about(turn, operands) > 1 for turn in turns):
                 return True
     states: list[set[int]] = []
-    for turns in _ways(added.function, functions, _DEPTH):
+    for turns in ways_to(added.function, functions):
         if any(_about(turn, operands) > (0 if turn.enters and _is_ordered(turn.test) else 1) for turn in turns):
             return True
         states.append({value for turn in turns for value in turn.values})
     return not states or (all(states) and len(set.union(*states)) == 1)
 
 
-def _ways(function: Function, functions: list[Function], depth: int) -> Iterator[tuple[_Turn, ...]]:
-    """The tests on each way to the calls of a function, so far up as it is followed."""
-    for caller in functions if depth else ():
-        for turns, s in _statements(caller, caller.body, ()):
-            if any(isinstance(p, Call) and p.function.path == function.path for p in own_nodes(s)):
-                further = list(_ways(caller, [f for f in functions if f is not function], depth - 1))
-                yield from ((*before, *turns) for before in further or [()])
-
-
-def _statements(
-    function: Function, body: list[Stmt], turns: tuple[_Turn, ...]
-) -> Iterator[tuple[tuple[_Turn, ...], Stmt]]:  # fmt: skip
-    """The statements of a block, each with the tests on the way to it."""
-    for s in body:
-        yield turns, s
-        match s:
-            case If(test=test, then=then, otherwise=otherwise):
-                yield from _statements(function, then, (*turns, _Turn(function, test, True, _equal(test))))
-                yield from _statements(function, otherwise, (*turns, _Turn(function, test, True)))
-                if leaves(then) != leaves(otherwise):
-                    turns += (_Turn(function, test, False),)
-            case Switch(subject=subject, cases=cases):
-                for values, block in cases:
-                    turn = _Turn(function, subject, True, tuple(values or ()))
-                    yield from _statements(function, block, (*turns, turn))
-            case _:
-                for block in blocks(s):
-                    yield from _statements(function, block, turns)
-
-
-def _equal(test: Expr) -> tuple[int, ...]:
-    """The values with which a test says that something is equal."""
-    compared = (p for p in parts(test) if isinstance(p, Compare) and p.op == "==")
-    values = (constant_of(side) for p in compared for side in (p.left, p.right))
-    return tuple(value for value in values if value is not None)
-
-
 def _is_ordered(test: Expr) -> bool:
     return any(isinstance(p, Compare) and p.op not in ("==", "!=") for p in parts(test))
 
 
-def _about(turn: _Turn, operands: set[Key]) -> int:
+def _about(turn: Turn, operands: set[Key]) -> int:
     """How many of the numbers that make the error a test is about."""
     return len(_through_locals(turn.function, numbers_in(turn.test)) & operands)
 
