@@ -40,7 +40,8 @@ Some pairs rarely change within a run (hours and minutes). Then the source shows
 `main` computes with both, or copies the whole structure and uses both. A copy for which a test of what the routine sets
 decides is not reported, nor is a loop that reads again until a counter of versions is the same before and after. Two
 threads that only time keeps apart (the routine sets a flag and does not wait; `main` copies before the next
-interrupt) are reported if the run shows that the time is too short. If an interrupt routine uses the halves of a
+interrupt) are reported if the run shows that the time is too short, or if the source shows that the routine also writes
+in runs in which it sets no flag. If an interrupt routine uses the halves of a
 buffer in turn, `main` must use the other half: it has only the time until the routine turns. A flag that `main` clears
 before it has copied what the flag stands for lets the routine write again too early, if the routine tests this flag.
 What `main` did before it started a transfer is ordered before the interrupt at its end. If `main` sets the enable of a

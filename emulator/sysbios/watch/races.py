@@ -46,6 +46,7 @@ from emulator.sysbios.watch.pairs import (
 )
 from emulator.sysbios.watch.statements import Function, StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import HWI_LEVEL, SWI_LEVEL, Gate, Routine, Thread, ThreadWatch, excluded
+from emulator.sysbios.watch.untold import untold_words
 
 _RANK: Final = {"race-word": 1, "unmasked-long": 1, "race-long": 2, "race": 3}
 #: When this many locals are kept, those of functions that have returned are dropped.
@@ -129,6 +130,8 @@ class Races:
         self._alternating: dict[str, set[str]] = {}
         #: Arrays of which a routine uses one element in each run, from the source: path -> such routines.
         self._in_turn: dict[str, set[str]] = {}
+        #: Words that a routine, by its name, also writes in runs in which it tells nothing, from the source.
+        self._untold: dict[str, set[Word]] = {}
         #: Early hand-over -> the words that `main` still uses while the routine may use them too.
         self._late: dict[HandOver, set[tuple[Object, int]]] = {}
         #: What keeps `main` and a routine apart without a mask: see kept_off.py.
@@ -303,7 +306,9 @@ class Races:
                 conditions = self._conditions.writing(routine.what.name, shared.object.declaration.path)
                 if apart or self._kept_off(conditions):
                     read.clear()
-                elif read or not self._told_before(shared, routine, routine.what.name):
+                elif read or self._goes_on(shared, pair, routine.what.name) or not self._told_before(
+                    shared, routine, routine.what.name
+                ):  # fmt: skip
                     read.add(offset)
                 if len(read) > 1:
                     self._by_text(shared, statement, self._sentence(shared, "race", False, threads.main, routine, None))
@@ -320,6 +325,11 @@ class Races:
             if cell.handed is None or main.knows(cell.handed[0], cell.handed[1]):
                 return True
         return False
+
+    def _goes_on(self, shared: SharedObject, pair: Pair, routine: str) -> bool:
+        """Whether a routine writes a word of a pair whatever `main` does, also in runs in which it tells nothing."""
+        path, untold = shared.object.declaration.path, self._untold.get(routine, ())
+        return any((path, word) in untold for word in pair.words)
 
     def _told_before(self, shared: SharedObject, thread: Thread, routine: str) -> bool:
         """Whether a routine that does not wait for `main` has told `main` that the object is complete.
@@ -351,6 +361,7 @@ class Races:
                 self._turned, self._handed = turned_by_both(self._modules), handed_over(self._modules)
                 self._alternating = alternating(self._modules)
                 self._in_turn = shown_in_turn(self._modules) | averaged(self._modules)
+                self._untold = untold_words(self._modules)
                 self._conditions, self._rereading = UseConditions(self._modules), rereading_lines(self._modules)
             shared.pairs = self._pairs.get(obj.declaration.path)
         if not obj.declaration.function:

@@ -75,6 +75,9 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
          "struct TIME t; t = Now; Sum = t.hours * 60 + t.minutes;", [("race", "Now")]),
         ("if (++Count == 9999) { Now.minutes = Sum; Now.hours = 3; }",
          "struct TIME *p = &Seen; p->hours = Now.hours; p->minutes = Now.minutes;", [("race", "Now")]),
+        # Main comes right behind the run that tells it something; the routine goes on in the others.
+        ("Now.minutes++; Now.hours += 2; if ((++Count & 3) == 0) Ready = 1;",
+         "while (!Ready) ; Ready = 0; Sum = Now.hours * 60 + Now.minutes;", [("race", "Now")]),
         ("Now.minutes++;", "volatile struct TIME *p = &Now; Sum = p->minutes; p->minutes = 0;", [("race", "Now")]),
         # The ring is never full in this run.
         ("if (((Head + 1) & 7) == Tail && Count > 999) Tail = (Tail + 1) & 7;", "Tail = (Tail + 1) % 8;",
@@ -195,6 +198,13 @@ def test_what_an_interrupt_can_come_into_is_told(
          " do { p->hours = Now.hours; p->minutes = Now.minutes; } while (p->hours != Now.hours);"),
         ("if (++Count == 9999) { Now.minutes = Sum; Now.hours = 3; Ready = 1; }",
          "struct TIME *p = &Seen; if (Ready) { Ready = 0; p->hours = Now.hours; p->minutes = Now.minutes; }"),
+        # Main comes right behind each run that writes.
+        ("Now.minutes++; Now.hours += 2; Ready = 1;",
+         "while (!Ready) ; Ready = 0; Sum = Now.hours * 60 + Now.minutes;"),
+        ("if ((++Count & 3) == 0) { Now.minutes++; Now.hours += 2; Ready = 1; }",
+         "while (!Ready) ; Ready = 0; Sum = Now.hours * 60 + Now.minutes;"),
+        ("if (Flags) { Now.minutes++; Now.hours += 2; if ((++Count & 3) == 0) { Flags = 0; Ready = 1; } }",
+         "Flags = 1; while (!Ready) ; Ready = 0; Sum = Now.hours * 60 + Now.minutes;"),
         # Set anew when the routine has said that it is done, or while it is held off; a count that decides nothing.
         ("if (Ready) { Sum += Words[Head]; Head++; if (Head == 8) Ready = 0; }",
          "if (!Ready) { Head = 0; Ready = 1; }"),
