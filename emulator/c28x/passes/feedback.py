@@ -45,7 +45,7 @@ from emulator.c28x.tree import (
     Unary,
     Variable,
 )
-from emulator.c28x.tree_queries import bare, once, own_nodes, parts, source_text, statements, within
+from emulator.c28x.tree_queries import all_blocks, bare, once, own_nodes, parts, source_text, statements, within
 
 _WORD: Final = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 #: Words that say that a value is the wanted one; `set` and `point` count together.
@@ -239,6 +239,7 @@ def _turned(functions: list[Function], error: _Error) -> bool:
     """Whether anything that depends on the error is subtracted from something: this may turn the sign."""
     keys: set[Key] = set()
     returning: set[str] = set()
+    constant = {number for function in functions for number in _constants(function)}
 
     def depends(e: Any) -> bool:
         match e:
@@ -264,6 +265,8 @@ def _turned(functions: list[Function], error: _Error) -> bool:
                         passed = [v for v, a in given if any(depends(x) or direct(x) for x in parts(a))]
                         keys |= {(v, 0) for v in passed}
                 match s:
+                    case Assign() if id(s) in constant:
+                        pass
                     case Assign(target=LValue() as target, value=value) if any(depends(x) for x in parts(value)):
                         key = key_of(target)
                         keys |= {key} if key is not None else set()
@@ -280,6 +283,21 @@ def _turned(functions: list[Function], error: _Error) -> bool:
             if any(_negated(value, depends, sizes) for value in values):
                 return True
     return False
+
+
+def _constants(function: Function) -> Iterator[int]:
+    """The identities of the statements that hand a constant on: the second of `a = 0; b = a;`, for `b = a = 0`."""
+    for block in all_blocks(function.body):
+        given: LValue | None = None
+        for s in block:
+            if not isinstance(s, Assign) or not isinstance(s.target, LValue):
+                given = None
+                continue
+            value = bare(s.value)
+            handed_on = given is not None and isinstance(value, Load) and value.lvalue == given
+            if handed_on:
+                yield id(s)
+            given = s.target if handed_on or isinstance(value, Const) else None
 
 
 def _taken_by_sign(function: Function) -> list[Expr]:

@@ -66,3 +66,16 @@ def test_a_value_that_is_driven_away_is_told(target: int) -> None:
 ])  # fmt: skip
 def test_a_value_that_comes_back_or_stands_is_not_told(runs: tuple[tuple[int, int, int, int, int], ...]) -> None:
     assert _found(*runs) == []
+
+
+def test_a_constant_that_an_output_hands_on_does_not_depend_on_the_error() -> None:
+    """C's `target_rpm = last = 0`."""
+    text = _REGULATOR.replace("    target_rpm = first", "    last = 0\n    target_rpm = last\n    target_rpm = first")
+    text = text.replace("        speed_rpm = 0 if i < blocked else (speed_rpm * 7 + Step()) / 8\n", """
+        last = Step()
+        speed_rpm = (speed_rpm * 7 + last) / 8
+""").replace("global ", "global last, ").replace("gain: int16 = 1\n", "gain: int16 = 1\nlast: int16 = 0\n")  # fmt: skip
+    shop = Workshop(text)
+    shop.Drive(1, 400, 500, 0, 0)
+    shop.runtime.finish()
+    assert [f.rule for f in shop.findings if f.rule == "runs-away"] == ["runs-away"]
