@@ -87,6 +87,8 @@ class _Known(NamedTuple):
 
     states: set[NamedScalar]
     beside: set[NamedScalar]
+    #: The value in question.
+    highest: int
 
     def asked(self, test: Expr) -> bool:
         """Whether a test asks for the state, or for what is set beside it."""
@@ -137,7 +139,7 @@ class _States:
             return
         kept = [scalar for scalar in through if _kept(scalar)]
         beside = set().union(*map(self._set_beside, kept))
-        if not kept or not self._may_come(function, s, _Known(through, beside), frozenset()):
+        if not kept or not self._may_come(function, s, _Known(through, beside, highest), frozenset()):
             return
         assert isinstance(lvalue.root, Variable)
         name, text = lvalue.root.declaration, source_text(index)
@@ -221,7 +223,8 @@ class _States:
     def _may_come(self, function: Function, s: Stmt, known: _Known, above: frozenset[str]) -> bool:
         """Whether a way leads to a statement on which nothing asks for a state."""
         choices = [p for p in own_nodes(s) if isinstance(p, Compare | Logic | Not | Conditional)]
-        if any(map(known.asked, [*choices, *(_way(function.body, s, known) or [])])):
+        tests, before = _way(function.body, s, known) or ([], [])
+        if any(map(known.asked, [*choices, *tests])) or any(self._sets_another(x, known) for x in before):
             return False
         if function.path in self._given.by_pointer or function.interrupt or function.name == "main":
             return True
@@ -229,6 +232,26 @@ class _States:
         return len(above) < _DEEPEST and any(
             self._may_come(caller, calling, known, above | {function.path}) for caller, calling in callers
         )
+
+
+    def _sets_another(self, s: Stmt, known: _Known) -> bool:
+        """Whether a statement sets a state, or calls what does, and never to the value in question."""
+        for state in known.states:
+            setting = [s, *self._always_set_by(s, state)]
+            values: list[Any] = [x.value for x in setting if isinstance(x, Assign) and _sets(x, state, set())]
+            values += [a for p in own_nodes(s) if values and isinstance(p, Call) for a in p.arguments]
+            if values and not any(self._gives(value, known.highest) for value in values):
+                return True
+        return False
+
+    def _always_set_by(self, s: Stmt, state: NamedScalar) -> list[Stmt]:
+        """The statements of the functions which a statement calls that set a state whatever happens."""
+        called = {p.function.path for p in own_nodes(s) if isinstance(p, Call)}
+        return [x for f in self._functions if f.path in called for x in f.body if _sets(x, state, set())]
+
+    def _gives(self, value: Any, number: int) -> bool:
+        values: dict[int, Where | None] = {}
+        return isinstance(value, Expr) and self._values(value, values, set(), 0, later=True) and number in values
 
 
 def _times(structure: StructType, ctype: CType) -> int:
@@ -288,17 +311,20 @@ def _tests(s: Stmt) -> list[Expr]:
     return []
 
 
-def _way(body: list[Stmt], wanted: Stmt, known: _Known) -> list[Expr] | None:
-    """The tests on the way to a statement: those around it, and those before it that may lead away or set the state."""
-    before: list[Expr] = []
-    for s in body:
+def _way(body: list[Stmt], wanted: Stmt, known: _Known) -> tuple[list[Expr], list[Stmt]] | None:
+    """What is on the way to a statement: tests, and the statements that are executed before it.
+
+    The tests are those around it, and those before it that may lead away or set the state.
+    """
+    tests: list[Expr] = []
+    for at, s in enumerate(body):
         if s is wanted:
-            return before
+            return tests, body[:at]
         for block in blocks(s):
             inner = _way(block, wanted, known)
             if inner is not None:
-                return [*before, *_tests(s), *inner]
-        before += _leading_away(s, known)
+                return [*tests, *_tests(s), *inner[0]], [*body[:at], *inner[1]]
+        tests += _leading_away(s, known)
     return None
 
 

@@ -48,6 +48,8 @@ STARTS = STEP.replace("FAULT", "OFF")
         "static void Report(void) { STATE s = Now(); if (shown) return; Show(Names[s]); }",
         "static void Report(void) { KILN k; Copy(&k); Show(Names[k.state]); }",
         "static void Report(void) { KILN k = Kiln; Show(Names[k.state]); }",
+        "static void Report(void) { State = in > 9 ? FAULT : State; Show(Names[State]); }",
+        "static void Report(void) { Enter(FAULT); Show(Names[State]); }",
         "static void Write(int s) { Show(Names[s]); } static void Report(void) { Write(State); }",
     ],
 )
@@ -67,6 +69,10 @@ def test_a_table_that_lacks_the_last_state_is_told(report: str) -> None:
         # What is set beside a state, or computed from it, may say which one it is.
         (WRONG, STEP.replace("State = in ?", "ready = !in; State = in ?"), MAIN.replace("in & 1", "ready")),
         (WRONG, STEP.replace("}\n", "    ready = State != FAULT;\n}\n"), MAIN.replace("in & 1", "ready")),
+        # It was set just before.
+        (WRONG, STEP, MAIN.replace("if (in & 1)", "State = in ? OFF : RAMP;")),
+        (WRONG, STEP, MAIN.replace("if (in & 1)", "Enter(RAMP);")),
+        ("static void Report(void) { STATE s = RAMP; if (in) s = OFF; Show(Names[s]); }", STEP, MAIN),
         # It begins beyond the table, and leaves that before anything is reported.
         (WRONG, STARTS, MAIN.replace("{ for", "{ Enter(FAULT); Step(); for")),
         (WRONG, STEP.replace("HOLD : FAULT", "HOLD : (STATE)(in & 3)"), MAIN),
