@@ -189,9 +189,12 @@ def _beyond(gate: _Gate, function: Function) -> _Beyond | None:
 def _elements(gate: _Gate, body: list[Stmt], within: set[int], most: int) -> Iterator[_Beyond]:
     """What `_beyond` looks for, in a block up to a statement that sets the number back; it is `most` at the start."""
     old: set[Variable] = set()
+    set_back: list[Expr] = []
     for s in body:
         if s is gate.body[0] and body is not gate.body:
             return
+        if isinstance(s, If) and s.test in set_back:
+            continue
         match s:
             case Declare(variable=Variable(kind="temporary") as kept, value=Expr() as value) if _is(value, gate.number):
                 old.add(kept)
@@ -215,7 +218,9 @@ def _elements(gate: _Gate, body: list[Stmt], within: set[int], most: int) -> Ite
         elif not any(p is gate.test for p in nodes):
             staying = [block for block in blocks(s) if not leaves(block)]
             if any(_sets(x, gate.number) for block in staying for x in statements(block)):
-                return
+                if not isinstance(s, If) or s.otherwise:
+                    return
+                set_back.append(s.test)  # it keeps its value where this test fails
 
 
 def _sets(s: Stmt, number: NamedScalar) -> bool:

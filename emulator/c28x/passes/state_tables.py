@@ -27,7 +27,6 @@ from emulator.c28x.tree import (
     Assign,
     Break,
     Call,
-    Compare,
     Conditional,
     Const,
     Continue,
@@ -42,7 +41,6 @@ from emulator.c28x.tree import (
     Load,
     Logic,
     LValue,
-    Not,
     Return,
     Stmt,
     Switch,
@@ -101,8 +99,8 @@ class _States:
     def __init__(self, functions: list[Function], objects: list[Variable]) -> None:
         self._objects = objects
         self._given = GivenValues(functions)
-        #: Function -> the statements that call it, with their functions.
-        self._callers: dict[str, list[tuple[Function, Stmt]]] = {}
+        #: Function -> its calls, each with the statement and the function.
+        self._callers: dict[str, list[tuple[Function, Stmt, Call]]] = {}
         self._functions = functions
         self._beside: dict[NamedScalar, set[NamedScalar]] = {}
         self._later = _run_later(functions, self._given.by_pointer)
@@ -110,7 +108,7 @@ class _States:
             for s in statements(function.body):
                 for p in own_nodes(s):
                     if isinstance(p, Call):
-                        self._callers.setdefault(p.function.path, []).append((function, s))
+                        self._callers.setdefault(p.function.path, []).append((function, s, p))
 
     def check(self, function: Function, report: StaticReport) -> None:
         """Report the subscripts of one function."""
@@ -139,7 +137,7 @@ class _States:
             return
         kept = [scalar for scalar in through if _kept(scalar)]
         beside = set().union(*map(self._set_beside, kept))
-        if not kept or not self._may_come(function, s, _Known(through, beside, highest), frozenset()):
+        if not kept or not self._may_come(function, s, lvalue, _Known(through, beside, highest), frozenset()):
             return
         assert isinstance(lvalue.root, Variable)
         name, text = lvalue.root.declaration, source_text(index)
@@ -220,17 +218,18 @@ class _States:
             self._beside[state] = found
         return self._beside[state]
 
-    def _may_come(self, function: Function, s: Stmt, known: _Known, above: frozenset[str]) -> bool:
-        """Whether a way leads to a statement on which nothing asks for a state."""
-        choices = [p for p in own_nodes(s) if isinstance(p, Compare | Logic | Not | Conditional)]
+    def _may_come(self, function: Function, s: Stmt, node: Any, known: _Known, above: frozenset[str]) -> bool:
+        """Whether a way leads to a node of a statement on which nothing asks for a state."""
+        around = [p for p in own_nodes(s) if isinstance(p, Logic | Conditional)]
+        choices = [p for p in around if any(q is node for q in parts(p))]
         tests, before = _way(function.body, s, known) or ([], [])
         if any(map(known.asked, [*choices, *tests])) or any(self._sets_another(x, known) for x in before):
             return False
         if function.path in self._given.by_pointer or function.interrupt or function.name == "main":
             return True
-        callers = [(f, x) for f, x in self._callers.get(function.path, ()) if f.path not in above]
+        callers = [caller for caller in self._callers.get(function.path, ()) if caller[0].path not in above]
         return len(above) < _DEEPEST and any(
-            self._may_come(caller, calling, known, above | {function.path}) for caller, calling in callers
+            self._may_come(*caller, known, above | {function.path}) for caller in callers
         )
 
 

@@ -34,6 +34,7 @@ def told(take: str, rest: str, main: str = "int main(void) { for (;;) Take(in); 
         # The end of the text.
         ("if (n < 8) line[n++] = c;", "void End(void) { line[n] = 0; n = 0; Obey(); }"),
         ("if (n < 8) { line[n++] = c; line[n] = 0; }", ""),
+        ("if (in) n = 0; if (c == '\\n') { line[n] = 0; Obey(); n = 0; } else if (n < 8) line[n++] = c;", ""),
         ("if (kept.used < 8) kept.text[kept.used++] = c; else { kept.text[kept.used] = 0; kept.used = 0; }", ""),
     ],
 )
@@ -56,7 +57,7 @@ def test_one_element_too_many_is_told(take: str, rest: str) -> None:
         ("if (n < 8) line[n++] = c;", "void End(void) { if (n < 8) line[n] = 0; n = 0; Obey(); }"),
         # It is set back before.
         ("if (n < 8) { line[n++] = c; } else { n = 0; line[n] = c; }", ""),
-        ("if (c == '\\r') n = 0; if (in) line[n] = c; if (n < 8) n++;", ""),
+        ("if (c == '\\r') n = 0; if (c == '\\r') line[n] = c; if (n < 8) n++;", ""),
         ("n = 0; if (n <= 8) line[n++] = c;", ""),
         # In a loop, the turns may be the limit.
         ("n = 0; for (m = 0; m < 8; m++) { if (n <= 8) line[n++] = more[m]; }", ""),

@@ -50,6 +50,7 @@ STARTS = STEP.replace("FAULT", "OFF")
         "static void Report(void) { KILN k = Kiln; Show(Names[k.state]); }",
         "static void Report(void) { State = in > 9 ? FAULT : State; Show(Names[State]); }",
         "static void Report(void) { Enter(FAULT); Show(Names[State]); }",
+        "static void Report(void) { KILN k = Kiln; Show(Names[k.state]), Show(k.level ? Names[0] : Names[1]); }",
         "static void Write(int s) { Show(Names[s]); } static void Report(void) { Write(State); }",
     ],
 )
