@@ -49,6 +49,7 @@ from emulator.c28x.tree_queries import (
     bare,
     blocks,
     different,
+    last_loop,
     parts,
     roots,
     source_text,
@@ -92,6 +93,9 @@ class Liveness:
         for s in statements(function.body):
             own = assigned(s) if isinstance(s, Assign) else None
             self.only_themselves -= {v for v in self.used[id(s)] if v is not own}
+        end = last_loop(function)
+        if end is not None and not end.body:  # it stops there, so that a debugger shows its locals
+            self.only_themselves = set()
         #: The live variables after each enclosing loop and at its `continue`; after each enclosing switch.
         self.loops: list[tuple[Live, Live]] = []
         self.switches: list[tuple[str, Live]] = []
