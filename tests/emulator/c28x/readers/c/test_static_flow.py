@@ -117,7 +117,7 @@ READ = [
     "{ int x = 0; while (n-- > 0) x ^= port; return 0; }",  # read for its effect
     "{ int x = 0; while (n-- > 0) x++; return 0; }",
     # It stops there, so that a debugger shows the number.
-    "{ int x = n >> 1; if (n > 9) x += n; for (;;) { ; } return 0; }",
+    "{ int x = n >> 1; if (n > 9) x += 128; for (;;) { ; } return 0; }",
 ]
 
 
