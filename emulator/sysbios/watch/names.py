@@ -183,11 +183,12 @@ def first_argument(call: Call) -> str | None:
 def scalar_path(path: str, ctype: CType, leaf: int) -> str:
     """The path of the scalar number `leaf` of an object, without the subscripts of arrays."""
     while True:
-        match ctype:
-            case ArrayType(element=element):
-                ctype, leaf = element, leaf % element.leaves
-            case StructType(word_backed=False, members=[_, *_] as members):
-                member = next(m for m in reversed(members) if m.leaf <= leaf)
-                path, ctype, leaf = f"{path}.{member.name}", member.ctype, leaf - member.leaf
-            case _:
-                return path
+        if isinstance(ctype, ArrayType):
+            ctype = ctype.element
+            leaf %= ctype.leaves
+        elif isinstance(ctype, StructType) and ctype.members and not ctype.word_backed:
+            first = leaf
+            member = next(m for m in reversed(ctype.members) if m.leaf <= first)
+            path, ctype, leaf = f"{path}.{member.name}", member.ctype, leaf - member.leaf
+        else:
+            return path
