@@ -22,6 +22,7 @@ def main() -> None:
         status = invoke()
         ending.ignored()
     except KeyboardInterrupt:  # while the last line was written
+        ending.ignored()  # or the time of an interrupted command runs out while Python tidies up
         status = ending.EXIT_INTERRUPTED
     collect_no_more()
     sys.exit(status)
