@@ -77,6 +77,8 @@ def invoke(arguments: list[str] | None = None) -> int:
     except (typer.Abort, KeyboardInterrupt):
         print_error("interrupted")
         return EXIT_INTERRUPTED
+    except SystemExit as error:  # click leaves so where the reader of our output is gone
+        return error.code if isinstance(error.code, int) else EXIT_FAILED
     except BrokenPipeError:
         # The reader of our output is gone; nothing is left to say, and Python must not try at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
