@@ -80,9 +80,8 @@ def _make(asked: dict[str, Any], options: CompileOptions, looked_at: Callable[[s
         answer = asked_for[block, register] = looked_at(block, register)
         return answer
 
-    corrected = bool(asked.get("fixes"))
-    others = {**asked, "fixes": ()}
-    first = _first_like(_described(others, replace(options, static=False))) if corrected else []
+    described = _described({**asked, "fixes": ()}, replace(options, static=False)) if asked.get("fixes") else ""
+    first = _first_like(described) if described else []
     if first and first[0].fits(looked_at):
         like = first[0].compiled
         with suppress(NotAlike, SourceError):  # the errors of a whole program are raised below
@@ -91,7 +90,7 @@ def _make(asked: dict[str, Any], options: CompileOptions, looked_at: Callable[[s
             return CachedProgram(compiled, first[0].digests, first[0].looked_at | asked_for)
     program = Program(**asked)
     made = CachedProgram(compile_program(program, options, remembered), program.digests(), asked_for)
-    if corrected and not first:
+    if described and not first:
         with suppress(NotAlike):
             program.reached_by(program.fixes)  # what this finds in the sources is kept for the next programs
             first.append(made)

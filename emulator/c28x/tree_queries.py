@@ -58,6 +58,10 @@ INSTRUCTIONS: Final = {"EALLOW": "_cpu.eallow = True", "EDIS": "_cpu.eallow = Fa
 OBSERVABLE: Final = (RegisterLoad, Call, CallPointer)
 
 
+#: A comparison -> the same one with its sides exchanged.
+TURNED: Final = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}
+#: A comparison by order -> what holds where it fails.
+OPPOSITE: Final = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 #: How strongly an operator binds its operands, as in C and in Python.
 _BINDS: Final = {"|": 1, "^": 2, "&": 3, "<<": 4, ">>": 4, "+": 5, "-": 5, "*": 6, "/": 6, "%": 6}
 _UNARY: Final = 7

@@ -22,7 +22,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Final
 
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
@@ -42,10 +41,7 @@ from emulator.c28x.tree import (
     Stmt,
     Variable,
 )
-from emulator.c28x.tree_queries import OBSERVABLE, assigned, bare, parts, source_text, statements
-
-#: A comparison -> the one with its sides changed.
-_TURNED: Final = {"<": ">", ">": "<", "<=": ">=", ">=": "<="}
+from emulator.c28x.tree_queries import OBSERVABLE, OPPOSITE, TURNED, assigned, bare, parts, source_text, statements
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +88,7 @@ def _ways(s: If, inner: set[int]) -> Iterator[tuple[Expr | None, list[Stmt]]]:
 def _wrong(ways: list[tuple[Expr | None, list[Stmt]]], function: Function) -> Iterator[WrongStep]:
     arrivals = [(s.target, bare(s.value)) for _, body in ways for s in body if isinstance(s, Assign)]
     for test, body in ways:
-        if not isinstance(test, Compare) or test.op not in _TURNED:
+        if not isinstance(test, Compare) or test.op not in OPPOSITE:
             continue
         for s in body:
             step = _step(s)
@@ -185,7 +181,7 @@ def _changes(e: Expr) -> bool:
 
 def _compared(test: Compare, step: _Step) -> Iterator[tuple[Expr, bool]]:
     """What a test compares the value of a step with, this step away; whether the value is below it where it holds."""
-    for one, op, other in ((test.left, test.op, test.right), (test.right, _TURNED[test.op], test.left)):
+    for one, op, other in ((test.left, test.op, test.right), (test.right, TURNED[test.op], test.left)):
         far = _moved(other)
         if far is None or far.by != step.by:
             continue

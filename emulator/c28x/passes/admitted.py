@@ -21,15 +21,12 @@ from emulator.c28x.ctypes import IntType
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.state_values import constant_of
 from emulator.c28x.tree import Assign, Compare, Convert, Expr, Function, If, Load, Logic, LValue, Not, Stmt
-from emulator.c28x.tree_queries import bare, blocks, leaves, source_text, statements, within
+from emulator.c28x.tree_queries import OPPOSITE, TURNED, bare, blocks, leaves, source_text, statements, within
 
 #: A value with an upper limit, the limit, and the test of it.
 Limited = tuple[LValue, int, Compare]
 #: The largest value that the left side of a comparison may have behind it, less the constant on the right.
 _UP_TO: Final = {"<": -1, "<=": 0}
-_TURNED: Final = {">": "<", ">=": "<="}
-#: The comparison that holds where one is false.
-_OPPOSITE: Final = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 
 
 def check_admitted(function: Function, report: StaticReport) -> None:
@@ -77,9 +74,9 @@ def upper_limits(test: Expr, *, holds: bool = True) -> Iterator[Limited]:
                 yield from upper_limits(operand, holds=holds)
         case Compare(op=op, left=left, right=right) as compare:
             if not holds:
-                op = _OPPOSITE.get(op, "")
-            if op in _TURNED and constant_of(right) is None:
-                op, left, right = _TURNED[op], right, left
+                op = OPPOSITE.get(op, "")
+            if op in (">", ">=") and constant_of(right) is None:
+                op, left, right = TURNED[op], right, left
             value, limit = bare(left), constant_of(right)
             if op in _UP_TO and isinstance(value, Load) and limit is not None and isinstance(value.ctype, IntType):
                 yield value.lvalue, limit + _UP_TO[op], compare

@@ -22,7 +22,6 @@ from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.future_stamps import unreachable_exits
 from emulator.c28x.passes.given import GivenValues
 from emulator.c28x.passes.interrupted import sides_of
-from emulator.c28x.passes.let_in import check_let_in
 from emulator.c28x.passes.likes import check_likes
 from emulator.c28x.passes.lost_writes import check_lost_writes
 from emulator.c28x.passes.masked import check_masked
@@ -31,6 +30,7 @@ from emulator.c28x.passes.messages import check_messages
 from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
 from emulator.c28x.passes.never_back import check_never_back
 from emulator.c28x.passes.null_tests import NullTests
+from emulator.c28x.passes.off_by_one import check_off_by_one
 from emulator.c28x.passes.one_sided import check_one_sided
 from emulator.c28x.passes.open_integrals import check_open_integrals
 from emulator.c28x.passes.port_writes import check_port_writes
@@ -116,7 +116,7 @@ def check(
     check_ring_back(reports, given)
     check_searches(reports, given)
     check_state_tables(whole, of_whole)
-    check_let_in(whole, of_whole)
+    check_off_by_one(whole, of_whole)
     sides = sides_of(modules, reports)
     if sides is not None:
         check_port_writes(sides)

@@ -14,7 +14,7 @@ Nor is a difference of unsigned numbers, which wraps.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from emulator.c28x.ctypes import FloatType, IntType
 from emulator.c28x.passes.report import StaticReport
@@ -32,12 +32,7 @@ from emulator.c28x.tree import (
     Stmt,
     Unary,
 )
-from emulator.c28x.tree_queries import calls, source_text, statements
-
-#: Comparison that fails -> the one that holds then.
-_FAILED: Final = {">": "<=", ">=": "<", "<": ">=", "<=": ">"}
-#: Comparison -> the same with both sides multiplied by -1.
-_TURNED: Final = {">": "<", ">=": "<=", "<": ">", "<=": ">="}
+from emulator.c28x.tree_queries import OPPOSITE, TURNED, calls, source_text, statements
 
 
 class _Linear(NamedTuple):
@@ -99,7 +94,7 @@ def _check(s: If, known: list[_Limit], function: Function, report: StaticReport)
 
 def _decided(before: _Limit, now: _Limit) -> bool | None:
     """What the failed test before says of the present one: true (beyond the complement), false, or nothing."""
-    holds, last, op, limit = _FAILED[before.op], before.limit, now.op, now.limit
+    holds, last, op, limit = OPPOSITE[before.op], before.limit, now.op, now.limit
     if before.whole:  # of integers, make both comparisons inclusive
         last += {"<": -1, ">": 1}.get(holds, 0)
         limit += {"<": -1, ">": 1}.get(op, 0)
@@ -113,7 +108,7 @@ def _decided(before: _Limit, now: _Limit) -> bool | None:
 
 def _limit(test: Expr) -> _Limit | None:
     """The limit that a comparison by order sets; None: it is none that stays the same."""
-    if not isinstance(test, Compare) or test.op not in _FAILED or calls(test) or volatile(test):
+    if not isinstance(test, Compare) or test.op not in OPPOSITE or calls(test) or volatile(test):
         return None
     left, right = _linear(test.left), _linear(test.right)
     if left is None or right is None:
@@ -126,7 +121,7 @@ def _limit(test: Expr) -> _Limit | None:
         return None
     op, limit = test.op, right.constant - left.constant
     if terms[min(terms)] < 0:
-        terms, op, limit = {text: -factor for text, factor in terms.items()}, _TURNED[op], -limit
+        terms, op, limit = {text: -factor for text, factor in terms.items()}, TURNED[op], -limit
     return _Limit(frozenset(terms.items()), op, limit, isinstance(test.left.ctype, IntType), test)
 
 

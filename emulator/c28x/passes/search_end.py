@@ -44,6 +44,8 @@ from emulator.c28x.tree import (
     While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
+    OPPOSITE,
+    TURNED,
     all_blocks,
     bare,
     blocks,
@@ -57,10 +59,8 @@ from emulator.c28x.tree_queries import (
 
 #: The full scale of a converter of 12 bits: nothing that it gives is above.
 _FULL_SCALE: Final = 4095
-#: Comparisons of a value with an element by which a search goes on; and what they are with the sides exchanged.
+#: Comparisons of a value with an element by which a search goes on.
 _ABOVE: Final = (">", ">=")
-_TURNED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
-_OPPOSITE: Final = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 
 
 class _Search(NamedTuple):
@@ -120,15 +120,15 @@ def _search(loop: Stmt) -> _Search | None:
     match others:
         case []:
             pass
-        case [If(test=Compare(op=op) as ends, then=[Break()], otherwise=[])] if op in _OPPOSITE:
-            compares = [*compares, Compare(ends.ctype, _OPPOSITE[op], ends.left, ends.right)]
+        case [If(test=Compare(op=op) as ends, then=[Break()], otherwise=[])] if op in OPPOSITE:
+            compares = [*compares, Compare(ends.ctype, OPPOSITE[op], ends.left, ends.right)]
         case _:
             return None
     place = lvalue.root
     if len(compares) != 1 or not isinstance(place, Variable) or not place.plain or end < 1:
         return None
     (compare,) = compares
-    turned = _TURNED.get(compare.op, "")
+    turned = TURNED.get(compare.op, "")
     for value, op, element in (
         (bare(compare.left), compare.op, compare.right), (bare(compare.right), turned, compare.left),
     ):  # fmt: skip

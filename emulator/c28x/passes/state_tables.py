@@ -232,7 +232,6 @@ class _States:
             self._may_come(*caller, known, above | {function.path}) for caller in callers
         )
 
-
     def _sets_another(self, s: Stmt, known: _Known) -> bool:
         """Whether a statement sets a state, or calls what does, and never to the value in question."""
         for state in known.states:

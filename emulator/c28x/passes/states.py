@@ -51,11 +51,21 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import addressed, bare, blocks, own_nodes, parts, roots, source_text, statements, within
+from emulator.c28x.tree_queries import (
+    TURNED,
+    addressed,
+    bare,
+    blocks,
+    own_nodes,
+    parts,
+    roots,
+    source_text,
+    statements,
+    within,
+)  # fmt: skip
 
 #: The largest number of values of one object that are followed.
 _MOST: Final = 3000
-_SWAPPED: Final = {"==": "==", "!=": "!=", "<": ">", ">": "<", "<=": ">=", ">=": "<="}
 
 
 @dataclass(frozen=True)
@@ -508,7 +518,7 @@ def _decided(test: Expr, x: Variable, constant: Callable[[Expr], int | None]) ->
     """A test as a function of the value of one object; None: it tests something else."""
     match test:
         case Compare(op=op, left=left, right=right):
-            for side, other, named in ((left, right, op), (right, left, _SWAPPED[op])):
+            for side, other, named in ((left, right, op), (right, left, TURNED[op])):
                 goal = constant(other)
                 if only_variable(side) is x and goal is not None:
                     return lambda value: COMPARE[named](value, goal)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Iterator, Mapping
 from itertools import pairwise
 from math import ceil, floor, isfinite
-from typing import Any, Final
+from typing import Any
 
 from emulator.c28x.arithmetic import COMPARE
 from emulator.c28x.ctypes import LONG_DOUBLE, NOBODY, UCHAR, FloatType, IntType, PointerType
@@ -43,6 +43,7 @@ from emulator.c28x.tree import (
     While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
+    TURNED,
     bare,
     calls,
     different,
@@ -52,9 +53,6 @@ from emulator.c28x.tree_queries import (
     statements,
     within,
 )  # fmt: skip
-
-#: Operator -> the one that says the same with the operands exchanged.
-_TURNED: Final = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}
 
 
 class ConstantChecks:
@@ -305,7 +303,7 @@ class ValueChecks(ConstantChecks):
         for operand in e.operands:
             match operand:
                 case Compare(left=Const()):
-                    operand = Compare(operand.ctype, _TURNED[operand.op], operand.right, operand.left)
+                    operand = Compare(operand.ctype, TURNED[operand.op], operand.right, operand.left)
             turned.append(operand)
             match operand:
                 case Compare(op=op, left=left, right=Const(value=value)) if not calls(left) and depends(left):

@@ -12,7 +12,7 @@ that it need not: the routine goes on, and asks nothing that `main` sets.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Any
+from typing import Any, Final
 
 from emulator.c28x.passes.interrupted import test_of
 from emulator.c28x.passes.on_the_way import Turn, with_turns
@@ -21,6 +21,9 @@ from emulator.c28x.tree import Assign, Call, CallPointer, Declare, Expr, Functio
 from emulator.c28x.tree_queries import own_nodes, parts, statements, within
 from emulator.sysbios.watch.kept_off import Word, object_path
 from emulator.sysbios.watch.ways import interrupt_routines
+
+#: So many statements of a routine are looked at, each on each way to it.
+_MOST: Final = 10_000
 
 
 def untold_words(modules: Iterable[Module]) -> dict[str, set[Word]]:
@@ -52,7 +55,9 @@ def _untold(routine: Function, own: dict[str, Function], known: set[str], tested
     word of the same object if it is `tested`.
     """
     writes: list[tuple[Word, tuple[Turn, ...]]] = []
-    for turns, s in _run(routine, own, (), frozenset()):
+    for ran, (turns, s) in enumerate(_run(routine, own, (), frozenset())):
+        if ran > _MOST:
+            return  # there are too many ways through what it calls
         if isinstance(s, Assign) and (word := _word(s.target)) is not None and word[0] in known:
             writes.append((word, turns))
     for word, turns in writes:

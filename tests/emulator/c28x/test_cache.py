@@ -140,3 +140,14 @@ def test_a_kept_program_of_c_needs_no_parser(made: list[str], tmp_path: Path) ->
     content = zlib.decompress(kept.read_bytes())
     assert b"pycparser" not in content
     assert b"readers.c.types" not in content
+
+
+def test_a_request_that_has_no_description_takes_nothing_from_another_one(made: list[str], tmp_path: Path) -> None:
+    names = []
+    for name in ("one", "two"):
+        file = tmp_path / f"{name}.py"
+        file.write_text(SOURCE.replace("Twice", name), encoding="utf-8")
+        program = compiled(file, fixes=frozenset({"X"}), header=lambda text: None)
+        names.append([function.function.name for function in program.functions])
+    assert names == [["one"], ["two"]]
+    assert made == ["one", "two"]

@@ -47,10 +47,10 @@ STATIC = (
         f"emulator/c28x/passes/{name}.py"
         for name in (
             "admitted", "anew", "begun_again", "blocks", "checks", "cleared", "copies", "decided", "drained", "dropped",
-            "entrances", "flow", "formats", "let_in", "likes", "lost_writes", "messages", "names", "never_back",
-            "null_tests", "one_sided", "published", "quotients", "released", "ring_back", "search_end", "spans",
-            "state_tables", "states", "stores", "tables", "undone", "unlimited_lines", "unread_inputs", "values",
-            "waiting",
+            "entrances", "flow", "formats", "likes", "lost_writes", "messages", "names", "never_back",
+            "null_tests", "off_by_one", "one_sided", "published", "quotients", "released", "ring_back", "search_end",
+            "spans", "state_tables", "states", "stores", "tables", "undone", "unlimited_lines", "unread_inputs",
+            "values", "waiting",
         )
     ),
     "emulator/c28x/build/", "emulator/c28x/readers/",

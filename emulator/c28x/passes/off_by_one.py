@@ -77,7 +77,7 @@ class _Beyond(NamedTuple):
     most: int
 
 
-def check_let_in(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
+def check_off_by_one(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
     """Report the tests of a number behind which it goes beyond the end of an array."""
     owners = {function: report for module, report in reports.items() for function in module.functions}
     whole = any(function.name == "main" and function.body for function in owners)
