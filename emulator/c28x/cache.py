@@ -2,8 +2,8 @@
 
 The key of a program contains the request, the `CompileOptions` and the state of the translator.  A kept program is used
 only if every source file is unchanged, and reading each register still has the same effect.  If an entry cannot be read
-or written, the program is compiled.  A program with corrections takes what these do not reach from the first such
-program that the process compiled.
+or written, the program is compiled.  A program with corrections takes what these do not reach from another one that the
+process compiled.
 
 The folder is the user's own cache (`HIL_CACHE`, else `XDG_CACHE_HOME`, else `~/.cache`); its files are trusted as the
 user's programs are.  `HIL_CACHE=off` keeps nothing.
@@ -38,8 +38,9 @@ from emulator.c28x.tree import Function
 MAX_PROGRAMS: Final = 256
 #: How many of them a process keeps in memory.
 IN_MEMORY: Final = 32
-#: From how many programs that it made a process can take over functions: they keep their trees.
+#: For how many requests a process keeps programs to take over functions from, and how many: they keep their trees.
 ALIKE: Final = 4
+ALIKE_EACH: Final = 2
 PACKAGE: Final = Path(__file__).resolve().parent.parent
 #: Folders that a translation depends on in addition to the firmware, and whether their subfolders count too.
 TRANSLATOR: Final = (("", False), ("c28x", True), ("registers", False), ("sysbios", False))
@@ -71,7 +72,7 @@ def compiled(asked: dict[str, Any], options: CompileOptions, looked_at: Callable
 
 
 def _make(asked: dict[str, Any], options: CompileOptions, looked_at: Callable[[str, str], bool]) -> CachedProgram:
-    """Translate a program.  Most of one with corrections is as in the first one that this process made with others."""
+    """Translate a program.  Most of one with corrections is as in one that this process made with others."""
     from emulator.c28x.compile import compile_program  # most runs find their program and do not need the translator
 
     asked_for: dict[tuple[str, str], bool] = {}
@@ -80,26 +81,28 @@ def _make(asked: dict[str, Any], options: CompileOptions, looked_at: Callable[[s
         answer = asked_for[block, register] = looked_at(block, register)
         return answer
 
-    described = _described({**asked, "fixes": ()}, replace(options, static=False)) if asked.get("fixes") else ""
-    first = _first_like(described) if described else []
-    if first and first[0].fits(looked_at):
-        like = first[0].compiled
+    fixes = frozenset(asked.get("fixes", ()))
+    described = _described({**asked, "fixes": ()}, replace(options, static=False)) if fixes else ""
+    alike = _alike(described) if described else []
+    nearest = min(alike, key=lambda each: len(each.compiled.program.fixes ^ fixes), default=None)
+    if nearest is not None and nearest.fits(looked_at):
+        like = nearest.compiled
         with suppress(NotAlike, SourceError):  # the errors of a whole program are raised below
             program = Program(**asked, like=like.program)
             compiled = compile_program(program, options, remembered, like)
-            return CachedProgram(compiled, first[0].digests, first[0].looked_at | asked_for)
+            return CachedProgram(compiled, nearest.digests, nearest.looked_at | asked_for)
     program = Program(**asked)
     made = CachedProgram(compile_program(program, options, remembered), program.digests(), asked_for)
-    if described and not first:
+    if described and len(alike) < ALIKE_EACH:
         with suppress(NotAlike):
             program.reached_by(program.fixes)  # what this finds in the sources is kept for the next programs
-            first.append(made)
+            alike.append(made)
     return made
 
 
 @lru_cache(maxsize=ALIKE)
-def _first_like(described: str) -> list[CachedProgram]:
-    """A list for the first program of a request without its corrections."""
+def _alike(described: str) -> list[CachedProgram]:
+    """A list for programs of a request that differ in their corrections only."""
     return []
 
 

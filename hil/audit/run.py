@@ -151,6 +151,7 @@ def _audit_forked(
         if len(names) > 2:
             Rig(one, static=len(names) > _MANY)
         if len(names) > _MANY:
+            Rig({ALL}, static=True)
             with robot(one, boot=False):  # its program is watched
                 pass
     calls = ((name, partial(templates.using, partial(show, name))) for name in names)
@@ -159,9 +160,9 @@ def _audit_forked(
             if isinstance(answer, forked.ChildDied):
                 yield _died(done, answer)
             else:
-                outcome, missed = answer
+                outcome, taken = answer
                 yield outcome
-                templates.make_ready(missed)
+                templates.make_ready(taken)
 
 
 def _audit_spawned(

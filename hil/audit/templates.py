@@ -6,8 +6,8 @@ cases differ only in time.
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Iterable
+from collections import Counter, defaultdict
+from collections.abc import Callable
 from contextlib import suppress
 from contextvars import ContextVar
 from typing import Any, Protocol, TypeVar
@@ -17,7 +17,7 @@ from hil.collector import uncollected
 Made = TypeVar("Made", covariant=True)
 Result = TypeVar("Result")
 
-#: An order that is not `common` is prepared for the next child after it was missing this many times.
+#: An order that is not `common` is prepared after this many children took it.
 _AGAIN = 2
 
 
@@ -26,7 +26,7 @@ class Order(Protocol[Made]):
 
     @property
     def common(self) -> bool:
-        """Whether other entries will need the same.  Then it is prepared as soon as it was missing once."""
+        """Whether other entries will need the same.  Then it is prepared as soon as one took it."""
 
     def make(self) -> Made:
         """Make a new rig or robot."""
@@ -36,36 +36,37 @@ class Templates:
     """The prepared rigs and robots of this process.  A copy of the process has each of them once."""
 
     def __init__(self) -> None:
-        self._ready: dict[Order[Any], Any] = {}
+        self._ready: defaultdict[Order[Any], list[Any]] = defaultdict(list)
         self._asked: Counter[Order[Any]] = Counter()
-        self._missed: list[Order[Any]] = []
+        self._taken: Counter[Order[Any]] = Counter()
 
     def take(self, order: Order[Result]) -> Result:
-        """The prepared object for `order`, which is removed here; or a new one."""
-        if order in self._ready:
-            made: Result = self._ready.pop(order)
+        """A prepared object for `order`, which is removed here; or a new one."""
+        self._taken[order] += 1
+        if self._ready[order]:
+            made: Result = self._ready[order].pop()
             return made
-        self._missed.append(order)
         return order.make()
 
-    def using(self, function: Callable[[], Result]) -> tuple[Result, list[Order[Any]]]:
-        """Call `function` so that `take` uses these templates.  Returns its result, and the orders that were missing.
+    def using(self, function: Callable[[], Result]) -> tuple[Result, Counter[Order[Any]]]:
+        """Call `function` so that `take` uses these templates.  Returns its result, and how often it took each order.
 
         Use it in a copy of the process, because objects that are taken are removed.
         """
         token = _TEMPLATES.set(self)
         try:
-            return function(), self._missed
+            return function(), self._taken
         finally:
             _TEMPLATES.reset(token)
 
-    def make_ready(self, missed: Iterable[Order[Any]]) -> None:
-        """Count the orders that were missing in a copy, and prepare those that were missing often enough."""
-        for order in missed:
+    def make_ready(self, taken: Counter[Order[Any]]) -> None:
+        """Prepare what a copy took, as many as it took, if it was taken in enough copies."""
+        for order, times in taken.items():
             self._asked[order] += 1
-            if self._asked[order] == (1 if order.common else _AGAIN):
+            if self._asked[order] >= (1 if order.common else _AGAIN):
                 with uncollected(), suppress(Exception):  # a later `take` of the order raises the error again
-                    self._ready[order] = order.make()
+                    while len(self._ready[order]) < times:
+                        self._ready[order].append(order.make())
 
 
 _TEMPLATES: ContextVar[Templates | None] = ContextVar("templates", default=None)
