@@ -46,6 +46,11 @@ bits and is right.
 
 The same happens to a number in a text: `long value = atoi(text)` reads 70000 as 4464, because `atoi` returns an `int`.
 
+Before the program runs, a value is enough that the source itself lets through: the test that refuses more than 3600
+seconds, before `rest_ms = seconds * 1000U`; a mask of 12 bits that 16 bits do not hold after `<< 12`. If the result is
+divided or compared, this is `unsigned-wrap`; if it is signed, `overflow`. Values behind a further test of them are not
+reported.
+
 So does a long pulse: `Uint16 width = fall - rise;` keeps 16 of 32 bits of the time between two captures of an eCAP. It
 is reported when such a width is used as a wider number for the third time.
 
@@ -57,6 +62,7 @@ cast, where it is scaled or becomes a float.
 **Fix:** cast one operand first: `(long) a * b`, `((int) adc - 2048) * 0.001`; `atol` for `atoi`.
 """,
         "ISO C 6.3.1.8 with the widths of CC table 6-1",
+        how="dynamic/static",
     ),
     _rule(
         "remainder-lost",

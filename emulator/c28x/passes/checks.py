@@ -44,6 +44,7 @@ from emulator.c28x.passes.sent_buffers import check_sent_buffers
 from emulator.c28x.passes.spans import check_spans
 from emulator.c28x.passes.stamps import Stamps
 from emulator.c28x.passes.state_tables import check_state_tables
+from emulator.c28x.passes.stated import check_stated
 from emulator.c28x.passes.states import States
 from emulator.c28x.passes.stores import check_stores
 from emulator.c28x.passes.tables import check_tables
@@ -129,6 +130,7 @@ def check(
     check_likes(modules, reports)
     check_messages(modules, reports)
     check_quotients(reports, given)
+    check_stated(reports, given)
     check_spans(modules, reports)
     check_drained(whole, of_whole)
     check_unlimited_lines(whole, of_whole)

@@ -49,8 +49,8 @@ STATIC = (
             "admitted", "anew", "begun_again", "blocks", "checks", "cleared", "copies", "decided", "drained", "dropped",
             "entrances", "flow", "formats", "likes", "lost_writes", "messages", "names", "never_back",
             "null_tests", "off_by_one", "one_sided", "published", "quotients", "released", "ring_back", "search_end",
-            "spans", "state_tables", "states", "stores", "tables", "undone", "unlimited_lines", "unread_inputs",
-            "values", "waiting",
+            "spans", "state_tables", "stated", "states", "stores", "tables", "undone", "unlimited_lines",
+            "unread_inputs", "values", "waiting",
         )
     ),
     "emulator/c28x/build/", "emulator/c28x/readers/",

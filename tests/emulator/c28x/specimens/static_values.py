@@ -654,6 +654,27 @@ def Set(number: int32) -> uint16:
         ("Set", (500,)),
     ),
     static_pair(
+        "widened-late",
+        "a limit times a factor, in 16 bits",
+        """
+Rest_ms: uint32 = 0
+def Start(seconds: uint16) -> uint32:
+    global Rest_ms
+    if seconds <= 3600:
+        Rest_ms = seconds * 1000  # <-
+    return Rest_ms
+""",
+        """
+Rest_ms: uint32 = 0
+def Start(seconds: uint16) -> uint32:
+    global Rest_ms
+    if seconds <= 65:
+        Rest_ms = seconds * 1000
+    return Rest_ms
+""",
+        ("Start", (60,)),
+    ),
+    static_pair(
         "octet",
         "bits of an object counted with eight",
         """

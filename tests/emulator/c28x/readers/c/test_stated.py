@@ -1,0 +1,123 @@
+"""Values that the source itself lets through and a result does not hold, and their right twins."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.emulator.c28x.readers.c.workshop import CWorkshop
+
+HEAD = """#include <stdlib.h>
+typedef unsigned int Uint16; typedef unsigned long Uint32; typedef long int32; typedef int int16;
+typedef struct { Uint16 rpm, s; } ORDER;
+static ORDER Order; static Uint32 Out; volatile Uint16 in; static int32 wide; extern Uint16 Word(void);
+static Uint16 Master = 10; static int16 small; static float Real;
+"""
+
+
+def told(body: str, other: str) -> set[str]:
+    """What is told of a function with this body, which comes after `other`."""
+    use = " Use(&Order);" if "Use(" in other else ""
+    start = f'void main(void) {{ f("1", Word(), Word());{use} }}'
+    text = f"{HEAD}{other}\nvoid f(const char *text, Uint16 n, Uint16 m)\n{{ {body} }}\n{start}\n"
+    found = CWorkshop(text, static=True, externs={"Word": lambda: 0}).findings
+    return {f.rule for f in found} & {"widened-late", "overflow", "unsigned-wrap"}
+
+
+@pytest.mark.parametrize(
+    ("body", "other"),
+    [
+        ("wide = (int32)((n & 0x0FFFU) << 12 | m >> 4);", ""),
+        ("Out = (n & 0x0FFFU) << 12 | m >> 4;", ""),
+        ("Uint16 high = n & 0x0FFF; Out = (Uint32)(high << 12) + (m >> 4);", ""),
+        ("Uint16 high = n; high &= 0x0FFF; high <<= 12; Out = (Uint32)high | m >> 4;", ""),
+        ("Uint16 high = (n & 0x3F) << 14; Out = ((Uint32)high << 1) | m;", ""),
+        ("wide = ((n & 0xFF) << 10) + m;", ""),
+        (
+            "long v = strtol(text, 0, 10); if (v > 0 && v <= 3600) Order.s = (Uint16)v;",
+            "void Use(const ORDER *o) { Out = o->s * 1000U; }",
+        ),
+        (
+            "long v = strtol(text, 0, 10); if (v > 0 && v <= 3600) Order.s = (Uint16)v;",
+            "void Use(const ORDER *o) { ORDER own = *o; Out = own.s * 1000U; }",
+        ),
+        ("int v = atoi(text); if (v < 0 || v > 3000) return; wide = v * 60;", ""),
+        ("int v = atoi(text); if (v < 0 || v > 3000) return; small = v * 60;", ""),
+        ("if (n > 1000) n = 1000; Out = n * 100U;", ""),
+        ("Uint16 x = n > 1000U ? 1000U : n; Out = x * 100U / 3;", ""),
+        ("if (n > 1000) n = 1000; in = n * n / 20;", ""),
+        ("if (n >= 1000) return; if (m >= 1000) return; Real = n * m;", ""),
+        ("if (n > 50000U || m > 50000U) return; Out = n + m;", ""),
+        ("Out = (n % 1000U) * 100U;", ""),
+        ("if (n > 1000) n = 1000; if (n * 100U > 50000U) in = 1;", ""),
+        ("if (n > 1000) n = 1000; Master = n;", "void Use(const ORDER *o) { Out = Master * 500U; }"),
+        ("if (n > 5000) return; h(n);", "static void h(Uint16 v) { Out = v * 200U; }"),
+        ("h(n);", "static void h(Uint16 v) { if (v > 5000) return; Out = v * 200U; }"),
+        ("if (n < 5 || n > 5000) { small++; return; } wide += n * 20U;", ""),
+        ("switch (n) { case 1: if (m <= 5000) { Out = m * 20U; } break; }", ""),
+    ],
+)
+def test_what_a_result_does_not_hold_is_told(body: str, other: str) -> None:
+    assert len(told(body, other)) == 1
+
+
+@pytest.mark.parametrize(
+    ("body", "other"),
+    [
+        ("wide = (int32)((Uint32)(n & 0x0FFFU) << 12 | m >> 4);", ""),
+        ("wide = (n & 0xFF) << 8 | (m & 0xFF);", ""),
+        ("Out = (n & 0x0F) << 12 | m;", ""),
+        ("in = (n & 0x0FFF) << 12 | m;", ""),
+        ("Out = (Uint16)((n & 0x0FFF) << 12) | m;", ""),
+        ("Out = n << 12 | m;", ""),
+        (
+            "long v = strtol(text, 0, 10); if (v > 0 && v <= 60) Order.s = (Uint16)v;",
+            "void Use(const ORDER *o) { Out = o->s * 1000U; }",
+        ),
+        (
+            "long v = strtol(text, 0, 10); if (v > 0 && v <= 3600) Order.s = (Uint16)v;",
+            "void Use(const ORDER *o) { if (o->s > 60) return; Out = o->s * 1000U; }",
+        ),
+        (
+            "long v = strtol(text, 0, 10); if (v > 0 && v <= 3600) Order.s = (Uint16)v;",
+            "void Use(const ORDER *o) { Out = o->s * 1000UL; }",
+        ),
+        (
+            "long v = strtol(text, 0, 10); if (v > 0 && v <= 3600) Order.s = (Uint16)v;",
+            "void Use(const ORDER *o) { Order.s /= 60; Out = o->s * 1000U; }",
+        ),
+        ("int v = atoi(text); if (v < 0 || v > 3000) return; if (v > 500) return; wide = v * 60;", ""),
+        ("int v = atoi(text); if (v < 0 || v > 3000 || v > small) return; wide = v * 60;", ""),
+        (
+            "int v = atoi(text); if (v > 3000) return; if (!Word2(v)) return; wide = v * 60;",
+            "static int Word2(int v) { return v < 100; }",
+        ),
+        ("if (n > 1000) n = 1000; in = n * 100U;", ""),
+        ("if (n > 600) n = 600; Out = n * 100U;", ""),
+        ("if (n > 1000) n = 1000; n /= 10; Out = n * 100U;", ""),
+        ("Uint16 v = in >> 4; if (v > 5000) return; Out = v * 16U;", ""),
+        ("Out = (n % 600U) * 100U;", ""),
+        ("Uint16 t; if (m) t = 1000; else t = 10; if (!m) Out = t * 1000U;", ""),
+        (
+            "if (n > 1000) n = 1000; Master = n;",
+            "void Use(const ORDER *o) { if (Master > 100) Master = 100; Out = Master * 500U; }",
+        ),
+        ("if (n > 1000) { n = 0; } Out = (Uint16)(n * 100U);", ""),
+        ("Out = ((n & 0xFFFF) << 4) & 0xFFF0;", ""),
+        ("in = ((n & 0x7FFF) << 5) ^ (n >> 2);", ""),
+        ("if (n > 5000) return; if (m == 1 && n > 5) return; if (m == 1) Out = n * 1000U;", ""),
+        ("if (n > 5000) return; if (m == 1) { if (n > 5) return; } if (m == 1) Out = n * 1000U;", ""),
+        ("if (n > 5000) return; if (m == 1) n = 5; Out = n * 12U;", ""),
+        (
+            "if (n > 5000) return; if (m == 1) Master = n; if (n > 50) return; Master = n;",
+            "void Use(const ORDER *o) { Out = Master * 1000U; }",
+        ),
+        ("h(n & 0xFF);", "static void h(Uint16 v) { if (v > 5000) return; Out = v * 200U; }"),
+        ("if (n > 50) return; h(n);", "static void h(Uint16 v) { if (v > 5000) return; Out = v * 200U; }"),
+        ("h(50); h(60);", "static void h(Uint16 v) { if (v > 5000) return; Out = v * 200U; }"),
+        ("Uint16 s = 0; while (n--) s = (s * 109 + 89) % 1000; Out = s;", ""),
+        ("int16 t = (int16)((n & 0x3FFF) << 2); wide = t / 4;", ""),
+        ("wide = ((n & 0x1FFF) << 4) >> 4;", ""),
+    ],
+)
+def test_what_it_holds_or_another_test_limits_is_silent(body: str, other: str) -> None:
+    assert told(body, other) == set()
