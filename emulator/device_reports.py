@@ -20,9 +20,10 @@ class Reports:
         self._findings = findings
 
     def __call__(
-        self, rule: str, message: str, /, *, object: str = "", value: Any = None, since: Mark | None = None
-    ) -> Finding:
-        """Record it at the statement that executes, or at the one that made both accesses."""
+        self, rule: str, message: str, /, *, object: str = "", value: Any = None, since: Mark | None = None,
+        cause: Any = None,
+    ) -> Finding:  # fmt: skip
+        """Record it at the statement that executes, at the one that made both accesses, or at its cause."""
         findings = self._findings
         if since:
             path = self._path_of_both(since)
@@ -35,7 +36,7 @@ class Reports:
                 return findings.report_at(
                     path[0], rule, message, object=object, value=value, how="dynamic", call_path=path
                 )
-        return findings.report(rule, message, object=object, value=value)
+        return findings.report(rule, message, object=object, value=value, cause=cause)
 
     def mark(self) -> Mark:
         """The calls of the firmware now."""

@@ -480,6 +480,7 @@ class SerialFrame:
     `start` and `end` are cycles of the start bit's edge and of the end of the stop bit; `bit_cycles` the
     length of a bit as sent, which a receiver compares with its own.  `parity` is None, "even" or "odd".
     `drift`: how many times longer its bits are than its sender's registers set them (an oscillator that runs away).
+    `rate_set_by`: the statement that set the rate of its sender, for reports; None: none did.
     """
 
     data: int
@@ -491,6 +492,7 @@ class SerialFrame:
     stop_bits: int = 1
     framing_error: bool = False
     drift: float = 1.0
+    rate_set_by: object = None
 
     def rates_differ(self, bit_cycles: float) -> str:
         """Both speeds in words, if a receiver of `bit_cycles` a bit cannot follow the sender; else empty.

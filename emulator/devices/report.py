@@ -38,9 +38,10 @@ class DeviceReport(Protocol):
     """The report function of a device.  Returns the finding, so that its numbers can grow; None if it is not kept."""
 
     def __call__(
-        self, rule: str, message: str, /, *, object: str = "", value: Any = None, since: Mark | None = None
-    ) -> ReportedFinding | None:
-        """`rule` was broken now; `since`: together with the access that was marked."""
+        self, rule: str, message: str, /, *, object: str = "", value: Any = None, since: Mark | None = None,
+        cause: Any = None,
+    ) -> ReportedFinding | None:  # fmt: skip
+        """`rule` was broken now; `since`: together with the access that was marked; `cause`: by an earlier statement."""
 
 
 def mark_of(report: DeviceReport) -> Callable[[], Mark]:
@@ -53,7 +54,8 @@ class DiscardedReports:
     """The report function of a device whose reports are not kept."""
 
     def __call__(
-        self, rule: str, message: str, /, *, object: str = "", value: Any = None, since: Mark | None = None
-    ) -> ReportedFinding | None:
+        self, rule: str, message: str, /, *, object: str = "", value: Any = None, since: Mark | None = None,
+        cause: Any = None,
+    ) -> ReportedFinding | None:  # fmt: skip
         """Do nothing."""
         return None

@@ -8,9 +8,8 @@ Sources: none needed beyond `serial_pacing`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from emulator.clock import SYSCLK_HZ, Clock
+from emulator.devices.report import DeviceReport
 from emulator.devices.serial_pacing import LinePacer, received
 from emulator.signal import Signal
 from emulator.signals import SerialFrame, SerialLine
@@ -30,7 +29,7 @@ class WireLink:
         uart_out: SerialLine,
         *,
         baud: int = 9600,
-        report: Callable[[str, str], object] | None = None,
+        report: DeviceReport | None = None,
     ) -> None:
         #: (data, cycles): the PC has received bytes from the robot.
         self.received: Signal[bytes, int] = Signal()
@@ -53,7 +52,7 @@ class WireLink:
 
     def _from_robot(self, frame: SerialFrame) -> None:
         if self._report is not None and (rates := frame.rates_differ(self._bit_cycles)):
-            self._report("serial-rate", f"the PC: {rates}")
+            self._report("serial-rate", f"the PC: {rates}", cause=frame.rate_set_by)
         byte, stop = received(frame, self._bit_cycles)
         if stop:
             self.received.emit(bytes((byte,)), frame.end)

@@ -11,10 +11,10 @@ Sources: XB sections on serial data, transparent operation, flow control.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
 from typing import Final
 
 from emulator.clock import SYSCLK_HZ, Clock, ClockEvent
+from emulator.devices.report import DeviceReport
 from emulator.devices.serial_pacing import FRAME_BITS, LinePacer, received
 from emulator.devices.xbee_command import CommandMode
 from emulator.devices.xbee_parameters import BAUDS, NOMINAL_BAUDS, XBeeSettings
@@ -48,7 +48,7 @@ class XBeeModule:
         baud: int = 9600,
         serial_low: int = 0x40000001,
         cts: Wire | None = None,
-        report: Callable[[str, str], object] | None = None,
+        report: DeviceReport | None = None,
     ) -> None:
         if baud not in NOMINAL_BAUDS:
             raise ValueError(f"XBee {name}: {baud} baud; expected one of {', '.join(map(str, NOMINAL_BAUDS))}")
@@ -102,7 +102,7 @@ class XBeeModule:
 
     def _from_host(self, frame: SerialFrame) -> None:
         if self._report is not None and (rates := frame.rates_differ(self._bit_cycles)):
-            self._report("serial-rate", f"XBee {self.name}: {rates}")
+            self._report("serial-rate", f"XBee {self.name}: {rates}", cause=frame.rate_set_by)
         byte, stop = received(frame, self._bit_cycles)
         if not stop:
             # CHOICE: a character without a stop bit is dropped.
@@ -250,7 +250,7 @@ class XBeeLink:
         baud: int = 9600,
         cts: Wire | None = None,
         air: RadioChannel | None = None,
-        report: Callable[[str, str], object] | None = None,
+        report: DeviceReport | None = None,
     ) -> None:
         #: (data, cycles): the PC has received bytes from the robot.
         self.received: Signal[bytes, int] = Signal()

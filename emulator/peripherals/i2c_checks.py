@@ -76,7 +76,7 @@ class I2cChecks:
                 "i2c-clock",
                 f"{self._bus.name} runs at {bus_hz / 1e3:.0f} kHz, with {self._clkl.path} = {self._clkl.value} and "
                 f"{self._clkh.path} = {self._clkh.value}: the module and the bus have 400 kHz at most",
-                object=self._clkl.path, value=self._clkl.value,
+                object=self._clkl.path, value=self._clkl.value, cause=self._divided,
             )  # fmt: skip
         mode, target = self._mdr.value, self._sar.value
         if not mode & _XA and target & ~ADDRESS:

@@ -234,7 +234,8 @@ class Sci:
         self._shift = None
         own = self._sent_format
         frame = SerialFrame(
-            self._data, self._start, self._clock.now, own.bit_cycles, own.data_bits, own.parity, own.stop_bits
+            self._data, self._start, self._clock.now, own.bit_cycles, own.data_bits, own.parity, own.stop_bits,
+            rate_set_by=self.receiver.rate_set_by,
         )
         if self._ccr.value & LOOPBKENA:
             # CHOICE: in loopback the TX pin stays idle.

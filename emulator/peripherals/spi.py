@@ -105,6 +105,9 @@ class Spi:
         #: the first word that sent nothing of what it holds, with its statement.
         self._sent, self._first, self._differ = 0, -1, False
         self._unsent: tuple[int, Cause | None] | None = None
+        #: The statements that set SPIBRR, and the clock's polarity or phase.
+        self._rate_by: Cause | None = None
+        self._mode_by: Cause | None = None
         bus.deselected.connect(self._deselected)
         self._configure()
 
@@ -184,6 +187,8 @@ class Spi:
     def _write_SPICCR(self, word: int, lanes: int) -> None:
         self._ccr.store(word, lanes)
         self._configure()
+        if lanes & CLKPOLARITY:
+            self._mode_by = self._cpu.findings.mark()
         if not self._ccr.value & SPISWRESET:
             # The FIFOs keep their words: start-up code sets the FIFOs up before it pulses this bit.
             self._stop()
@@ -196,10 +201,13 @@ class Spi:
     def _write_SPIBRR(self, word: int, lanes: int) -> None:
         self._brr.store(word, lanes)
         self._configure()
+        self._rate_by = self._cpu.findings.mark()
 
     def _write_SPICTL(self, word: int, lanes: int) -> None:
         self._ctl.store(word, lanes)
         self._configure()
+        if lanes & CLK_PHASE:
+            self._mode_by = self._cpu.findings.mark()
         if self._tx_fifo.words:
             self._load_from_fifo()
 
@@ -456,7 +464,7 @@ class Spi:
                 "device-clock",
                 f"{name} is clocked with {self._clock_hz / 1e6:.3g} MHz on {self._bus.name}: it takes {most / 1e6:.3g} "
                 f"MHz at most (LSPCLK {SYSCLK_HZ / self._lspclk_divider() / 1e6:.4g} MHz, SPIBRR {self._brr.value})",
-                object=name,
+                object=name, cause=self._rate_by,
             )  # fmt: skip
 
     def _check_mode(self) -> None:
@@ -467,7 +475,7 @@ class Spi:
                 "spi-mode",
                 f"{name} takes mode {modes}, and {self._bus.name} has mode {self._mode}: CLKPOLARITY = {self._cpol}, "
                 f"CLK_PHASE = {phase}",
-                object=name,
+                object=name, cause=self._mode_by,
             )  # fmt: skip
 
     def _overrun(self, status: int) -> None:

@@ -64,7 +64,7 @@ def test_the_other_end_of_a_line_hears_its_own_rate(tmp_path: Path, baud: int, t
     findings = found(tmp_path, serial(baud), "serial-rate", named=True)
     assert [(f.place.function, f.how) for f in findings if f.place] == [("main", "dynamic")] * told
     lines = serial(baud).splitlines()
-    assert all("SCITXBUF" in lines[finding.place.line - 1] for finding in findings if finding.place)
+    assert all("SCILBAUD" in lines[finding.place.line - 1] for finding in findings if finding.place)
 
 
 def test_a_program_without_a_board_of_its_own_may_have_another_peer(tmp_path: Path) -> None:
