@@ -17,11 +17,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
+from operator import eq
 from typing import Final
 
 from emulator.c28x.link import Linked
 from emulator.c28x.sites import Place
+from emulator.c28x.symbols import Module
 from emulator.can_bus import TOLERANCE, CanPart
 from emulator.chip import (
     ADC_PIE,
@@ -41,6 +44,7 @@ from emulator.chip import (
     Chip,
 )
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ
+from emulator.latched_flags import CLEARED, LASTING, latched_flags
 from emulator.peripherals.can import REQUEST, WRITE
 from emulator.peripherals.can_objects import DIR, EOB, ID, MSGLST, MSGVAL, OBJECTS, RXIE, STANDARD_ID, UMASK
 from emulator.peripherals.dma import CHANNELS as DMA_CHANNELS
@@ -146,6 +150,7 @@ class Connections:
         self._chip.pie.finish()
         self._i2c()
         self._serial()
+        self._flags_kept(modules)
         self._can()
         self._dacs()
         self._loads()
@@ -1373,6 +1378,21 @@ class Connections:
                 why = f"a break at {at} has stopped the receiver, and no statement clears {register}.SWRESET again"
                 message = f"{block} receives nothing any more: {receiver.unheard} characters have come since"
                 self._report(reads[-1], message, MissingLink(why, register, "SWRESET"), f"{block}.SCIRXST")
+
+    def _flags_kept(self, modules: list[Module]) -> None:
+        """Flags that a test takes for new each time, and that no statement clears behind the start-up."""
+        for block, name, field, place in latched_flags(modules):
+            clears = [(f"{block}.{register}", bit or field, value) for register, bit, value in CLEARED[name][1]]
+            if not any(
+                (self._could if bit == LASTING else self._writes_again)(register, partial(eq, value), bit)
+                for register, bit, value in clears
+            ):  # fmt: skip
+                register, bit, value = clears[0]
+                self._chip.findings.report_at(
+                    place, "flag-not-cleared",
+                    f"{block}.{name}.{field} stays set after the first time: no statement gives {register}.{bit} the "
+                    f"value {value} again", object=f"{block}.{name}.{field}", how="dynamic",
+                )  # fmt: skip
 
     def _epwms(self) -> Iterator[tuple[int, str, str, Block]]:
         """Each compare register that the program writes, of ePWMs that can count: number, name, compare, registers."""

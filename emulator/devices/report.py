@@ -41,7 +41,7 @@ class DeviceReport(Protocol):
         self, rule: str, message: str, /, *, object: str = "", value: Any = None, since: Mark | None = None,
         cause: Any = None,
     ) -> ReportedFinding | None:  # fmt: skip
-        """`rule` was broken now; `since`: together with the access that was marked; `cause`: by an earlier statement."""
+        """`rule` was broken now; `since`: together with the marked access; `cause`: by an earlier statement."""
 
 
 def mark_of(report: DeviceReport) -> Callable[[], Mark]:

@@ -320,7 +320,10 @@ The finding is made where the program believes the old flag, or where an interru
 * SCI: the program empties the FIFO a second time for one overflow (`RXFFOVF`);
 * ePWM: the one-shot latch (`TZFLG.OST`) stays set while the program clears `TZFLG.INT` again and again;
 * CAN: `NewDat` stays set, and the program takes the same message again and again;
-* PIE: a routine leaves its flag or `PIEACK` set.
+* PIE: a routine leaves its flag or `PIEACK` set;
+* a test of an error that stays (`RXERROR`, `RXFFOVF`, `OVERRUN_FLAG`, `COEF`, `PHE`, `OST`, `NACK`, `BOff` and others)
+  leads to a count, or away from the received character, and no statement clears the error after the start-up. A SCI
+  keeps its errors until `SWRESET`.
 
 **Fix:** clear the flag *before* the action that will set it again. ADC: `ADCINTFLGCLR`. SPI: read `SPIRXBUF` after
 each word, also after a word that was only sent. eQEP: `QCLR`. I2C: `NACK`. SCI: `RXFFOVF`. Write `PIEACK` in every

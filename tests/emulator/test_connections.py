@@ -1362,6 +1362,33 @@ def test_a_receiver_that_a_break_has_stopped_hears_again_only_after_a_reset(
     assert ["a break at" in f.message for f in checked.findings if f.rule == "not-connected"] == [True] * found
 
 
+SKIPS = """        if (SciaRegs.SCIRXST.bit.RXERROR == 1) { Start_Again } else if (SciaRegs.SCIRXST.bit.RXRDY)
+            Heard = SciaRegs.SCIRXBUF.all;
+"""
+HOLDS = "        if (EPwm1Regs.TZFLG.bit.OST) { Clears Heard++; State }\n"
+
+
+@pytest.mark.parametrize(("text", "at"), [
+    (SKIPS.replace("Start_Again", "Heard = 0;"), "RXERROR"),
+    (SKIPS.replace("Start_Again", "Start();"), ""),
+    (SKIPS.replace("Start_Again", "for (;;) ;"), ""),
+    (HOLDS.replace("Clears", "").replace("State", ""), "OST"),
+    (HOLDS.replace("Clears", "EALLOW; EPwm1Regs.TZCLR.bit.OST = 1; EDIS;").replace("State", ""), ""),
+    (HOLDS.replace("Clears", "").replace("State", "Enter(3);"), ""),  # for good
+    (HOLDS.replace("EPwm1Regs.TZFLG.bit.OST", "EQep1Regs.QEPSTS.bit.COEF && !Mode").replace("Clears", "Mode = Heard;")
+     .replace("State", ""), ""),  # the first one only
+    (HOLDS.replace("EPwm1Regs.TZFLG.bit.OST", "SciaRegs.SCIFFRX.bit.RXFFOVF").replace("Clears", "").replace(
+        "State", "SciaRegs.SCIFFRX.bit.RXFIFORESET = 0; SciaRegs.SCIFFRX.bit.RXFIFORESET = 1;"), "RXFFOVF"),
+    (HOLDS.replace("EPwm1Regs.TZFLG.bit.OST", "CanaRegs.CAN_ES.bit.BOff").replace("Clears", "").replace("State", ""),
+     "BOff"),
+])  # fmt: skip
+def test_a_flag_that_stays_set_is_cleared_by_a_statement(tmp_path: Path, text: str, at: str) -> None:
+    more = "Heard, Mode;\nvoid Enter(Uint16 mode) { Mode = mode; }"
+    program = HEARS_A_PC.replace(LOOP, LOOP + text).replace("Heard;", more, 1)
+    findings = told(tmp_path, program, "flag-not-cleared")
+    assert [at in program.splitlines()[f.place.line - 1] for f in findings if f.place] == [True] * bool(at)
+
+
 #: The DMA takes a result at each tick of timer 0; behind a buffer its interrupt names the other one.
 BUFFERS = """#include "F28x_Project.h"
 #pragma DATA_SECTION(Buffers, "ramgs0");

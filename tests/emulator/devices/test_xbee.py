@@ -36,7 +36,9 @@ class Bench:
         self.at_robot: list[SerialFrame] = []
         self.robot_rx.sent.connect(self.at_robot.append)
         self.uart = LinePacer(self.clock, self.robot_tx, 9600)
-        arguments: dict[str, object] = {"rng": random.Random(1), "report": lambda *a, **_: self.reports.append(a)} | kwargs
+        arguments: dict[str, object] = {
+            "rng": random.Random(1), "report": lambda *a, **_: self.reports.append(a)
+        } | kwargs  # fmt: skip
         self.link = XBeeLink(
             self.clock,
             self.robot_tx,
