@@ -626,6 +626,22 @@ for a percent sign.
         how="dynamic/static",
     ),
     _rule(
+        "fraction-text", Severity.WARNING, "A number is printed with a wrong fraction, or without its sign.", """
+1.005 is shown as 1.5, or -0.5 as 0.5.
+
+A number that counts hundredths or thousandths is printed in two parts, `x / 1000` and `x % 1000`. The part behind the
+point needs its zeros: `%03ld` for three digits. The part before the point is 0 for numbers between -1 and 0, and 0 has
+no sign.
+
+The check compares the format with the divisor. A version (`v%d.%d`) or a date has no zeros, so the number must be
+computed, have a unit behind it, or have a sign. A number that goes in steps of which each has all digits
+(`counts * 25`) is not reported.
+
+**Fix:** `%d.%02d`; the sign as a part of its own: `%s%d.%02d` with `x < 0 ? "-" : ""` and the magnitude of `x`.
+""", "ISO C 7.19.6.1, 6.5.5 p6",
+        how="static",
+    ),
+    _rule(
         "printf-outbuf", Severity.ERROR, "A conversion is wider than the buffer of System_printf.", """
 The call overwrites its own stack frame.
 

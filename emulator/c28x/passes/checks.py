@@ -19,6 +19,7 @@ from emulator.c28x.passes.drained import check_drained
 from emulator.c28x.passes.dropped import check_dropped
 from emulator.c28x.passes.entrances import check_entrances
 from emulator.c28x.passes.flow import FlowReport
+from emulator.c28x.passes.fraction_texts import check_fraction_texts
 from emulator.c28x.passes.future_stamps import unreachable_exits
 from emulator.c28x.passes.given import GivenValues
 from emulator.c28x.passes.interrupted import sides_of
@@ -131,6 +132,7 @@ def check(
     check_messages(modules, reports)
     check_quotients(reports, given)
     check_stated(reports, given)
+    check_fraction_texts(reports, given)
     check_spans(modules, reports)
     check_drained(whole, of_whole)
     check_unlimited_lines(whole, of_whole)

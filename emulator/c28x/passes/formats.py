@@ -19,7 +19,8 @@ from emulator.c28x.tree_queries import bare, source_text
 _FORMATS: Final = {
     "printf": 0, "sprintf": 1, "snprintf": 2, "System_printf": 0, "System_sprintf": 1, "System_snprintf": 2,
 }  # fmt: skip
-_SPECIFICATION: Final = re.compile(
+#: A conversion of a format.
+SPECIFICATION: Final = re.compile(
     r"%[-+ #0]*(?P<width>\*|\d*)(?:\.(?P<precision>\*|\d*))?(?P<length>hh?|ll?|L|)(?P<kind>.)", re.DOTALL | re.ASCII
 )
 
@@ -66,7 +67,7 @@ def printed(e: Call) -> Iterator[tuple[Expr, str, str]]:
     """The arguments that the format of a call prints, each with the texts before and behind its conversion."""
     text = format_of(e) or ""
     given = iter(e.extra)
-    for one in _SPECIFICATION.finditer(text):
+    for one in SPECIFICATION.finditer(text):
         if one["kind"] == "%":
             continue
         taken = [next(given, None) for _ in range(1 + [one["width"], one["precision"]].count("*"))]
@@ -76,7 +77,7 @@ def printed(e: Call) -> Iterator[tuple[Expr, str, str]]:
 
 def shortest(text: str) -> int:
     """The characters that a format prints at least, without the NUL."""
-    return len(_SPECIFICATION.sub("", text)) + sum(_least(one) for one in _SPECIFICATION.finditer(text))
+    return len(SPECIFICATION.sub("", text)) + sum(_least(one) for one in SPECIFICATION.finditer(text))
 
 
 def _least(one: re.Match[str]) -> int:
@@ -90,10 +91,10 @@ def _least(one: re.Match[str]) -> int:
 
 def _unknown(text: str) -> str | None:
     """A conversion of a format that no C has: its kind is not a letter; None: there is none."""
-    for one in _SPECIFICATION.finditer(text):
+    for one in SPECIFICATION.finditer(text):
         if one["kind"] != "%" and not one["kind"].isalpha():
             return one[0]
-    return "%" if _SPECIFICATION.sub("", text).endswith("%") else None
+    return "%" if SPECIFICATION.sub("", text).endswith("%") else None
 
 
 def _int(ctype: CType) -> bool:
@@ -123,7 +124,7 @@ def _pointer(ctype: CType) -> bool:
 def _conversions(text: str, double: FloatType) -> list[tuple[str, str, Callable[[CType], bool]]] | None:
     """(text, what it reads, test of a type) of each conversion; None if one is not known."""
     found: list[tuple[str, str, Callable[[CType], bool]]] = []
-    for one in _SPECIFICATION.finditer(text):
+    for one in SPECIFICATION.finditer(text):
         written, kind, length = one[0], one["kind"], one["length"]
         if kind == "%":
             continue
