@@ -207,10 +207,15 @@ Speeds and integrals are wrong by a power of ten: the program computes with a pe
 The name of a constant (a macro, a `const` object or a member of one) says that it is a period or a rate (`CONTROL_S`,
 `LOOP_MS`, `SAMPLE_HZ`, `pi.dt_s`), and each run of an
 interrupt routine multiplies with it or divides by it. In the run, the routine's period is a power of ten longer or
-shorter. Somebody has changed the timer and not the constant, or the other way round. The same is told of a count that
-each run of a routine adds to, and that is a time by its name (`tickMs++`, `Time_us += 100`).
+shorter. Somebody has changed the timer and not the constant, or the other way round.
 
-It is reported for routines that run steadily, for statements that every run executes (a control in each tenth run has
+The same is told of an object that counts time in the unit of its name by a constant (`tickMs++`, `motor.still_ms += 1`,
+`left_ms--`), wherever that stands, and on which condition: the run shows how long it lasts from step to step. If the
+steps come regularly, and the count is wrong by a factor of 1.8 or more, it is in another unit. Not meant is what gets
+other values than 0 too, what goes to a register or a function (a delay, a pulse width), and a step that is
+the length of something else (`given_ms += STROKE_MS`).
+
+A constant is reported for routines that run steadily, for statements that every run executes (a control in each tenth run has
 another period), and for functions that nothing else calls. Times that are no period by their name (`_TAU_`, `_FILTER_`,
 `_DELAY_`, `_TIMEOUT_`) are not meant.
 

@@ -1,8 +1,8 @@
 """Compares what names say about a routine's period with the period that a run shows.
 
 `CONTROL_S 0.01` says that a control runs each 10 ms.  Where an interrupt routine always divides by it, or multiplies
-with it, the routine has to run so often.  `tickMs++` says that a routine runs each millisecond.  A difference by a
-power of ten is told: the timer or the name changed, and the other one did not.
+with it, the routine has to run so often.  A difference by a power of ten is told: the timer or the name changed, and
+the other one did not.
 
 A constant that is handed to a function from which alone the function computes the period of a CPU timer
 (`startTimer(1, SAMPLE_HZ)`) says how often that timer underflows.  A slower timer is told: a program can divide a
@@ -12,13 +12,11 @@ faster one.
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterable, Iterator
 from math import isclose, log10
 from typing import Final
 
 from emulator.c28x.declarations import lines_with_comments
-from emulator.c28x.passes.begun_again import is_number, step_of
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
@@ -44,8 +42,6 @@ from emulator.c28x.tree import (
 from emulator.c28x.tree_queries import assigned, bare, parts, roots, statements, variables
 from emulator.clock import SYSCLK_HZ
 from hil.board import Board
-from hil.drivers.stated_units import comment_beside, stated
-from hil.drivers.unit_names import PhysicalUnit
 from hil.drivers.units import UnitMismatch
 
 #: A period is known after so many intervals, none of which differs from their mean by more than this part of it.
@@ -54,7 +50,7 @@ _STEADY: Final = 0.5
 #: A power of ten is exact up to this: dividers round.
 _EXACT: Final = 0.02
 #: The words of a name one of which says whose period it is, its last ones with the unit in seconds (Hz: 0).
-_WHOSE: Final = frozenset({
+PERIOD_WORDS: Final = frozenset({
     "CONTROL", "CONTROLLER", "CTRL", "LOOP", "SAMPLE", "SAMPLING", "TICK", "DT", "TS", "ISR", "PID",
     "ABTAST", "ABTASTUNG", "REGEL", "REGELUNG", "REGLER", "TAKT", "MUESTREO", "MUESTRA", "LAZO",
 })  # fmt: skip
@@ -95,8 +91,6 @@ def wrong_periods(modules: Iterable[Module], periods: dict[str, float]) -> Itera
     """The uses of constants that are named after a period, in routines that run with another one."""
     functions = [function for module in modules for function in module.functions]
     by_path = {function.path: function for function in functions}
-    steps = (s for function in functions for s in statements(function.body))
-    counted = Counter(v for s in steps if (v := assigned(s)) is not None and step_of(s, v) is not None)
     for routine in functions:
         if routine.name not in periods or sum(f.name == routine.name for f in functions) > 1:
             continue
@@ -106,9 +100,6 @@ def wrong_periods(modules: Iterable[Module], periods: dict[str, float]) -> Itera
         for function, s in _always(routine, by_path, set()):
             if function.path not in elsewhere:
                 yield from _told(function, s, routine, periods[routine.name])
-                time = _counts_time(s)
-                if time is not None and counted[time[0]] == 1:
-                    yield from _told_of_count(function, s, *time, routine, periods[routine.name])
 
 
 def wrong_timers(modules: Iterable[Module], board: Board) -> Iterator[UnitMismatch]:
@@ -190,34 +181,6 @@ def _given_by(f: Function, values: list[Expr]) -> set[Variable]:
     return given if len(given) == 1 and not any(v in given for v, _ in stores) else set()
 
 
-def _counts_time(s: Stmt) -> tuple[Variable, PhysicalUnit, float] | None:
-    """An object that a statement counts up and whose name states a unit of time, with that unit, and by how many."""
-    variable = assigned(s)
-    step = step_of(s, variable) if variable is not None else None
-    if variable is None or not step or step < 0 or variable.kind != "global" or not is_number(variable):
-        return None
-    declaration = variable.declaration
-    if re.search(r"\d", declaration.name):
-        return None  # `ticks10ms` counts ticks of 10 ms
-    said = comment_beside(Where(declaration.file, declaration.line), declaration.name)
-    found = stated(declaration.name, said)
-    if found is None or found.unit.quantity != "time" or found.by != "name":
-        return None
-    return variable, found.unit, float(step)
-
-
-def _told_of_count(
-    function: Function, s: Stmt, counter: Variable, unit: PhysicalUnit, step: float, routine: Function, period: float
-) -> Iterator[UnitMismatch]:  # fmt: skip
-    """Report a count of time that does not go with the time."""
-    ratio = step * unit.scale / period
-    power = round(log10(ratio))
-    if power and isclose(ratio, 10.0**power, rel_tol=_EXACT):
-        name = counter.declaration.name
-        message = f"{name} counts {unit.name} by its name, and {routine.name} adds {step:g} every {period:.4g} s"
-        yield UnitMismatch(_place(function, s), message, name, "period-by-name")
-
-
 def _place(function: Function, s: Stmt) -> Place:
     return Place(function.where.file, s.where.line, function.name, function.c_file, s.where.column)
 
@@ -250,7 +213,7 @@ def _stated(e: Expr) -> tuple[str, float]:
     """The name of a constant, and the period in seconds that it states; 0: none."""
     name, value = _named(e)
     words = name.upper().split("_")
-    if words[-1] not in _UNITS or not _WHOSE.intersection(words) or _OTHERS.intersection(words) or value <= 0:
+    if words[-1] not in _UNITS or not PERIOD_WORDS.intersection(words) or _OTHERS.intersection(words) or value <= 0:
         return "", 0.0
     size = _UNITS[words[-1]]
     return name, value * size if size else 1 / (value * (1e3 if words[-1] == "KHZ" else 1.0))

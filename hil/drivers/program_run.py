@@ -28,6 +28,7 @@ from hil.drivers.sources import ArrivalWatch
 from hil.drivers.stale import AgeWatch, watched
 from hil.drivers.stated_rates import wrong_rates
 from hil.drivers.thrown_away import thrown_away
+from hil.drivers.time_counts import TimeCounts
 from hil.drivers.units import misread_counts
 from hil.drivers.used_sources import buses, cut_off, receives_characters, silent_sources
 from hil.drivers.waiting import (
@@ -205,7 +206,7 @@ def _run(
         image.board.clock.after(round(parts_s * SYSCLK_HZ), lambda: cut_off(image.board))
     arrivals = ArrivalWatch(image.board) if roles.main is not None and parts_s is None else None
     routines = RoutinePeriods(image.board)
-    scales = FaceScales(image, build, for_s)
+    scales, times = FaceScales(image, build, for_s), TimeCounts(image, build)
     budget = TimeBudget(RUN)
     stop: BaseException | None = None
     stood = EndPosition()
@@ -241,7 +242,7 @@ def _run(
             image.board.watchdog.report_hung_main(hung.time_cycles - image.linked.runtime.poll_limit, hung.place)
     known = len(image.board.sysctrl.sysclk_shares) == 1
     told = (
-        *(wrong_periods(build.modules, routines.periods()) if known else ()), *scales.wrong(),
+        *((*wrong_periods(build.modules, routines.periods()), *times.wrong()) if known else ()), *scales.wrong(),
         *(misread_counts(build.modules, image.board.kernel.clocks.tick_period_us, image.board) if known else ()),
         *wrong_rates(build.modules, image.board), *wrong_timers(build.modules, image.board),
         *swallowed_pulses(build.modules, image.board),

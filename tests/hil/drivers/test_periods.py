@@ -149,7 +149,9 @@ def test_another_time_or_another_rhythm_is_silent(tmp_path: Path, given: dict[st
 
 @pytest.mark.parametrize(("count", "declared"), [
     ("tickMs++;", "volatile Uint32 tickMs = 0;"), ("Time_us += 10;", "volatile Uint32 Time_us = 0;"),
-    ("ms = ms + 1;", "volatile Uint16 ms = 0; // since the start"),
+    ("ms = ms + 1;", "volatile Uint16 ms = 0; // since the start"), ("waitMs--;", "volatile Uint32 waitMs = 60000;"),
+    ("if (Runs % 40 < 9) still.for_ms++; else still.for_ms = 0;", "struct { Uint16 n, for_ms; } still = { 0, 0 };"),
+    ("if (Runs & 1) ms += TICK_MS;", "#define TICK_MS 1\nvolatile Uint16 ms = 0;"),  # 0.2 ms: no power of ten
 ])  # fmt: skip
 def test_a_count_of_time_that_does_not_go_with_the_time_is_told(tmp_path: Path, count: str, declared: str) -> None:
     assert told(tmp_path, define=f"COUNT\n{declared}", use="", call=count) == [count]
@@ -162,7 +164,9 @@ def test_a_count_of_time_that_does_not_go_with_the_time_is_told(tmp_path: Path, 
     ("ticks100us++;", "volatile Uint32 ticks100us = 0;"), ("ticks++;", "volatile Uint32 ticks = 0;"),
     ("if (Runs % 10 == 0) tickMs++;", "volatile Uint32 tickMs = 0;"),
     ("tickMs++; if (Slow) tickMs += 2;", "volatile Uint32 tickMs = 0;"),
-    ("waitMs--;", "volatile Uint32 waitMs = 60000;"),
+    ("if (waitMs) waitMs--; else waitMs = 9; Slow = waitMs < 5;", "volatile Uint32 waitMs = 9;"),  # a setting
+    ("slow_us += 10; EPwm1Regs.CMPA.bit.CMPA = slow_us * 50;", "volatile Uint16 slow_us = 0;"),
+    ("given_ms += STROKE_MS; if (given_ms > 500) given_ms = 0;", "#define STROKE_MS 20\nvolatile Uint16 given_ms = 0;"),
 ])  # fmt: skip
 def test_a_count_that_goes_with_the_time_or_counts_other_things_is_silent(
     tmp_path: Path, count: str, declared: str
