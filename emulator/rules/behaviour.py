@@ -215,9 +215,9 @@ steps come regularly, and the count is wrong by a factor of 1.8 or more, it is i
 other values than 0 too, what goes to a register or a function (a delay, a pulse width), and a step that is
 the length of something else (`given_ms += STROKE_MS`).
 
-A constant is reported for routines that run steadily, for statements that every run executes (a control in each tenth run has
-another period), and for functions that nothing else calls. Times that are no period by their name (`_TAU_`, `_FILTER_`,
-`_DELAY_`, `_TIMEOUT_`) are not meant.
+A constant is reported for routines that run steadily, for statements that every run executes (a control in each tenth
+run has another period), and for functions that nothing else calls. Times that are no period by their name (`_TAU_`,
+`_FILTER_`, `_DELAY_`, `_TIMEOUT_`) are not meant.
 
 A constant that is handed to a function, which computes the period of a CPU timer from it and from nothing else that
 changes (`startTimer(1, SAMPLE_HZ)`), is told where it is handed on if that timer is slower than it says, by any factor:

@@ -150,7 +150,7 @@ def test_another_time_or_another_rhythm_is_silent(tmp_path: Path, given: dict[st
 @pytest.mark.parametrize(("count", "declared"), [
     ("tickMs++;", "volatile Uint32 tickMs = 0;"), ("Time_us += 10;", "volatile Uint32 Time_us = 0;"),
     ("ms = ms + 1;", "volatile Uint16 ms = 0; // since the start"), ("waitMs--;", "volatile Uint32 waitMs = 60000;"),
-    ("if (Runs % 40 < 9) still.for_ms++; else still.for_ms = 0;", "struct { Uint16 n, for_ms; } still = { 0, 0 };"),
+    ("if (Runs % 12 < 9) still.for_ms++; else still.for_ms = 0;", "struct { Uint16 n, for_ms; } still = { 0, 0 };"),
     ("if (Runs & 1) ms += TICK_MS;", "#define TICK_MS 1\nvolatile Uint16 ms = 0;"),  # 0.2 ms: no power of ten
 ])  # fmt: skip
 def test_a_count_of_time_that_does_not_go_with_the_time_is_told(tmp_path: Path, count: str, declared: str) -> None:
