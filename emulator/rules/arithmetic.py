@@ -150,9 +150,11 @@ variables, members and functions. It reports a comparison that goes wrong becaus
 two stamps. A comparison by order is right if its branch takes the difference:
 `if (now < last) d = 65536 - last + now;`.
 
-In two cases the source is enough. If a 16-bit counter is compared by order with a stamp and a number
+In three cases the source is enough. If a 16-bit counter is compared by order with a stamp and a number
 (`now < last + 20`), the sum wraps before the counter does. If no statement ever sets the stamp of a difference of 16
-bits, that is the time since the start: a time-out is over for ever, but for a moment in each round.
+bits, that is the time since the start: a time-out is over for ever, but for a moment in each round. If a program reads
+the clock and then, without a mask, a stamp that an interrupt routine sets (`now = Millis; ... now - Heard_ms > LIMIT`),
+the stamp can be later: the age is -1, which is greater than any limit. Read the stamp first, or mask both.
 
 **Fix:** compare differences: `(unsigned int) (now - last) >= INTERVAL`, or `(int) (now - end) >= 0` for a time that is
 at most half of the range ahead.

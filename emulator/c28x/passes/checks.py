@@ -56,6 +56,7 @@ from emulator.c28x.passes.unlimited_lines import check_unlimited_lines
 from emulator.c28x.passes.unread_inputs import check_unread_inputs
 from emulator.c28x.passes.values import ValueChecks, file_scope, flag_words, macro_masks, results_of
 from emulator.c28x.passes.waiting import WriterAnalysis, check_waiting
+from emulator.c28x.passes.young_stamps import check_young_stamps
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Function, Variable
@@ -153,6 +154,7 @@ def check(
         text = source_text(compare)
         message = f"{text}: the end of the time wraps before the counter does, and the comparison is wrong then"
         owners[function].report(function, s.where, "stamp-compare", message, object=text)
+    check_young_stamps(modules, reports, stamps)
     check_image(modules, mentions, reports, entered, entries=bool(entries))
     check_timer_clocks(reports)
     return found
