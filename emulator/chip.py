@@ -347,7 +347,7 @@ class Chip:
 
     def _spi(self, letter: str, wired: tuple[int, ...]) -> Spi:
         bus = self.spi_bus[letter]
-        self.crossbar.bus(bus, [PIN_FUNCTIONS[f"SPI{line}{letter}"] for line in ("SIMO", "SOMI", "CLK")], wired)
+        self.crossbar.spi(bus, [PIN_FUNCTIONS[f"SPI{line}{letter}"] for line in ("SIMO", "SOMI", "CLK")], wired)
         name = f"Spi{letter.lower()}Regs"
         spi = Spi(
             self.clock, self.cpu, self._block(name, SpiRegs), bus, *self._interrupts(name),

@@ -68,16 +68,33 @@ class Crossbar:
             self._followers.setdefault(pin, []).append(follow)
         follow()
 
-    def bus(self, bus: SpiBus | I2cBus | CanPort, lines: Sequence[Routes], wired: Sequence[int]) -> None:
-        """Connect a module with its bus while each of `lines` (SIMO, SOMI, CLK; SDA, SCL; CANTX, CANRX) has a pin.
+    def bus(self, bus: I2cBus | CanPort, lines: Sequence[Routes], wired: Sequence[int]) -> None:
+        """Connect a module with its bus while each of `lines` (SDA, SCL; CANTX, CANRX) has a pin.
 
-        `wired` are the pins that lead to the bus; words on other pins do not reach it.  Empty: all pins lead to it.
+        `wired` are the pins that lead to the bus; what is on other pins does not reach it.  Empty: all pins lead to it.
         """
-        on_bus = [{pin: routes[pin] for pin in wired if pin in routes} or routes for routes in lines]
+        on_bus = _on_bus(lines, wired)
 
         def follow() -> None:
             bus.connected = all(map(self._carried, on_bus))
             bus.missing = next(filter(None, (self._nowhere(routes, bus.name) for routes in lines)), "")
+
+        for routes in lines:
+            self._follow(routes, follow)
+
+    def spi(self, bus: SpiBus, lines: Sequence[Routes], wired: Sequence[int]) -> None:
+        """Connect a master with its bus while CLK, the last of `lines` (SIMO, SOMI, CLK), has a pin; see `bus`.
+
+        SIMO and SOMI carry the bits while they have a pin: a part that only listens needs no SOMI.
+        """
+        on_bus = _on_bus(lines, wired)
+
+        def follow() -> None:
+            bus.simo, bus.somi, bus.connected = map(self._carried, on_bus)
+            bus.no_simo, bus.no_somi, bus.missing = (
+                self._nowhere(routes, f"{line} of {bus.name}")
+                for routes, line in zip(lines, ("SIMO", "SOMI", "CLK"), strict=True)
+            )
 
         for routes in lines:
             self._follow(routes, follow)
@@ -263,3 +280,8 @@ class QuadratureLevels:
             target.clash(now)
         elif steps:
             target.move(1 if steps == 1 else -1, now, now)
+
+
+def _on_bus(lines: Sequence[Routes], wired: Sequence[int]) -> list[Routes]:
+    """The routes of each line that lead to a bus."""
+    return [{pin: routes[pin] for pin in wired if pin in routes} or routes for routes in lines]

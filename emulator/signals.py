@@ -589,13 +589,13 @@ class SpiSlave(Protocol):
 class SpiBus:
     """SIMO, SOMI and CLK with the slaves on them; chip selects are `Wire`s.
 
-    `connected` is False while the pins have another function (`missing` says which).  Then words reach no slave, and no
-    slave answers.
+    `connected` is False while the pin of CLK has another function (`missing` says which).  Then words reach no slave,
+    and no slave answers.  `simo` and `somi` likewise for these lines (`no_simo`, `no_somi`).
     """
 
     __slots__ = (
-        "_slaves", "addressed", "connected", "deselected", "exchanged", "greatest_clock_hz", "idle_in", "missing",
-        "name", "refused",
+        "_slaves", "_unsent", "addressed", "connected", "deselected", "exchanged", "greatest_clock_hz", "idle_in",
+        "lost", "missing", "name", "no_simo", "no_somi", "refused", "simo", "somi",
     )  # fmt: skip
 
     def __init__(self, name: str, idle_in: int = 0) -> None:
@@ -603,6 +603,14 @@ class SpiBus:
         self.idle_in = idle_in
         self.connected = True
         self.missing = ""
+        self.simo = True
+        self.no_simo = ""
+        self.somi = True
+        self.no_somi = ""
+        #: What the latest word has lost because a line has no pin.
+        self.lost = ""
+        #: The latest word that had no SIMO; -1: none.
+        self._unsent = -1
         #: Whether a slave was selected at the end of the latest word (or none could be).
         self.addressed = True
         self._slaves: list[tuple[Wire, SpiSlave]] = []
@@ -660,9 +668,18 @@ class SpiBus:
         return list({id(select): select for select, _ in self._slaves}.values())
 
     def exchange(self, out_bits: int, length: int, cpol: int, cpha: int) -> int:
-        """Transfer one word.  If no slave drives SOMI, every bit reads as `idle_in`."""
-        answer = (1 << length) - 1 if self.idle_in else 0
+        """Transfer one word.  If no slave drives SOMI, every bit reads as `idle_in`.
+
+        CHOICE: a slave reads the floating SIMO as zeros.
+        """
+        idle = answer = (1 << length) - 1 if self.idle_in else 0
         self.addressed = not self._slaves
+        self.lost = ""
+        if not self.simo:
+            # A driver that only wants an answer repeats one word.
+            if self.no_simo and self._unsent not in (-1, out_bits):
+                self.lost = f"{self.no_simo}: the word does not reach the bus"
+            self._unsent, out_bits = out_bits, 0
         if self.connected:
             for chip_select, slave in self._slaves:
                 if chip_select.level == 0:
@@ -672,6 +689,10 @@ class SpiBus:
                         answer = bits
             for listener in self.exchanged.listeners:
                 listener(out_bits, answer)
+        if not self.somi and answer != idle:
+            if self.no_somi:
+                self.lost = f"{self.no_somi}: the answer does not reach the module"
+            answer = idle
         return answer
 
 

@@ -422,6 +422,8 @@ class Spi:
             try:
                 # CHOICE: with TALK=0 a slave reads the floating SIMO as zeros.
                 in_bits = self._bus.exchange(out_bits if ctl & TALK else 0, length, self._cpol, self._cpha)
+                if self._bus.lost:
+                    self._not_configured(self._bus.lost, self._bus.name)
                 if not self._bus.addressed and self._bus.connected and not self._cut:
                     self._check_selected()
                 elif self._clock_hz > self._bus.greatest_clock_hz:

@@ -325,10 +325,14 @@ def test_spi_words_go_to_whatever_pins_are_muxed_to_them_and_to_the_bus_on_its_o
 ) -> None:
     chip = Chip(rng=Random(0), spi_pins=wired)
     bus = chip.spi_bus["A"]
-    assert bus.missing == "GPIO58 has function 0, where SPI-A is function 15"
-    # GPAMUX2 holds two bits for each of GPIO16 to 31: 1 for GPIO16, 17, 18 is 0b010101 (HDR pin_map).
+    assert bus.missing == "GPIO60 has function 0, where CLK of SPI-A is function 15"
+    assert bus.no_simo == "GPIO58 has function 0, where SIMO of SPI-A is function 15"
+    # GPAMUX2 holds two bits for each of GPIO16 to 31: 1 for GPIO16 and 18 is 0b010001 (HDR pin_map).
+    write(chip, "GpioCtrlRegs", "GPAMUX2", 0x11)
+    assert (bus.missing, bus.connected, bus.simo) == ("", wired is None, wired is None)
+    assert bus.no_somi == "GPIO59 has function 0, where SOMI of SPI-A is function 15"
     write(chip, "GpioCtrlRegs", "GPAMUX2", 0x15)
-    assert (bus.missing, bus.connected) == ("", wired is None)
+    assert (bus.no_somi, bus.somi) == ("", wired is None)
     # GPBGMUX2 and GPBMUX2, likewise of GPIO48 to 63: 15 is 3 in each, for GPIO58, 59, 60 from bit 20 on.
     for register in ("GPBGMUX2", "GPBMUX2"):
         write(chip, "GpioCtrlRegs", register, 0x3F << 20)

@@ -71,6 +71,33 @@ def bench() -> Bench:
     return Bench()
 
 
+def told(bench: Bench) -> list[str]:
+    return [finding.message for finding in bench.findings if finding.rule == "not-configured"]
+
+
+def test_a_part_that_only_listens_needs_no_somi(bench: Bench) -> None:
+    bench.bus.somi, bench.bus.no_somi = False, "GPIO17 has function 0"
+    bench.word(0x5A00)
+    assert [seen[0] for seen in bench.slave.seen] == [0x5A]
+    assert told(bench) == []
+    # The echo of the word before: now there is something that does not come.
+    assert bench.word(0x0100) & 0xFF == 0
+    assert len(told(bench)) == 1
+    assert "GPIO17 has function 0: the answer does not reach the module" in told(bench)[0]
+
+
+def test_a_part_that_only_talks_needs_no_simo(bench: Bench) -> None:
+    bench.bus.simo, bench.bus.no_simo = False, "GPIO16 has function 0"
+    bench.slave.answer = 0x3C
+    assert bench.word(0xFF00) & 0xFF == 0x3C
+    bench.word(0xFF00)
+    assert told(bench) == []
+    bench.word(0x8F00)
+    assert {seen[0] for seen in bench.slave.seen} == {0}
+    assert len(told(bench)) == 1
+    assert "GPIO16 has function 0: the word does not reach the bus" in told(bench)[0]
+
+
 def test_a_word_completes_after_length_times_bit_and_not_a_cycle_earlier(bench: Bench) -> None:
     bench.regs.SPITXBUF = 0x9800
     bench.clock.advance_to(319)

@@ -24,7 +24,7 @@ class Rig:
         self.board = load("robot")()
         self.machine = BoardTarget(self.board, lambda: pytest.fail("no firmware is linked"))
         self.bus = self.board.spi_bus["A"]
-        self.bus.connected = True
+        self.bus.simo = self.bus.somi = self.bus.connected = True
 
     def mount(self, text: str) -> MountedFault:
         mounted = mount(parse(text), self.machine, from_now=True)  # type: ignore[arg-type]
