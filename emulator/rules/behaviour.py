@@ -179,6 +179,11 @@ reported if its factor is ten times too large, for a share is no multiple; a sma
 A current times a time is a charge: `mA * ms` is not `mAs`. So are products of power and time, and of voltage and
 current. A local that goes as it is to an object in a unit, and to no other, is in this unit. What the program counts
 one by one, divided by a constant such as `STEPS_PER_MM`, is in millimetres.
+A constant divided by a time is a rate, divided by a rate it is a time (`1000 / dt_ms` is in Hz): it is reported if it is
+wrong by 1000 or more, for pulses can be counted in tens; and if it is in Hz, and goes to a name in rpm. A comment about
+60 (teeth) keeps this silent.
+What comes from the ADC, an SPI or an encoder as it is, is reported where it meets a value in a unit (`counts > MAX_mV`)
+to which the program converts it by a factor in another line.
 Values of two quantities are reported only if no sensor makes one of the other without a factor. An object that is
 printed as it is, in front of another unit (`sprintf(line, "%u mV", current_mA)`), is reported in any case.
 
@@ -230,13 +235,15 @@ a prescaler of 1 that divides by 2. A faster timer may be divided by the program
         "count-by-name", Severity.WARNING, "A count of a timer is taken for a time that it is not.", """
 A pulse, a distance or a time-out is wrong by one factor: the counter counts faster or slower than the program reckons.
 
-The value is a count of a CPU timer (`CpuTimer1Regs.TIM`), of an eCAP (`ECap1Regs.CAP2`) or a difference of such counts,
-also through objects, parameters and functions. How long a count lasts, the registers say at the end of the run: the
-prescaler of the timer, SYSCLK for an eCAP. Two uses are reported:
+The value is a count of a CPU timer (`CpuTimer1Regs.TIM`), of an eCAP (`ECap1Regs.CAP2`), of the capture unit of an eQEP
+(`EQep1Regs.QCPRD`), or a difference of such counts, also through objects, parameters and functions. How long a count
+lasts, the registers say at the end of the run: the prescaler of the timer or of an eQEP's capture unit, SYSCLK for an
+eCAP. Three uses are reported:
 
 * the count goes where a name or a comment states a time (`width > GAP_US`), and a count does not last so long;
 * it is divided by, or multiplied with, a constant whose name says how fast the counter counts (`CYCLES_PER_US`,
-  `TICKS_PER_MS`, `TIMER_HZ`), and it counts with another frequency.
+  `TICKS_PER_MS`, `TIMER_HZ`), and it counts with another frequency;
+* a number divided by it goes where a name states a rate: turns a second to a name in rpm, or one wrong by 1000 or more.
 
 Nothing is reported about a counter that stands, an eCAP that prescales its edges, an object that holds other values
 too, or another factor: half of an echo is a distance, too.

@@ -32,10 +32,15 @@ from emulator.c28x.tree_queries import bare
 from emulator.chip import Chip
 from emulator.clock import SYSCLK_HZ
 from emulator.peripherals.cpu_timer import TSS
+from emulator.registers.core import F
+from emulator.registers.epwm import TBCTL
+from emulator.registers.eqep import QCAPCTL
 
-#: Block -> its registers that hold a count of its own counter, or a period of it.
-_TIMER: Final = frozenset({"TIM", "PRD"})
-_CAPTURE: Final = frozenset({"TSCTR", "CAP1", "CAP2", "CAP3", "CAP4"})
+#: Kind of block -> its registers that hold a count of its own counter, or a period of it.
+_REGISTERS: Final = {
+    "CpuTimer": frozenset({"TIM", "PRD"}), "ECap": frozenset({"TSCTR", "CAP1", "CAP2", "CAP3", "CAP4"}),
+    "EQep": frozenset({"QCTMR", "QCPRD", "QCTMRLAT", "QCPRDLAT"}),
+}  # fmt: skip
 #: The addresses of blocks, as TI's driverlib passes them (DS table of peripheral registers).
 _TIMER_BASE, _TIMER_WORDS = 0x0C00, 8
 _CAPTURE_BASE, _CAPTURE_WORDS = 0x5000, 0x20
@@ -46,7 +51,7 @@ _FUNCTIONS: Final = {
     "ECAP_getTimeBaseCounter": ("ECap", 1, _CAPTURE_BASE, _CAPTURE_WORDS),
 }
 #: Something else than a count.
-_OTHER: Final = ""
+OTHER: Final = ""
 _ECCTL1_PRESCALE: Final = 0x3E00
 
 
@@ -57,13 +62,14 @@ class HardwareCounts:
         stamps = Stamps(modules, frozenset())
         for function in stamps.functions:
             stamps.read(function)
-        #: Object or result -> the counters whose counts it holds, and `_OTHER` for anything else.
+        #: Object or result -> the counters whose counts it holds, and `OTHER` for anything else.
+        self.given, self.same = stamps.given, stamps.same
         self._holds: dict[Key, frozenset[str]] = {key: frozenset() for key, _ in stamps.given}
         grown = True
         while grown:
             grown = False
             for key, value in stamps.given:
-                grown |= self._add(key, frozenset({_OTHER}) if _is_number(value) else self._counters(value))
+                grown |= self._add(key, frozenset({OTHER}) if _is_number(value) else self._counters(value))
             for one, other in stamps.same:
                 both = self._holds.get(one, frozenset()) | self._holds.get(other, frozenset())
                 grown |= self._add(one, both) | self._add(other, both)
@@ -89,15 +95,15 @@ class HardwareCounts:
             case Call(function=function, arguments=arguments) if function.name in _FUNCTIONS:
                 return frozenset({_counter_of_call(function, arguments)})
             case Call(function=function) if not function.extern:
-                return self._holds.get(("result", function.path), frozenset({_OTHER}))
+                return self._holds.get(("result", function.path), frozenset({OTHER}))
             case Load(lvalue=lvalue):
                 key = key_of(lvalue)
-                return frozenset({_OTHER}) if key is None else self._holds.get(key, frozenset({_OTHER}))
+                return frozenset({OTHER}) if key is None else self._holds.get(key, frozenset({OTHER}))
             case Conditional(then=then, otherwise=otherwise):
                 return self._counters(then) | self._counters(otherwise)
             case Binary(op="+" | "-", left=left, right=right):
                 return self._counters(left) | self._counters(right)
-        return frozenset({_OTHER})
+        return frozenset({OTHER})
 
 
 def _is_number(value: Expr) -> bool:
@@ -107,20 +113,18 @@ def _is_number(value: Expr) -> bool:
 
 
 def _counter_of_register(register: RegisterRef) -> str:
-    block, name = register.block.removesuffix("Regs"), register.register
-    whole = register.field is None
-    return block if whole and (
-        (block.startswith("CpuTimer") and name in _TIMER) or (block.startswith("ECap") and name in _CAPTURE)
-    ) else _OTHER  # fmt: skip
+    block = register.block.removesuffix("Regs")
+    counts = register.field is None and register.register in _REGISTERS.get(block.rstrip("0123456789"), ())
+    return block if counts else OTHER
 
 
 def _counter_of_call(function: Function, arguments: list[Expr]) -> str:
     kind, first, base, words = _FUNCTIONS[function.name]
     address = bare(arguments[0]) if arguments else None
     if not isinstance(address, Const) or not isinstance(address.value, int):
-        return _OTHER
+        return OTHER
     number, rest = divmod(address.value - base, words)
-    return f"{kind}{first + number}" if 0 <= number <= 5 and not rest else _OTHER
+    return f"{kind}{first + number}" if 0 <= number <= 5 and not rest else OTHER
 
 
 def tick_seconds(chip: Chip, counter: str) -> float | None:
@@ -133,6 +137,18 @@ def tick_seconds(chip: Chip, counter: str) -> float | None:
             return None
         low, high = chip.register(block, "TPR").value & 0xFF, chip.register(block, "TPRH").value & 0xFF
         return ((high << 8 | low) + 1) / SYSCLK_HZ
+    if counter.startswith("EPwm"):
+        control = chip.register(block, "TBCTL").value
+        tick = (2 * field(control, TBCTL.HSPCLKDIV) or 1) << field(control, TBCTL.CLKDIV)
+        return chip.sysctrl.epwmclk_divider * tick / SYSCLK_HZ
+    if counter.startswith("EQep"):
+        control = chip.register(block, "QCAPCTL").value
+        return (1 << field(control, QCAPCTL.CCPS)) / SYSCLK_HZ if field(control, QCAPCTL.CEN) else None
     if chip.register(block, "ECCTL1").value & _ECCTL1_PRESCALE:
         return None  # a capture is then one of several edges: the count is not that of one period
     return 1 / SYSCLK_HZ
+
+
+def field(word: int, bits: F) -> int:
+    """The value of a field of a register."""
+    return (word & bits.mask) >> bits.lo

@@ -38,11 +38,10 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import bare, own_nodes, parts, statements
 from emulator.chip import Chip
-from emulator.clock import SYSCLK_HZ
 from emulator.peripherals.epwm_time_base import STOPPED, UP_DOWN
-from emulator.registers.core import F
 from emulator.registers.epwm import ETINTPS, ETPS, ETSEL, ETSOCPS, TBCTL
 from hil.drivers.clock_names import clock_by_name
+from hil.drivers.hardware_counts import field, tick_seconds
 from hil.drivers.stated_units import defined_number
 from hil.drivers.unit_names import unit_of_name, unit_of_text
 from hil.drivers.units import UnitMismatch
@@ -68,7 +67,6 @@ _BASES: Final = {"EPwm": (0x4000, 0x100, 1), "CpuTimer": (0x0C00, 8, 0)}
 _PERIODS: Final = {"EPWM_setTimeBasePeriod": "EPwm", "CPUTimer_setPeriod": "CpuTimer"}
 #: Functions of driverlib that take the frequency of LSPCLK as their second argument.
 _TOLD_LSPCLK: Final = frozenset({"SCI_setConfig", "SPI_setConfig"})
-_TSS: Final = 1 << 4
 #: An interrupt or a trigger at both ends of an up-down period.
 _BOTH_ENDS: Final = 3
 _TOGGLES: Final = 3
@@ -195,39 +193,32 @@ def _constants(e: Expr, passed: dict[Variable, list[Expr]]) -> list[int]:
 def _rates(chip: Chip, counter: str) -> _Rates | None:
     """The rates of a counter; None: it stands."""
     block = f"{counter}Regs"
+    tick = tick_seconds(chip, counter)
+    if tick is None:
+        return None
     if counter.startswith("CpuTimer"):
-        if chip.register(block, "TCR").value & _TSS or (
-            counter == "CpuTimer2" and chip.register("CpuSysRegs", "TMR2CLKCTL").value
-        ):
-            return None
-        prescale = (chip.register(block, "TPRH").value & 0xFF) << 8 | chip.register(block, "TPR").value & 0xFF
         period = chip.register(block, "PRD").value
-        return _Rates(SYSCLK_HZ / ((period + 1) * (prescale + 1)), frozenset(), period=period)
+        return _Rates(1 / (tick * (period + 1)), frozenset(), period=period)
     control, period = chip.register(block, "TBCTL").value, chip.register(block, "TBPRD").value
-    mode = _field(control, TBCTL.CTRMODE)
+    mode = field(control, TBCTL.CTRMODE)
     if mode == STOPPED or not period:
         return None
-    tick = chip.sysctrl.epwmclk_divider * (2 * _field(control, TBCTL.HSPCLKDIV) or 1) << _field(control, TBCTL.CLKDIV)
-    own = SYSCLK_HZ / (tick * (2 * period if mode == UP_DOWN else period + 1))
+    own = 1 / (tick * (2 * period if mode == UP_DOWN else period + 1))
     select, events = chip.register(block, "ETSEL").value, chip.register(block, "ETPS").value
     more, triggers = chip.register(block, "ETINTPS").value, chip.register(block, "ETSOCPS").value
     others: set[float] = set()
     for divider in (
-        _field(events, ETPS.INTPRD), _field(events, ETPS.SOCAPRD), _field(events, ETPS.SOCBPRD),
-        _field(more, ETINTPS.INTPRD2), _field(triggers, ETSOCPS.SOCAPRD2), _field(triggers, ETSOCPS.SOCBPRD2),
+        field(events, ETPS.INTPRD), field(events, ETPS.SOCAPRD), field(events, ETPS.SOCBPRD),
+        field(more, ETINTPS.INTPRD2), field(triggers, ETSOCPS.SOCAPRD2), field(triggers, ETSOCPS.SOCBPRD2),
     ):  # fmt: skip
         others.add(own / max(1, divider))
-    if _BOTH_ENDS in (_field(select, ETSEL.INTSEL), _field(select, ETSEL.SOCASEL), _field(select, ETSEL.SOCBSEL)):
+    if _BOTH_ENDS in (field(select, ETSEL.INTSEL), field(select, ETSEL.SOCASEL), field(select, ETSEL.SOCBSEL)):
         others |= {2 * each for each in others}
     for name in ("AQCTLA", "AQCTLB"):
         actions = chip.register(block, name).value
         if any(actions >> bit & _TOGGLES == _TOGGLES for bit in range(0, 12, 2)):
             others.add(own / 2)
     return _Rates(own, frozenset(others), mode == UP_DOWN, period)
-
-
-def _field(word: int, field: F) -> int:
-    return (word & field.mask) >> field.lo
 
 
 def _holds(each: _Setting, rates: _Rates) -> bool:

@@ -50,6 +50,8 @@ class Measured:
     of: str = ""
     #: The hardware counter whose counts it is in; empty: another unit.
     counter: str = ""
+    #: It is a number divided by a value of which the unit is known.
+    inverse: bool = False
 
     def __str__(self) -> str:
         return f"{self.unit.name}{self.by and f' by its {self.by}'}"

@@ -57,6 +57,13 @@ class PhysicalUnit:
         """A unit that is smaller by a factor."""
         return replace(self, name=f"1/{by:g} {self.name}", scale=self.scale / by, prefix=self.prefix / by)
 
+    def inverse(self) -> PhysicalUnit | None:
+        """The unit of a number divided by a value in this unit: a rate, or a period; None: it has no name."""
+        quantity = {"time": "frequency", "frequency": "time"}.get(self.quantity)
+        if quantity is None or not self.scale:
+            return None
+        return PhysicalUnit(f"1/({self.name})", quantity, 1 / self.scale, 1 / self.prefix)
+
     def multiplied(self, other: PhysicalUnit) -> PhysicalUnit | None:
         """The unit of a product with a value in the `other` unit; None: it has no name."""
         for one, two in ((self, other), (other, self)):
@@ -95,7 +102,7 @@ def _units() -> Iterator[tuple[PhysicalUnit, tuple[str, ...], tuple[str, ...]]]:
     #: Short names that occur in programs; others (`cV`, `dA`) are not worth a mistake.
     usual = {
         "mv", "uv", "kv", "ua", "mw", "kw", "ms", "us", "ns", "mm", "cm", "um", "km", "khz", "mj", "mbar", "kpa", "hpa",
-        "kg", "mdeg", "ddeg", "cdeg", "mrad",
+        "kg", "mg", "mdeg", "ddeg", "cdeg", "mrad",
     }  # fmt: skip
     for symbol, quantity, brief, words, more in whole:
         size = {"rad": 180 / pi, "bar": 1e5}.get(symbol, 1.0)

@@ -33,8 +33,9 @@ from math import isclose, log10, pi
 from typing import Any, Final
 
 from emulator.c28x.ctypes import ArrayType, CType, FloatType, IntType, PointerType, StructType
-from emulator.c28x.declarations import UserDeclaration, declarations
+from emulator.c28x.declarations import UserDeclaration, declarations, lines_with_comments
 from emulator.c28x.passes.formats import printed
+from emulator.c28x.passes.stamps import Key
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
@@ -63,6 +64,7 @@ from emulator.chip import Chip
 from hil.drivers.clock_names import clock_by_name, factors
 from hil.drivers.counted import counted
 from hil.drivers.hardware_counts import HardwareCounts, tick_seconds
+from hil.drivers.raw_values import RawValues
 from hil.drivers.stated_units import (
     Measured,
     as_written,
@@ -123,6 +125,8 @@ _LAST: Final = re.compile(r"(\w+)\W*$")
 _UNIT_BEHIND: Final = re.compile(r" ?(?P<unit>[^\s%,;:.()\[\]]+)(?P<rest>[^%]*)")
 #: What a comment says about a divisor that is not in whole counts.
 _SCALED_DIVISOR: Final = re.compile(r"tenth|hundredth|thousandth|scale|fixed|times|[*x] ?10|0\.\d|\bq\d", re.IGNORECASE)
+#: Comments of a program whose rates in Hz may be speeds in rpm.
+_SIXTY: Final = re.compile(r"\b60\b|sixty|sechzig|sesenta|soixante|sessanta", re.IGNORECASE)
 _SUBSCRIPT: Final = re.compile(r"\[[^\[\]]*\]")
 
 
@@ -203,6 +207,7 @@ class _Units:
                 if declared.word == "unit":
                     self._read_declaration(declared, functions, objects)
         self._members = members(self.files)
+        self._sixty = any(_SIXTY.search(comment) for file in self.files for _, comment in lines_with_comments(file))
         #: The text of objects at file scope that hold what was multiplied with 180/pi.
         self._degrees: set[str] = set()
         self._identifiers = identifiers(self.files)
@@ -224,6 +229,29 @@ class _Units:
         self._degrees = self._in_degrees(functions)
         for function in functions if self._degrees else ():
             self._infer(function)
+
+        self._raw = RawValues(modules)
+        #: Raw objects, with the units to which the program converts them, and the lines.
+        self._scales: dict[Key, dict[PhysicalUnit, int]] = {}
+        for function in functions:
+            self._read_conversions(function)
+
+    def _read_conversions(self, function: Function) -> None:
+        """Find the raw objects that a function converts to a unit."""
+        for s in statements(function.body):
+            wanted: Measured | None = None
+            match s:
+                case Return(value=Expr() as value):
+                    wanted = self._of_result(function)
+                case Assign(target=LValue() as target, value=value):
+                    wanted = self._of_lvalue(target)
+                case Declare(variable=variable, value=Expr() as value):
+                    wanted = self._of_lvalue(_whole(variable))
+                case _:
+                    continue
+            if wanted is not None and wanted.unit.quantity:
+                for key in self._raw.converted(value):
+                    self._scales.setdefault(key, {}).setdefault(wanted.unit, s.where.line)
 
     def _read_declaration(self, declared: UserDeclaration, functions: list[Function], objects: list[Variable]) -> None:
         words = declared.text.split()
@@ -383,11 +411,15 @@ class _Units:
                 one, other = self._value(left), self._value(right)
                 one = one or (self._in_context(left, other) if other is not None else None)
                 other = other or (self._in_context(right, one) if one is not None else None)
+                for raw, own, known, beside in ((left, one, other, right), (right, other, one, left)):
+                    if own is None and known and (message := self._unscaled(raw, known, _text(known, beside))):
+                        what = f"{source_text(left)} {op} {source_text(right)}"
+                        report(where, message, what, "unit-by-name")
                 if one is not None and other is not None:
                     turned = one.factor == 1.0 != other.factor
                     message = (
-                        _mismatch(other, one, _text(other, right), _text(one, left)) if turned
-                        else _mismatch(one, other, _text(one, left), _text(other, right))
+                        self._mixed(other, one, _text(other, right), _text(one, left)) if turned
+                        else self._mixed(one, other, _text(one, left), _text(other, right))
                     )  # fmt: skip
                     if message:
                         what = f"{source_text(left)} {op} {source_text(right)}"
@@ -401,8 +433,8 @@ class _Units:
                 for number, value in enumerate(arguments):
                     wanted, name = self._of_parameter(callee, number)
                     text = f"parameter {name} of {callee.name}"
-                    own = callee.parameters[number : number + 1] if not callee.extern else []
-                    self._check_target(value, wanted, where, report, text, _whole(own[0]) if own else None)
+                    passed = callee.parameters[number : number + 1] if not callee.extern else []
+                    self._check_target(value, wanted, where, report, text, _whole(passed[0]) if passed else None)
 
     def _check_printed(self, e: Call, where: Where, report: Report) -> None:
         """Check the objects that a format prints in front of the name of a unit, as they are: `%u mV`.
@@ -474,11 +506,29 @@ class _Units:
         elif given is None and wanted is not None:
             given = self._in_context(value, wanted)
         if wanted is not None and given is not None:
-            message = _mismatch(given, wanted, _text(given, value), target)
+            message = self._mixed(given, wanted, _text(given, value), target)
             if message:
                 report(where, message, target, _rule(given, wanted))
-        elif wanted is not None and (message := self._wrong_share(value, wanted, target)):
+        elif wanted is not None and (
+            message := self._wrong_share(value, wanted, target) or self._unscaled(value, wanted, target)
+        ):  # fmt: skip
             report(where, message, target, "unit-by-name")
+
+    def _unscaled(self, value: Expr, wanted: Measured, target: str) -> str:
+        """The message about a raw value that meets one in a unit to which the program converts it; "": it is none."""
+        objects = self._raw.objects(value) if self._scales and wanted.factor == 1.0 and not wanted.named else ()
+        lines = sorted(self._scales[key][wanted.unit] for key in objects if wanted.unit in self._scales.get(key, ()))
+        if not lines:
+            return ""
+        return (
+            f"{source_text(value)} is as the hardware gave it, and meets {target} in {wanted}: line {lines[0]} "
+            f"converts such a value to {wanted.unit.name} by a factor"
+        )
+
+    def _mixed(self, given: Measured, wanted: Measured, value: str, target: str) -> str:
+        """The message about two units that are mixed; "": they are not, or a wheel with 60 teeth may mix them."""
+        turns = given.inverse and wanted.unit.quantity == "rotation"
+        return "" if turns and self._sixty else _mismatch(given, wanted, value, target)
 
     def _wrong_share(self, e: Expr, wanted: Measured, target: str) -> str:
         """The message about a share of a value (`FULL_MV * permille / 100`) that goes to a target; "": it may.
@@ -577,6 +627,8 @@ class _Units:
         factor, value = _plain(right), self._value(left)
         if _makes_degrees(e.op, right) and (value is None or (value.factor == 1.0 and value.unit.name[:3] == "rad")):
             return _OF_PRODUCT
+        if e.op == "/" and (inverse := self._inverse(left, right)) is not None:
+            return inverse
         if factor is None or value is None or not factor:
             return None
         if e.op in ("<<", ">>"):
@@ -586,6 +638,20 @@ class _Units:
         named = value.named or any(part.where.macro is not None for part in _with_sources(right))
         of = value.of or source_text(left)
         return replace(value, factor=value.factor * (factor if e.op in ("*", "<<") else 1 / factor), named=named, of=of)
+
+    def _inverse(self, left: Expr, right: Expr) -> Measured | None:
+        """The unit of a constant divided by a time or a frequency; None: it is something else."""
+        number, value = as_written(left), self._value(right)
+        unit = value.unit.inverse() if value is not None and not value.inverse and value.factor else None
+        clock = clock_by_name(number) if value is not None and value.counter else None
+        factor = clock[1] if clock is not None else _plain(left)
+        if value is None or unit is None or not factor:
+            return None
+        macro = any(part.where.macro is not None for part in _with_sources(left))
+        composed = isinstance(number, Const) and number.source is not None
+        named = value.named or composed or (clock is None and macro)
+        of = f"1 / {value.of or source_text(right)}"
+        return replace(value, unit=unit, factor=factor / value.factor, named=named, of=of, inverse=True)
 
     def _multiplied(self, left: Expr, right: Expr) -> Measured | None:
         """The unit of a product of two values of which the quantity is known; None: it is none."""
@@ -709,6 +775,11 @@ def _mismatch(given: Measured, wanted: Measured, value: str, target: str) -> str
     if one == other or wanted.factor != 1.0 or given.named or wanted.named:
         return ""
     ratio, factor = one.ratio(other), given.factor
+    if given.inverse and (one.quantity, other.quantity) == ("frequency", "rotation"):
+        # Another factor can come from the number of pulses of a turn.
+        return _of_turns(given, value, target) if isclose(factor, one.scale, rel_tol=_ROUNDED_PI) else ""
+    if given.inverse and not ratio:
+        return ""
     for derived, stated_one in ((given, wanted), (wanted, given)):
         if derived.by.endswith(_OF_PRODUCT.by) and stated_one.unit.name[:3] != "rad":
             return ""  # of other units the number may be a factor that is no 180/pi
@@ -724,11 +795,21 @@ def _mismatch(given: Measured, wanted: Measured, value: str, target: str) -> str
         return ""
     if factor == 1.0:
         return f"{value} is in {given}, {target} in {wanted}"
-    if not _contradicts(factor, ratio):
+    if given.inverse and abs(_power_of_ten(factor / ratio) or 0) < _NO_PART:
+        return ""  # one of so many pulses
+    if not given.inverse and not _contradicts(factor, ratio):
         return ""
     return (
         f"{value} is {given.of} ({given}) times {factor:.4g}, {target} is in {wanted}: "
         f"from {one.name} to {other.name} the factor is {ratio:.4g}"
+    )
+
+
+def _of_turns(given: Measured, value: str, target: str) -> str:
+    """The message about a rate in Hz that goes to a target in rpm."""
+    return (
+        f"{value} is {given.of} ({given}) times {given.factor:.4g}, a rate in Hz, and {target} is in rpm: "
+        "turns a minute are 60 times turns a second"
     )
 
 

@@ -14,7 +14,7 @@ PROGRAM = """#include "F28x_Project.h"
 #define {define}
 #define HALF            2
 volatile Uint32 Long = 0, pulse_us = 0, other = 0;
-volatile float seconds = 0;
+volatile float seconds = 0, speed_rpm = 0, pulse_Hz = 0;
 static Uint32 Last = 0, Kept = 0, Mixed = 0;
 static Uint32 Elapsed(Uint32 begun) {{ return begun - CpuTimer1Regs.TIM.all; }}
 static int Longer(Uint32 measured, Uint32 nominal) {{ return measured > nominal + nominal / 4; }}
@@ -29,6 +29,8 @@ void main(void)
     {start}
     EALLOW;
     CpuSysRegs.PCLKCR3.bit.ECAP1 = 1;
+    CpuSysRegs.PCLKCR4.bit.EQEP1 = 1;
+    EQep1Regs.QCAPCTL.all = 0x8040;
     EDIS;
     for (;;)
     {{
@@ -66,6 +68,14 @@ def told(
     ("pulse_us = cap;", "cap is in counts of 5 ns of ECap1, pulse_us in us by its name"),
     ("other = width / CYCLES_PER_US;",
      "CYCLES_PER_US says that CpuTimer1 counts 200 million times a second, and it counts 0.1 million times"),
+    # Turns a second for turns a minute; a clock of 200 kHz.
+    ("if (cap > 0) speed_rpm = 2.0e8f / cap;",
+     "2e+08 / cap is 1 / cap (1/(counts of 5 ns of ECap1)) times 2e+08, a rate in Hz, and speed_rpm is in rpm: turns a "
+     "minute are 60 times turns a second"),
+    ("if (cap > 0) pulse_Hz = 200000.0f / cap;",
+     "200000 / cap is 1 / cap (1/(counts of 5 ns of ECap1)) times 2e+05, pulse_Hz is in Hz by its name: from 1/(counts "
+     "of 5 ns of ECap1) to Hz the factor is 2e+08"),
+    ("other = EQep1Regs.QCPRD; pulse_us = other;", "other is in counts of 80 ns of EQep1, pulse_us in us by its name"),
 ])  # fmt: skip
 def test_a_count_that_lasts_another_time_is_told(tmp_path: Path, use: str, message: str) -> None:
     assert told(tmp_path, use) == [message]
@@ -95,6 +105,12 @@ def test_a_constant_that_states_another_clock_is_told(tmp_path: Path, define: st
     ("other = cap * CUBES_PER_US; other = cap / GAP_US;", {"define": "CUBES_PER_US 3"}),
     ("if (Mixed > GAP_US) Long++;", {}),
     ("other = Long / CYCLES_PER_US;", {"define": "CYCLES_PER_US 100UL"}),
+    # Turns a minute; rates; a wheel with four pulses, one with sixty teeth.
+    ("if (cap > 0) { speed_rpm = 60.0f * 2.0e8f / cap; pulse_Hz = 2.0e8f / cap; }", {}),
+    ("if (cap > 0) { speed_rpm = 15.0f * 2.0e8f / cap; speed_rpm = 2.0e8f / cap * 60.0f; }", {}),
+    ("if (cap > 0) speed_rpm = 2.0e8f / cap;   // 60 teeth", {}),
+    ("if (cap > 0) speed_rpm = 60.0f * TIMER_HZ / (TEETH * cap);",
+     {"define": "TEETH 60\n#define TIMER_HZ 200000000.0f"}),
     # It stands, or captures each second edge.
     ("if (width > GAP_US) Long++;", {"start": "CpuTimer1Regs.TCR.bit.TSS = 1;"}),
     ("pulse_us = cap;", {"start": "ECap1Regs.ECCTL1.bit.PRESCALE = 1;"}),

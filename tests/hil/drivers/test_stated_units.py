@@ -147,6 +147,13 @@ MIXED = [
     ("stamp_us = tickMs * duty_percent / 100;",
      "stamp_us is in us by its name, and gets tickMs (ms by its name) times duty_percent (percent by its name) times "
      "0.01: the factor of such a share is 10"),
+    # A number divided by a time, or by a rate.
+    ("if (tickMs) rateKhz = 1000 / tickMs;",
+     "1000 / tickMs is 1 / tickMs (1/(ms) by its name) times 1000, rateKhz is in kHz by its name: from 1/(ms) to kHz "
+     "the factor is 1"),
+    ("if (rateKhz) stamp_us = 1000000UL / rateKhz;",
+     "1000000 / rateKhz is 1 / rateKhz (1/(kHz) by its name) times 1e+06, stamp_us is in us by its name: from 1/(kHz) "
+     "to us the factor is 1000"),
 ]  # fmt: skip
 
 
@@ -176,6 +183,8 @@ def test_a_value_in_another_unit_is_told(tmp_path: Path, body: str, message: str
     "bow = rudder * 57.3f; rudder = cosf(bow * 0.0174533f) + sinf(bow / 57.3f); tilt_deg = bow;",
     "drift_dps = tilt_rad * 57.3f; gapMm = (int16_t)(rudder * 57.3f); pose.angle = (int16_t)(rudder * 57.3f);",
     "bow = rudder * 57.3f; bow = tilt_rad; rudder = cosf(bow);",
+    "if (tickMs && rateKhz) { rateKhz = 1 / tickMs; stamp_us = 1000 / rateKhz; rateKhz = 16 / tickMs; }",
+    "if (stamp_us) { rateKhz = 1000 / stamp_us; gapMm = 1000 / stamp_us; rateKhz = 10000 / stamp_us; }",
     # Shares: right ones; a tenth of one; not scaled yet; of a divisor with a name; a gain; a value of no known unit.
     "voltage_mV = (int16_t)((int32_t)LIMIT_MV * permille / 1000); delay_ms(tickMs * duty_percent / 100);",
     "voltage_mV = (100 - duty_percent) * (int32_t)LIMIT_MV / 100; stamp_us = tickMs * 10UL * duty_percent;",
@@ -186,6 +195,53 @@ def test_a_value_in_another_unit_is_told(tmp_path: Path, body: str, message: str
 ])  # fmt: skip
 def test_a_converted_value_is_not_told(tmp_path: Path, body: str) -> None:
     assert told(tmp_path, f"{HEAD}void f(void)\n{{\n    {body}\n}}\n", "unit-by-name") == []
+
+
+RAW = """#include "F28x_Project.h"
+#define MOST_mV  5000
+#define DEAD_mm  2
+#define MOST_C   60
+typedef struct {{ int32 samples[4]; int32 position; Uint16 gain, bus_mV, peak_mV; }} Axis;
+Axis axis;
+Uint16 bus, frame[2], raised;
+int16 gap_mm, temp_C;
+static Uint16 word(void) {{ return SpiaRegs.SPIRXBUF; }}
+static Uint16 to_mV(Uint16 counts) {{ return (Uint16)((Uint32)counts * axis.gain >> 12); }}
+static int32 mean(const Axis *a) {{ int32 sum = 0; Uint16 i; for (i = 0; i < 4; i++) sum += a->samples[i];
+return sum / 4; }}
+void f(Uint16 n)
+{{
+    int32 low, high = axis.samples[n];
+    bus = AdcaResultRegs.ADCRESULT0;
+    axis.bus_mV = to_mV(bus);
+    axis.samples[n] = (int32)((Uint32)(word() & 0xFFF) << 12 | word() >> 4);
+    gap_mm = (int16)(mean(&axis) * axis.gain >> 20);
+    low = high;
+    frame[0] = word();
+    frame[1] = word();
+    temp_C = frame[0] * 3 / 16;
+    {use}
+}}
+"""
+
+
+@pytest.mark.parametrize(("use", "message"), [
+    ("if (high - low > DEAD_mm) raised = 1;",
+     "high - low is as the hardware gave it, and meets DEAD_mm in mm by its name: line 19 converts such a value to mm "
+     "by a factor"),
+    ("axis.peak_mV = bus;",
+     "bus is as the hardware gave it, and meets axis.peak_mV in mV by its name: line 10 converts such a value to mV by "
+     "a factor"),
+    ("if (AdcaResultRegs.ADCRESULT0 < MOST_mV) raised = 1;",
+     "AdcaResultRegs.ADCRESULT0 is as the hardware gave it, and meets MOST_mV in mV by its name: line 10 converts such "
+     "a value to mV by a factor"),
+    # Converted; in counts; another channel; the integer part; a value that is converted before it is filtered.
+    ("if (to_mV(bus) > MOST_mV || axis.bus_mV > MOST_mV || bus > MOST_mV * 4L / 3 || bus > 3000) raised = 1;", ""),
+    ("if (frame[1] > MOST_C || frame[0] >> 4 > MOST_C || AdcbResultRegs.ADCRESULT0 > MOST_mV) raised = 1;", ""),
+    ("high = gap_mm; low = mean(&axis) * axis.gain >> 20; if (high - low > DEAD_mm) raised = 1;", ""),
+])  # fmt: skip
+def test_a_raw_value_meets_one_in_a_unit(tmp_path: Path, use: str, message: str) -> None:
+    assert told(tmp_path, RAW.format(use=use), "unit-by-name") == ([message] if message else [])
 
 
 PRINTED = """#include <stdio.h>
