@@ -179,7 +179,7 @@ reported if its factor is ten times too large, for a share is no multiple; a sma
 A current times a time is a charge: `mA * ms` is not `mAs`. So are products of power and time, and of voltage and
 current. A local that goes as it is to an object in a unit, and to no other, is in this unit. What the program counts
 one by one, divided by a constant such as `STEPS_PER_MM`, is in millimetres.
-A constant divided by a time is a rate, divided by a rate it is a time (`1000 / dt_ms` is in Hz): it is reported if it is
+A constant divided by a time is a rate, and divided by a rate a time (`1000 / dt_ms` is in Hz): it is reported if it is
 wrong by 1000 or more, for pulses can be counted in tens; and if it is in Hz, and goes to a name in rpm. A comment about
 60 (teeth) keeps this silent.
 What comes from the ADC, an SPI or an encoder as it is, is reported where it meets a value in a unit (`counts > MAX_mV`)
@@ -263,12 +263,19 @@ set it:
   behind the last `=` counts;
 * the name of a constant from which the count is computed (`TBCLK_HZ / CARRIER_HZ - 1`, `PERIOD_US * 200`).
 
+So is the bit rate of an SCI with a comment beside the statements that set `SCIHBAUD` and `SCILBAUD`, above them, or
+above their function (`// 38400 baud`). If the real rate is another usual one, the comment may be old: it is reported
+only if the other end of the line, on your board, has another rate, too.
+
+A comment that is nothing but a time beside a wait (`DELAY_US(500);  // 5 ms`, `Task_sleep(10)`), or beside the
+definition of its number, is reported if the two differ by a power of ten, but not in a loop that ends.
+
 A call of `SCI_setConfig` or `SPI_setConfig` is reported if it is told another frequency than LSPCLK has.
 
-It is reported if the two rates differ by a power of two or of ten. Every rate of the ePWM counts: that of its counter,
-its interrupts, its triggers (every third event, both ends of the period), and of a pin that toggles. Comments about
-counts, pulses, limits or delays are not meant, nor a period that two statements set, nor a count with a factor of its
-own (`CLOCK_HZ / (2 * BLINK_HZ)`).
+A period is reported if the two rates differ by a power of two or of ten. Every rate of the ePWM counts: that of its
+counter, its interrupts, its triggers (every third event, both ends of the period), and of a pin that toggles.
+Comments about counts, pulses, limits or delays are not meant, nor a period that two statements set, nor a count with a
+factor of its own (`CLOCK_HZ / (2 * BLINK_HZ)`).
 
 **Fix:** compute the period from the clock that is set; or correct the comment or the name.
 """,

@@ -241,10 +241,12 @@ def _run(
         if hung.task == "main" and hung.place is not None and not waits_for_others(hung, roles):
             image.board.watchdog.report_hung_main(hung.time_cycles - image.linked.runtime.poll_limit, hung.place)
     known = len(image.board.sysctrl.sysclk_shares) == 1
+    tick_us = image.board.kernel.clocks.tick_period_us
     told = (
         *((*wrong_periods(build.modules, routines.periods()), *times.wrong()) if known else ()), *scales.wrong(),
-        *(misread_counts(build.modules, image.board.kernel.clocks.tick_period_us, image.board) if known else ()),
-        *wrong_rates(build.modules, image.board), *wrong_timers(build.modules, image.board),
+        *(misread_counts(build.modules, tick_us, image.board) if known else ()),
+        *wrong_rates(build.modules, image.board, tick_us, peer_known=board_named),
+        *wrong_timers(build.modules, image.board),
         *swallowed_pulses(build.modules, image.board),
         *wrong_identities(build.modules, image.board, board_named=board_named),
     )  # fmt: skip

@@ -9,6 +9,10 @@ hardware has then: that of the counter, of its interrupts and triggers, of a pin
 
 The clock of a program that makes it from a crystal can be slower on its board; then both rates are right.
 
+So does a comment about a bit rate, beside the statements that set the divider of an SCI, above them, or above their
+function.  A standard rate that is not the stated one can be meant, and the comment be old: then the other end of the
+line must have another one, too.
+
 TI's driverlib is told the frequency of a clock (`SCI_setConfig(base, lspclkHz, baud, ...)`): that is checked too.
 """
 
@@ -29,25 +33,43 @@ from emulator.c28x.tree import (
     Call,
     Const,
     Expr,
+    For,
     Function,
     Load,
     LValue,
     RegisterRef,
     Stmt,
     Variable,
+    While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import bare, own_nodes, parts, statements
+from emulator.c28x.tree_queries import bare, own_nodes, parts, statements, without_end
 from emulator.chip import Chip
+from emulator.clock import SYSCLK_HZ
 from emulator.peripherals.epwm_time_base import STOPPED, UP_DOWN
 from emulator.registers.epwm import ETINTPS, ETPS, ETSEL, ETSOCPS, TBCTL
 from hil.drivers.clock_names import clock_by_name
 from hil.drivers.hardware_counts import field, tick_seconds
-from hil.drivers.stated_units import defined_number
+from hil.drivers.stated_units import as_written, defined_number
 from hil.drivers.unit_names import unit_of_name, unit_of_text
-from hil.drivers.units import UnitMismatch
+from hil.drivers.units import LIBRARY_UNITS, UnitMismatch
 
 #: A rate in a comment: a number with a unit of frequency or time.
-_AMOUNT: Final = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?) ?([kM]?Hz|khz|hz|mhz|us|µs|ms|ns|s)\b(?!\w)")
+_AMOUNT: Final = re.compile(r"(?<![\w.,])(\d+(?:\.\d+)?) ?([kM]?Hz|khz|hz|mhz|us|µs|ms|ns|s)\b(?!\w)")
+#: A bit rate in a comment: a number with a unit, or one of those that everybody uses.
+_BAUD: Final = re.compile(
+    r"(?<![\w.,])(?:(\d{1,3}[,.' ]?\d{3}|\d+) ?(?:baud\w*|bd|bps|bits?(?:s| ?/ ?s\w*| (?:a|per|pro|por|je) s\w+))"
+    r"|(9600|19200|38400|57600|115200|230400))\b(?![.,]\d)",
+    re.IGNORECASE,
+)  # fmt: skip
+#: Comments that speak of another rate than that of today.
+_NOT_NOW: Final = re.compile(
+    r"\b(?:was|old|instead|not|former\w*|before|früher|frueher|statt|nicht|antes|no)\b", re.IGNORECASE
+)
+#: Rates that somebody sets on purpose.
+_RATES: Final = (
+    1200, 2400, 4800, 9600, 10400, 14400, 19200, 28800, 31250, 38400, 57600, 62500, 76800, 100000, 115200, 125000,
+    230400, 250000, 420000, 460800, 500000, 921600, 1000000, 1562500, 2000000, 3125000, 6250000,
+)  # fmt: skip
 #: Comments about something else than the period: a part of it, a limit, a length.
 _ELSE: Final = re.compile(
     r"\b(?:counts?|steps?|ticks?|each|dead|delay|pulses?|high|low|width|until|longest|shortest|max\w*|min\w*|most|"
@@ -58,6 +80,8 @@ _ELSE: Final = re.compile(
 _CLOCK_HZ: Final = 1e6
 #: Two rates are equal up to this; integer dividers round.
 _EQUAL: Final = 0.03
+#: A receiver takes a rate that differs by less.
+_SAMPLED: Final = 0.05
 #: Between them lies what a divider that was forgotten, or a slip of the decimal point, makes.
 _SLIPS: Final = tuple(2.0**n for n in (-4, -3, -2, -1, 1, 2, 3, 4)) + tuple(10.0**n for n in range(-6, 7) if n)
 #: Numbers without a name beside which the name of a rate still states the rate: conversions, and clocks in MHz and Hz.
@@ -65,6 +89,8 @@ _CONVERTING: Final = frozenset({1, 1000, 1e6, 1e9, 50, 100, 200, 50e6, 100e6, 20
 #: The addresses of blocks, as driverlib passes them (DS table of peripheral registers): first one, words, first number.
 _BASES: Final = {"EPwm": (0x4000, 0x100, 1), "CpuTimer": (0x0C00, 8, 0)}
 _PERIODS: Final = {"EPWM_setTimeBasePeriod": "EPwm", "CPUTimer_setPeriod": "CpuTimer"}
+#: Functions that take a time; the period of a timer is compared with what it counts.
+_TAKING_A_TIME: Final = LIBRARY_UNITS.keys() - {"ConfigCpuTimer"}
 #: Functions of driverlib that take the frequency of LSPCLK as their second argument.
 _TOLD_LSPCLK: Final = frozenset({"SCI_setConfig", "SPI_setConfig"})
 #: An interrupt or a trigger at both ends of an up-down period.
@@ -105,8 +131,12 @@ class _Rates:
         return any(isclose(rate, each, rel_tol=_EQUAL) for each in self.all)
 
 
-def wrong_rates(modules: Iterable[Module], chip: Chip) -> Iterator[UnitMismatch]:
-    """The statements beside which a rate is stated that the hardware does not have."""
+def wrong_rates(modules: Iterable[Module], chip: Chip, tick_us: int, *, peer_known: bool) -> Iterator[UnitMismatch]:
+    """The statements beside which a rate or a time is stated that they do not set.
+
+    `tick_us`: the kernel's tick in microseconds.  `peer_known`: the other ends of the lines are those of the
+    program's own board.
+    """
     functions = [function for module in modules for function in module.functions]
     passed = _passed(functions)
     settings = [found for function in functions for found in _settings(function, passed)]
@@ -122,6 +152,8 @@ def wrong_rates(modules: Iterable[Module], chip: Chip) -> Iterator[UnitMismatch]
             message = f"{text} states {_hz(rate)}, and {each.counter} counts its period {_hz(rates.own)}"
             yield UnitMismatch(_place(each.function, each.statement), message, each.counter, "stated-rate")
     yield from _wrong_clocks(functions, chip)
+    yield from _wrong_waits(functions, tick_us)
+    yield from _wrong_bit_rates(functions, chip, peer_known=peer_known)
 
 
 def _hz(rate: float) -> str:
@@ -301,3 +333,89 @@ def _wrong_clocks(functions: Iterable[Function], chip: Chip) -> Iterator[UnitMis
                         )
                         yield UnitMismatch(_place(function, s), message, "LSPCLK", "stated-rate")
 
+
+
+def _wrong_waits(functions: list[Function], tick_us: int) -> Iterator[UnitMismatch]:
+    """The waits, and the periods of the kernel, beside which stands nothing but another time, by a power of ten.
+
+    In a loop that ends the time can be that of all turns.
+    """
+    for function in functions:
+        loops = [
+            loop for loop in statements(function.body)
+            if isinstance(loop, For) or (isinstance(loop, While) and not without_end(loop))
+        ]  # fmt: skip
+        turned = {id(s) for loop in loops for s in statements(loop.body)}
+        for s in statements(function.body):
+            calls = [p for p in own_nodes(s) if isinstance(p, Call) and p.function.name in _TAKING_A_TIME]
+            for call in calls if id(s) not in turned and len(calls) == 1 else ():
+                units = LIBRARY_UNITS[call.function.name]
+                for unit, argument in zip(units, call.arguments, strict=False):
+                    number = as_written(argument)
+                    if unit not in ("us", "tick") or not isinstance(number, Const) or number.value <= 0:
+                        continue
+                    real = number.value * (tick_us if unit == "tick" else 1) * 1e-6
+                    comments = _comments_about(function, [s], header=False, above=False)
+                    for comment in (*comments, defined_number(number)[1]):
+                        stated = _time(comment)
+                        if stated and any(isclose(stated / real, 10.0**n, rel_tol=_EQUAL) for n in range(-6, 7) if n):
+                            name = call.function.name
+                            message = f"the comment {comment!r} states another time than {name} gets: {real:g} s"
+                            yield UnitMismatch(_place(function, s), message, name, "stated-rate")
+
+
+def _time(comment: str) -> float:
+    """The time in seconds that a comment is, and nothing else; 0: it says something else."""
+    match = _AMOUNT.fullmatch(comment.strip(" .="))
+    unit = unit_of_text(match[2]) if match is not None else None
+    return float(match[1]) * unit.scale if match is not None and unit is not None and unit.quantity == "time" else 0.0
+
+
+def _wrong_bit_rates(functions: list[Function], chip: Chip, *, peer_known: bool) -> Iterator[UnitMismatch]:
+    """The statements that set the divider of an SCI, where a comment states another bit rate than it gives."""
+    set_: dict[str, dict[str, list[tuple[Function, Stmt, int | None]]]] = {}
+    for function in functions:
+        for s in statements(function.body):
+            match s:
+                case Assign(target=RegisterRef(block=block, register="SCIHBAUD" | "SCILBAUD" as name), value=value):
+                    number = bare(value)
+                    byte = int(number.value) & 0xFF if isinstance(number, Const) else None
+                    set_.setdefault(block, {}).setdefault(name, []).append((function, s, byte))
+    differs = peer_known and bool(chip.findings.of("serial-rate"))
+    for block, registers in set_.items():
+        settings = [setting for settings in registers.values() for setting in settings]
+        function, s, _ = settings[-1]
+        alone = len(settings) == len(registers) and all(f is function for f, _, _ in settings)
+        if not alone or any(chip.register(block, n).value != given[0][2] for n, given in registers.items()):
+            continue
+        real = SYSCLK_HZ / chip.sci[block.removesuffix("Regs")[-1].upper()].format().bit_cycles
+        only = sum(any(f is function for given in each.values() for f, _, _ in given) for each in set_.values()) == 1
+        stated = {rate: text for text in _comments_about(function, [s for _, s, _ in settings], header=only)
+                  for rate in _bit_rates(text)}  # fmt: skip
+        known = any(isclose(real, rate, rel_tol=_EQUAL) for rate in _RATES)
+        if len(stated) != 1 or (known and not differs):
+            continue
+        (rate, text), = stated.items()
+        if not any(isclose(rate, real * x, rel_tol=_SAMPLED) for x in chip.sysctrl.sysclk_shares):
+            message = f"the comment {text!r} states {rate} baud, and {block} sends and receives {real:.0f}"
+            yield UnitMismatch(_place(function, s), message, f"{block}.SCILBAUD", "stated-rate")
+
+
+def _comments_about(function: Function, settings: list[Stmt], *, header: bool, above: bool = True) -> Iterator[str]:
+    """The comments beside statements, above the first one, and above their function."""
+    lines = lines_with_comments(function.where.file)
+    for s in settings:
+        yield lines[s.where.line - 1][1] if 0 < s.where.line <= len(lines) else ""
+    first = min(s.where.line for s in settings)
+    for line in (*((first,) if above else ()), *((function.where.line,) if header else ())):
+        for code, comment in reversed(lines[: max(0, line - 1)]):
+            if code.strip():
+                break
+            yield comment
+
+
+def _bit_rates(comment: str) -> Iterator[int]:
+    """The bit rates that a comment states; several are those that can be chosen."""
+    text = " ".join(comment.split())
+    for number, usual in _BAUD.findall(text) if not _NOT_NOW.search(text) else ():
+        yield int(re.sub(r"\D", "", number or usual))

@@ -93,7 +93,7 @@ _ANGLES: Final = ("acos", "asin", "atan", "atan2")
 _OF_ANGLES: Final = ("cos", "sin", "tan")
 _SAME: Final = ("abs", "labs", "fabs", "floor", "ceil", "round")
 #: Functions of the chip's library and the kernel -> the unit of each parameter ("": none).
-_PARAMETERS: Final = {
+LIBRARY_UNITS: Final = {
     "DELAY_US": ("us",), "ConfigCpuTimer": ("", "MHz", "us"), "Task_sleep": ("tick",), "Semaphore_pend": ("", "tick"),
     "Mailbox_pend": ("", "", "tick"), "Mailbox_post": ("", "", "tick"), "Event_pend": ("", "", "", "tick"),
     "Clock_create": ("", "tick"), "Clock_setTimeout": ("", "tick"), "Clock_setPeriod": ("", "tick"),
@@ -702,7 +702,7 @@ class _Units:
 
     def _of_parameter(self, function: Function, number: int) -> tuple[Measured | None, str]:
         """The unit of a parameter, and its name."""
-        known = _PARAMETERS.get(function.name, ()) if function.extern else ()
+        known = LIBRARY_UNITS.get(function.name, ()) if function.extern else ()
         if number < len(known) and known[number]:
             names = [parameter.declaration.name for parameter in function.parameters]
             unit = self._tick if known[number] == "tick" else unit_of_text(known[number]) or PhysicalUnit(known[number])

@@ -62,6 +62,10 @@ def told(
      "the comment '0.1 ms' states 10 kHz, and CpuTimer0 counts its period 1 kHz"),
     ("CpuTimer0Regs.PRD.all = 19999; CpuTimer0Regs.TCR.bit.TRB = 1;  // 1 ms", {},
      "the comment '1 ms' states 1 kHz, and CpuTimer0 counts its period 10 kHz"),
+    ("SciaRegs.SCIHBAUD.all = 0; SciaRegs.SCILBAUD.all = 40;  // 115,200 bits/s of 100 MHz", {},
+     "the comment '115,200 bits/s of 100 MHz' states 115200 baud, and SciaRegs sends and receives 152439"),
+    ("DELAY_US(SETTLE);", {"define": "#define SETTLE 500  /* 5 ms */"},
+     "the comment '5 ms' states another time than DELAY_US gets: 0.0005 s"),
 ])  # fmt: skip
 def test_a_rate_that_the_hardware_does_not_have_is_told(
     tmp_path: Path, set_: str, given: dict[str, str], message: str
@@ -83,6 +87,14 @@ def test_a_rate_that_the_hardware_does_not_have_is_told(
     ("EPwm1Regs.TBPRD = 9999;   // of 100 MHz", {}),
     ("EPwm1Regs.TBPRD = 9999;   // 5 us at most for the pulse", {}),
     ("EPwm1Regs.TBPRD = 9999;   // 15 kHz", {}),
+    ("CpuTimer0Regs.PRD.all = 499999; CpuTimer0Regs.TCR.bit.TRB = 1;  // 2,5 ms", {}),
+    # A usual rate may be meant, and so may one of two; it was another one; the time of all turns, or of two waits.
+    ("SciaRegs.SCIHBAUD.all = 0; SciaRegs.SCILBAUD.all = 107;  // 115200", {}),
+    ("SciaRegs.SCIHBAUD.all = 0; SciaRegs.SCILBAUD.all = 40;  // 9600 baud, 115200 baud", {}),
+    ("SciaRegs.SCIHBAUD.all = 0; SciaRegs.SCILBAUD.all = 40;  // was 9600 baud", {}),
+    ("SciaRegs.SCIHBAUD.all = 0; SciaRegs.SCILBAUD.all = 53;  // 115200 baud", {}),
+    ("{ int i; for (i = 0; i < 10; i++) DELAY_US(10);  // 100 us\n    }", {}),
+    ("DELAY_US(500);  // 1 kHz", {}),
     # It stands; another statement sets it, too.
     ("CpuTimer0Regs.PRD.all = 19999; CpuTimer0Regs.TCR.bit.TRB = 1;  // 1 ms", {"then": ""}),
     ("EPwm1Regs.TBPRD = 9999;   // 20 kHz", {"then": "EPwm1Regs.TBPRD = 4999;"}),
