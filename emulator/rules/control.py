@@ -136,7 +136,8 @@ It is reported at the statement that adds to the integral, if the integral's sha
 limit by more than a quarter of the range of the output, and the limit has not moved. The output must be a sum of the
 error, scaled, and of the integral, scaled, and the same function must limit it. Nothing is reported about an integral
 that a statement limits on that side, that loses a part of itself in each pass (a filter), or that is no part of such a
-sum (a meter of energy, an odometer, a clock).
+sum (a meter of energy, an odometer, a clock). The new integral may be in a local, which becomes the integral in any
+case: one that does so only where the output is within its limits is right.
 
 If the source limits the output on both sides and the integral on one, it is reported before the program runs: a limit
 is missing. Not if the integral is added to or set back under a test of the error, or if the regulator is called under

@@ -49,7 +49,7 @@ def check_open_integrals(reports: Mapping[Module, StaticReport]) -> None:
         if len(each.sides) != 1 or not two:
             continue
         added = each.added
-        place = next(s for s in statements(added.function.body) if isinstance(s, Assign) and s.value is added.value)
+        place = next(s for s in statements(added.function.body) if getattr(s, "value", None) is added.value)
         if _always_added(each, place) and not _kept_small(each, functions):
             side = "above" if "high" in each.sides else "below"
             owners[added.function].report(

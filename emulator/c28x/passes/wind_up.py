@@ -6,6 +6,8 @@ A regulator adds its error to an integral, and its output is a sum of the error,
     output = kp * error + integral;
     if (output > HIGH) output = HIGH;
 
+The new integral may be in a local that is stored behind the limits, whether or not the output is at one of them.
+
 While the output stands at its limit, such an integral goes on growing.  Whether it does is seen when the program runs:
 the running code compares the integral's share of the output with the limit (`Guards`, `Runtime.regulator`).
 
@@ -24,6 +26,7 @@ The result are the parts of regulators, by the identity of their expressions:
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import Any, Final, NamedTuple
 
@@ -42,13 +45,14 @@ from emulator.c28x.tree import (
     Expr,
     Function,
     If,
+    Jump,
     Load,
     LValue,
     Return,
     Stmt,
     Variable,
 )
-from emulator.c28x.tree_queries import bare, own_nodes, parts, statements
+from emulator.c28x.tree_queries import assigned, bare, blocks, own_nodes, parts, statements
 
 #: Functions of the libraries that limit a value, their first argument or any.
 _LIMITERS: Final = frozenset({
@@ -80,6 +84,8 @@ class IntegralSum(NamedTuple):
     key: Key
     addend: Expr
     value: Expr
+    #: What holds the new value where the output is computed: the integral, or a local that is stored in it.
+    held: Key
 
 
 class OpenRegulator(NamedTuple):
@@ -104,28 +110,52 @@ def open_regulators(functions: Iterable[Function]) -> list[OpenRegulator]:
     sums = [found for function in functions for found in _sums(function)]
     if not sums:
         return []
-    free = _unlimited({found.key for found in sums}, functions, {id(found.value) for found in sums})
-    found = [_regulator(each, frozenset(free[each.key])) for each in sums if free[each.key]]
+    keys = {key for found in sums for key in (found.key, found.held)}
+    free = _unlimited(keys, functions, {id(found.value) for found in sums})
+    sides = [(each, frozenset(free[each.key] & free[each.held])) for each in sums]
+    found = [_regulator(each, free_sides) for each, free_sides in sides if free_sides]
     return [each for each in found if each is not None]
 
 
 def _sums(function: Function) -> Iterator[IntegralSum]:
-    """The statements of a function that add to an object which outlasts it."""
+    """The statements of a function that add to an object which outlasts it, also in a local that is stored there."""
+    stored = _stored_locals(function)
     for s in statements(function.body):
         match s:
-            case Assign(target=LValue(ctype=FloatType() | IntType() as ctype) as target, value=value):
-                if (isinstance(ctype, IntType) and not ctype.signed) or target.indices:
-                    continue
-                if isinstance(target.root, Variable) and target.root.plain:
-                    continue
-                key, summed = key_of(target), bare(value)
-                if key is None or not isinstance(summed, Binary) or summed.op != "+":
-                    continue
-                for old, addend in ((summed.left, summed.right), (summed.right, summed.left)):
-                    grown = bare(old)
-                    if isinstance(grown, Load) and grown.lvalue == target and not _mentions(addend, key):
-                        yield IntegralSum(function, target, key, addend, value)
-                        break
+            case Assign(target=LValue() as target, value=value):
+                pass
+            case Declare(variable=variable, value=Expr() as value):
+                target = LValue(variable.ctype, variable)
+            case _:
+                continue
+        held, summed = key_of(target), bare(value)
+        target = stored.get(held or (), target)
+        key, ctype = key_of(target), target.ctype
+        signed = isinstance(ctype, FloatType) or (isinstance(ctype, IntType) and ctype.signed)
+        if not signed or target.indices or (isinstance(target.root, Variable) and target.root.plain):
+            continue
+        if key is None or held is None or not isinstance(summed, Binary) or summed.op != "+":
+            continue
+        for old, addend in ((summed.left, summed.right), (summed.right, summed.left)):
+            grown = bare(old)
+            if isinstance(grown, Load) and grown.lvalue == target and not _mentions(addend, key):
+                yield IntegralSum(function, target, key, addend, value, held)
+                break
+
+
+def _stored_locals(function: Function) -> dict[Key, LValue]:
+    """The locals with one value that each way through a function stores in an object, each with the object."""
+    given = Counter(variable for s in statements(function.body) if (variable := assigned(s)) is not None)
+    given.subtract(s.variable for s in statements(function.body) if isinstance(s, Declare) and s.value is None)
+    found: dict[Key, LValue] = {}
+    for s in function.body:
+        if any(isinstance(each, Return | Jump) for block in blocks(s) for each in statements(block)):
+            break
+        moved = bare(s.value) if isinstance(s, Assign) else None
+        local = moved.lvalue.root if isinstance(moved, Load) and not moved.lvalue.indices else None
+        if isinstance(s, Assign) and isinstance(s.target, LValue) and isinstance(local, Variable) and given[local] == 1:
+            found[local, 0] = s.target
+    return found
 
 
 def _unlimited(keys: set[Key], functions: list[Function], added: set[int]) -> dict[Key, set[str]]:
@@ -156,10 +186,10 @@ def _mentions(e: Any, key: Key) -> bool:
 
 def _regulator(added: IntegralSum, sides: frozenset[str]) -> OpenRegulator | None:
     """The regulator that has this integral."""
-    function, key = added.function, added.key
+    function = added.function
     error = numbers_in(added.addend)
     for value, limited in _outputs(function):
-        found = _share(value, key)
+        found = _share(value, added.held)
         if found is None:
             continue
         share, scale = found

@@ -19,6 +19,50 @@ def _feedback(name: str, defect: str, correct: str) -> Pair:
 
 PAIRS = (
     _regulator(
+        "a local that becomes the integral behind the limits",
+        """
+LIMIT = 900.0
+total: float32 = 0.0
+def Step(target: float32, value: float32) -> float32:
+    error: float32 = target - value
+    after: float32 = total + 0.5 * error  # <-
+    duty: float32 = 2.0 * error + after
+    if duty > LIMIT:
+        duty = LIMIT
+    elif duty < 0.0:
+        duty = 0.0
+    total = after
+    return duty
+def Hold(error: int16, passes: int16) -> float32:
+    i: int16
+    last: float32 = 0.0
+    for i in range(passes):
+        last = Step(error * 10.0, 0.0)
+    return last
+""",
+        """
+LIMIT = 900.0
+total: float32 = 0.0
+def Step(target: float32, value: float32) -> float32:
+    error: float32 = target - value
+    after: float32 = total + 0.5 * error
+    duty: float32 = 2.0 * error + after
+    if duty > LIMIT:
+        duty = LIMIT
+    elif duty < 0.0:
+        duty = 0.0
+    else:
+        total = after
+    return duty
+def Hold(error: int16, passes: int16) -> float32:
+    i: int16
+    last: float32 = 0.0
+    for i in range(passes):
+        last = Step(error * 10.0, 0.0)
+    return last
+""",
+    ),
+    _regulator(
         "an integral in fixed point",
         """
 LIMIT = 900
