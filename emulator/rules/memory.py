@@ -227,8 +227,9 @@ A copy or a fill overwrites the object or the member behind the target.
 
 The length is larger than the rest of the source or of the target. The finding names what is overwritten. Each
 structure member has its own end. A constant length that leaves the member is reported before the program runs, and so
-is a text that is longer than its array even if each number of its format has one digit. Any other text that is copied
-or printed into a member and is longer than it is reported while the program runs.
+is a text that is longer than its array even if each number of its format has one digit, or with the digits that the
+source lets through: a limit, a count that nothing limits (it is taken to reach 65535), the longest name of a table. Any
+other text that is copied or printed into a member and is longer than it is reported while the program runs.
 
 **Fix:** take the length from the smaller of the two objects, with `sizeof`, in 16-bit words.
 """,

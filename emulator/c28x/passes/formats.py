@@ -11,8 +11,8 @@ import re
 from collections.abc import Callable, Iterator
 from typing import Final
 
-from emulator.c28x.ctypes import CType, Double64, FloatType, FunctionType, HandleType, IntType, PointerType
-from emulator.c28x.tree import Call, Expr, String
+from emulator.c28x.ctypes import ArrayType, CType, Double64, FloatType, FunctionType, HandleType, IntType, PointerType
+from emulator.c28x.tree import Call, Conditional, Expr, Load, LValue, String, Variable
 from emulator.c28x.tree_queries import bare, source_text
 
 #: Function -> the index of the format among its parameters.
@@ -78,6 +78,35 @@ def printed(e: Call) -> Iterator[tuple[Expr, str, str]]:
 def shortest(text: str) -> int:
     """The characters that a format prints at least, without the NUL."""
     return len(SPECIFICATION.sub("", text)) + sum(_least(one) for one in SPECIFICATION.finditer(text))
+
+
+def longest(e: Call, most: Callable[[Expr], int]) -> int:
+    """The characters that a call can print, without the NUL, if its numbers reach `most`; other things are shortest."""
+    found = shortest(format_of(e) or "")
+    for value, before, after in printed(e):
+        text = format_of(e) or ""
+        one = SPECIFICATION.fullmatch(text[len(before) : len(text) - len(after)])
+        if one is None or "*" in (one["width"], one["precision"]):
+            continue
+        length = 0
+        if one["kind"] in "diu":
+            length = len(str(most(value)))
+        elif one["kind"] == "s" and one["precision"] is None:
+            length = max(map(len, _texts(value)), default=0)
+        found += max(0, length - _least(one))
+    return found
+
+
+def _texts(e: Expr) -> list[str]:
+    """The literals that a value may be, as far as they are known."""
+    match bare(e):
+        case String(text=text):
+            return [text]
+        case Conditional(then=then, otherwise=otherwise):
+            return _texts(then) + _texts(otherwise)
+        case Load(lvalue=LValue(root=Variable(initial=list() as initial, ctype=ArrayType()), indices=[_])):
+            return [text for value in initial for text in _texts(value)]
+    return []
 
 
 def _least(one: re.Match[str]) -> int:

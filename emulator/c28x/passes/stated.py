@@ -10,6 +10,7 @@ is divided, shifted down or compared by order.
 
 What the source states: the limit of a test behind which a value from outside is used (a text, a word that was received,
 what a pointer leads to), the limit that replaces a larger value, `% n`; for shifts a mask or the width of a field.
+With that, a text of `sprintf` may be longer than its array: `memcpy-outside`.
 An object at file scope, a member or a parameter has the largest of what it gets, if the source states that of all.
 Not looked at: values behind another test of them, members of structures of which there are several, casts of a result
 to its own type.
@@ -21,8 +22,9 @@ from collections.abc import Iterable, Iterator
 from itertools import chain
 from typing import Any, Final, NamedTuple
 
-from emulator.c28x.ctypes import IntType, StructType
+from emulator.c28x.ctypes import ArrayType, IntType, StructType
 from emulator.c28x.passes.admitted import upper_limits
+from emulator.c28x.passes.formats import format_of, longest, shortest
 from emulator.c28x.passes.given import GivenValue, GivenValues
 from emulator.c28x.passes.intervals import LONGEST, interval
 from emulator.c28x.passes.report import StaticReport
@@ -30,6 +32,7 @@ from emulator.c28x.passes.state_values import constant_of
 from emulator.c28x.passes.values import volatile
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
+    AddressOf,
     Assign,
     Binary,
     Call,
@@ -75,6 +78,8 @@ _ROUNDS: Final = 2
 _DEEPEST: Final = 8
 #: More than any integer.
 _ENDLESS: Final = 1 << LONGEST
+#: CHOICE: what a count that nothing limits is taken to reach, also if it has 32 bits.
+_COUNTED: Final = 65535
 #: Blocks whose registers hold what somebody sent.
 _RECEIVED: Final = ("Sci", "Spi", "I2c", "Mcb", "Can", "Lin", "Usb")
 #: What is done with a result that is converted to a wider type.
@@ -123,6 +128,8 @@ class _Program:
         self.scalars: dict[NamedScalar, _Stated] = {}
         #: What no value that a scalar gets is above.
         self.bounds: dict[NamedScalar, int] = {}
+        #: The scalars that are only counted up, and that nothing limits.
+        self.counters: set[NamedScalar] = set()
         self._whole = any(function.name == "main" and function.body for function in functions)
         self._tested: dict[NamedScalar, int] = {}
         #: Structure -> the objects at file scope that are one, or have one.
@@ -138,6 +145,10 @@ class _Program:
                                 self._tested[scalar] = min(least, self._tested.get(scalar, least))
                 case LValue(root=Variable(kind="global") as root):
                     self._objects.setdefault(root.ctype, set()).add(root)
+        self.counters = {
+            scalar for scalar, values in given.scalars.items()
+            if self._whole and scalar not in self._tested and all(_counts_up(one, scalar) for one in values)
+        }  # fmt: skip
 
     def settle(self) -> None:
         """Decide for the scalars from the values that were found."""
@@ -333,6 +344,9 @@ class _Walk:
                 if (stated := self.most(value, known)) is not None:
                     self.program.values[id(value)] = stated
             return
+        for p in own_nodes(s):
+            if isinstance(p, Call) and p.function.name in ("sprintf", "System_sprintf"):
+                self.text(p, s, known, self.report)
         for e, use in chain.from_iterable(_needed(root) for root in roots(s) if isinstance(root, Expr | LValue)):
             found = self.most(e, known)
             kept = isinstance(e, Binary) and isinstance(e.ctype, IntType) and e.ctype.signed and e.op != "<<"
@@ -347,6 +361,27 @@ class _Walk:
             )  # fmt: skip
             return
 
+    def text(self, e: Call, s: Stmt, known: _Known, report: StaticReport) -> None:
+        """Report a text that is longer than its array once its numbers have the digits that they can have."""
+
+        def most(value: Expr) -> int:
+            match value:
+                case Convert(operand=operand):
+                    return most(operand)
+                case Binary(op="/", left=left, right=Const(value=int(divisor))) if divisor > 0:
+                    return most(left) // divisor
+                case Load(lvalue=lvalue) if named_scalar(lvalue) in self.program.counters:
+                    return _COUNTED
+            stated = self.most(value, known)
+            return stated.most if stated is not None and stated.reached and stated.limited and not stated.bits else 0
+
+        match bare(e.arguments[0]):
+            case AddressOf(lvalue=LValue(ctype=ArrayType(words=words), text=array)):
+                form, room = format_of(e) or "", longest(e, most) + 1
+                if form and shortest(form) < words < room:
+                    message = f"{e.function.name} can write {room} words into {array}, an array of {words} words"
+                    report.report(self.function, s.where, "memcpy-outside", message, object=array)
+
 
 def _lost(e: Binary, found: _Stated) -> str:
     most = f"has bits up to {found.most:#x}" if found.bits else f"can be {found.most}"
@@ -358,6 +393,15 @@ def _loses(e: Binary, found: _Stated) -> bool:
     if e.op == "<<":
         return found.reached and (found.limited or found.bits) and found.most >> e.ctype.words * 16 > 0
     return e.op in ("+", "*") and found.reached and found.limited and not found.bits
+
+
+def _counts_up(given: GivenValue, scalar: NamedScalar) -> bool:
+    """Whether a statement counts a scalar up."""
+    match bare(given.value) if given.value is not None else None:
+        case Binary(op="+", left=left, right=right) if (constant_of(right) or 0) > 0:
+            before = bare(left)
+            return isinstance(before, Load) and named_scalar(before.lvalue) == scalar
+    return False
 
 
 def _given(s: Stmt) -> Iterator[Expr]:

@@ -121,3 +121,38 @@ def test_what_a_result_does_not_hold_is_told(body: str, other: str) -> None:
 )
 def test_what_it_holds_or_another_test_limits_is_silent(body: str, other: str) -> None:
     assert told(body, other) == set()
+
+
+TEXTS = """#include <stdio.h>
+#include <stdlib.h>
+typedef unsigned int Uint16; typedef unsigned long Uint32;
+static char text[24]; static Uint16 Errors, Round; static Uint32 Ms; static Uint16 Limit; volatile Uint16 in;
+struct COUNTS { Uint16 errors, other; } counts;
+static const char *const names[] = {"OFF", "STANDBY", "ON"};
+void Tick(void)
+{
+    Ms++; if (in) { Errors++; counts.errors += 1; } if (++Round >= 1000) Round = 0;
+}
+void Order(const char *line) { long v = strtol(line, 0, 10); if (v >= 0 && v <= 20000) Limit = (Uint16)v; }
+"""
+
+
+@pytest.mark.parametrize(
+    ("call", "longer"),
+    [
+        ('sprintf(text, "0123456789 E=%u,%u\\r\\n", Errors, counts.errors)', True),  # 2 numbers of 5 digits: 27 words
+        ('sprintf(text, "0123456789 1234 M=%u\\r\\n", Limit)', True),  # 5 digits: 26 words
+        ('sprintf(text, "0123456789 state=%s", names[in])', True),  # 7 letters: 25 words
+        ('sprintf(text, "0123456789 state %s", in ? "running" : "off")', True),
+        ('sprintf(text, "0123456789 123456 t=%lu", Ms / 1000UL)', False),  # 2 digits: 22 words
+        ('sprintf(text, "0123456789 123 M=%u\\n", Limit)', False),  # 24 words
+        ('sprintf(text, "0123456789 12345 R=%u\\n", Round)', False),  # it begins again
+        ('sprintf(text, "0123456789 123456 R=%u", in)', False),  # nothing says how large
+        ('sprintf(text, "0123456789 state=%.4s", names[in])', False),
+        ('sprintf(text, "E=%5u,%5u %s", Errors, counts.errors, names[in])', False),
+    ],
+)
+def test_a_text_that_can_be_longer_than_its_array_is_told(call: str, *, longer: bool) -> None:
+    end = 'void main(void) { Tick(); Order("1"); f(); }'
+    found = CWorkshop(f"{TEXTS}void f(void)\n{{ {call}; }}\n{end}\n", static=True).findings
+    assert ("memcpy-outside" in {f.rule for f in found}) == longer
