@@ -108,16 +108,16 @@ _Known = list[tuple[LValue, _Stated]]
 def check_stated(reports: dict[Module, StaticReport], given: GivenValues) -> None:
     """Report the results of all functions that do not hold what the source lets through."""
     owners = {function: report for module, report in reports.items() for function in module.functions}
-    program = _Program(owners, given)
+    program = _StatedValues(owners, given)
     for _ in range(_ROUNDS):
         for function in owners:
-            _Walk(function, program, None).block(function.body, [])
+            _StatedWalk(function, program, None).block(function.body, [])
         program.settle()
     for function, report in owners.items():
-        _Walk(function, program, report).block(function.body, [])
+        _StatedWalk(function, program, report).block(function.body, [])
 
 
-class _Program:
+class _StatedValues:
     """What is known of the scalars of a program."""
 
     def __init__(self, functions: Iterable[Function], given: GivenValues) -> None:
@@ -214,10 +214,10 @@ class _Program:
         return any(found) if found else None
 
 
-class _Walk:
+class _StatedWalk:
     """One function from its start to its end, with what is known of its objects."""
 
-    def __init__(self, function: Function, program: _Program, report: StaticReport | None) -> None:
+    def __init__(self, function: Function, program: _StatedValues, report: StaticReport | None) -> None:
         self.function, self.program, self.report = function, program, report
 
     def block(self, body: list[Stmt], known: _Known) -> _Known:
