@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from math import inf
-from typing import Final, Protocol
+from typing import Any, Final, Protocol
 
 from emulator.clock import NEVER, SYSCLK_HZ
 from emulator.signal import Signal
@@ -492,7 +492,7 @@ class SerialFrame:
     stop_bits: int = 1
     framing_error: bool = False
     drift: float = 1.0
-    rate_set_by: object = None
+    rate_set_by: Any = None
 
     def rates_differ(self, bit_cycles: float) -> str:
         """Both speeds in words, if a receiver of `bit_cycles` a bit cannot follow the sender; else empty.
