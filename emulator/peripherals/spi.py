@@ -185,9 +185,10 @@ class Spi:
     # --- registers -------------------------------------------------------------------------------------------------
 
     def _write_SPICCR(self, word: int, lanes: int) -> None:
+        mode = self._mode
         self._ccr.store(word, lanes)
         self._configure()
-        if lanes & CLKPOLARITY:
+        if self._mode != mode:
             self._mode_by = self._cpu.findings.mark()
         if not self._ccr.value & SPISWRESET:
             # The FIFOs keep their words: start-up code sets the FIFOs up before it pulses this bit.
@@ -204,9 +205,11 @@ class Spi:
         self._rate_by = self._cpu.findings.mark()
 
     def _write_SPICTL(self, word: int, lanes: int) -> None:
+        mode = self._mode
         self._ctl.store(word, lanes)
         self._configure()
-        if lanes & CLK_PHASE:
+        # The first write counts, too: what it did not change was meant so.  Each write of a field is one of all fields.
+        if self._mode != mode or self._mode_by is None:
             self._mode_by = self._cpu.findings.mark()
         if self._tx_fifo.words:
             self._load_from_fifo()
