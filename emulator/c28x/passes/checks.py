@@ -97,7 +97,7 @@ def check(
                 check_names(function, unit, report, used, by_address=function.path in entered)
         for variable in module.variables:
             file_scope(variable, initialisers[variable], report)
-    whole = list(with_members(with_targets(modules)).values())
+    whole = with_members(with_targets(modules))
     of_whole = {other: reports[module] for module, other in zip(modules, whole, strict=True)}
     stamps_of_whole = Stamps(whole, entries)
     stamps_of_whole.suspicions()

@@ -12,62 +12,30 @@ as a whole.  The trees that the checks get have a variable for each.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from copy import copy
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any, Final
 
-from emulator.c28x import tree
 from emulator.c28x.ctypes import ArrayType, CType, FloatType, IntType, PointerType, StructType, is_word_backed
+from emulator.c28x.passes.rewriting import Rewriting
 from emulator.c28x.symbols import Module
-from emulator.c28x.tree import (
-    FOUND,
-    AddressOf,
-    Bits,
-    Declare,
-    Expr,
-    Index,
-    Load,
-    LValue,
-    RegisterAt,
-    Stmt,
-    Variable,
-)  # fmt: skip
-from emulator.c28x.tree_queries import assigned, fixed_words, own_nodes, parts, statements, variables, within
+from emulator.c28x.tree import AddressOf, Bits, Declare, Index, Load, LValue, Variable
+from emulator.c28x.tree_queries import assigned, fixed_words, own_nodes, parts, statements
 
 #: A member: its offset in words, and its bits if it is a bit-field.
 _Member = tuple[int, Bits | None]
 _SCALARS: Final = (IntType, FloatType, PointerType)
-_NODES: Final = (Expr, LValue, Index, RegisterAt, Stmt)
-#: Kind of node -> its fields that may have other nodes in them.
-_FIELDS: Final[dict[type[Any], tuple[str, ...]]] = {
-    kind: tuple(f.name for f in fields(kind) if f.metadata != FOUND and f.name not in ("where", "ctype"))
-    for kind in vars(tree).values()
-    if isinstance(kind, type) and issubclass(kind, _NODES)
-}
 
 
-def with_members(modules: Iterable[Module]) -> dict[Module, Module]:
-    """The modules, each with one in whose trees the members of structures are objects of their own."""
+def with_members(modules: Iterable[Module]) -> list[Module]:
+    """The modules of a whole program; in their trees, the members of structures are objects of their own."""
     modules = list(modules)
     split = _split(modules)
-    if not split:
-        return {module: module for module in modules}
-    found: dict[Module, Module] = {}
-    for module in modules:
-        other = copy(module)
-        rewriting = _Rewriting(split)
-        other.functions = [
-            f if split.keys().isdisjoint(variables(within(f.body))) else replace(f, body=rewriting.body(f.body))
-            for f in module.functions
-        ]  # fmt: skip
-        other.variables = [v for variable in module.variables for v in _instead(variable, split)]
-        found[module] = other
-    return found
-
-
-def _instead(variable: Variable, split: dict[Variable, dict[_Member, Variable]]) -> list[Variable]:
-    return list(split[variable].values()) if variable in split else [variable]
+    view = _MemberView(split)
+    return [
+        view.module(module, [v for variable in module.variables for v in split.get(variable, {0: variable}).values()])
+        for module in modules
+    ]
 
 
 def _split(modules: list[Module]) -> dict[Variable, dict[_Member, Variable]]:
@@ -185,50 +153,33 @@ def _leaves(index: Index) -> int:
     return index.leaves * value if isinstance(value, int) else 0
 
 
-@dataclass
-class _Rewriting:
-    """Trees in which each member is an object; what has none in it stays the same node."""
+class _MemberView(Rewriting):
+    """Trees in which each member is an object."""
 
-    split: dict[Variable, dict[_Member, Variable]]
-    #: The temporaries that hold the old value of a member, as of `x.n++`: each names the member as its declaration.
-    kept: dict[Variable, Variable] = field(default_factory=dict)
+    def __init__(self, split: dict[Variable, dict[_Member, Variable]]) -> None:
+        super().__init__(split)
+        self._split = split
+        #: The temporaries that hold the old value of a member, as of `x.n++`: each names the member as its declaration.
+        self._kept: dict[Variable, Variable] = {}
 
-    def body(self, body: list[Stmt]) -> list[Stmt]:
-        """Statements."""
-        return [self._node(s) for s in body]
-
-    def _node(self, node: Any) -> Any:
-        if isinstance(node, list):
-            changed = [self._node(each) for each in node]
-            return changed if any(a is not b for a, b in zip(changed, node, strict=True)) else node
-        if isinstance(node, tuple):  # a case of a switch
-            inner = tuple(self._node(each) for each in node)
-            return inner if any(a is not b for a, b in zip(inner, node, strict=True)) else node
-        if isinstance(node, Variable):
-            return self.kept.get(node, node)
-        if not isinstance(node, _NODES):
-            return node
-        if isinstance(node, Declare) and node.variable.kind == "temporary":
-            self._keep(node)
-        if isinstance(node, LValue) and isinstance(node.root, Variable) and node.root in self.split:
-            members = self.split[node.root]
-            words = fixed_words(node)
-            if words is not None and (words, node.bits) in members and not isinstance(node.ctype, ArrayType):
-                member = members[words, node.bits]
-                if not isinstance(member.ctype, ArrayType):
-                    return LValue(node.ctype, member, where=node.where, text=node.text, volatile=node.volatile)
-            array = _array(node)
-            assert array is not None
-            return replace(
-                node, root=members[array.words, None], leaf=node.leaf - array.leaf, words=node.words - array.words,
-                indices=self._node(node.indices),
-            )  # fmt: skip
-        before = {name: getattr(node, name) for name in _FIELDS[type(node)]}
-        after = {name: self._node(old) for name, old in before.items()}
-        new = {name: value for name, value in after.items() if value is not before[name]}
-        return replace(node, **new) if new else node
-
-    def _keep(self, s: Declare) -> None:
-        value = self._node(s.value)
-        if value is not s.value and isinstance(value, Load) and isinstance(value.lvalue.root, Variable):
-            self.kept[s.variable] = replace(s.variable, declaration=value.lvalue.root.declaration)
+    def instead(self, node: Any) -> Any:
+        """The member for a structure or an array."""
+        match node:
+            case Variable(kind="temporary"):
+                return self._kept.get(node, node)
+            case Declare(variable=Variable(kind="temporary") as kept, value=Load(lvalue=LValue() as lvalue)):
+                member = self.instead(lvalue).root
+                if member is not lvalue.root and isinstance(member, Variable):
+                    self._kept[kept] = replace(kept, declaration=member.declaration)
+            case LValue(root=Variable() as root) if root in self._split:
+                members = self._split[root]
+                words = fixed_words(node)
+                if words is not None and (words, node.bits) in members and not isinstance(node.ctype, ArrayType):
+                    member = members[words, node.bits]
+                    if not isinstance(member.ctype, ArrayType):
+                        return LValue(node.ctype, member, where=node.where, text=node.text, volatile=node.volatile)
+                array = _array(node)
+                assert array is not None
+                member = members[array.words, None]
+                return replace(node, root=member, leaf=node.leaf - array.leaf, words=node.words - array.words)
+        return node

@@ -13,12 +13,13 @@ by a pointer.  The address of an object that only such pointers got is gone from
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from copy import copy
+from collections.abc import Iterable
 from dataclasses import replace
+from operator import is_
 from typing import Any
 
 from emulator.c28x.ctypes import ArrayType, PointerType
+from emulator.c28x.passes.rewriting import Rewriting
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     AddressOf,
@@ -40,7 +41,7 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import INNER, STATEMENT_FIELDS, addressed, bare, own_nodes, roots, statements
+from emulator.c28x.tree_queries import INNER, addressed, bare, own_nodes, roots, statements
 
 #: The object to which a pointer points: a variable at file scope, and the offset in it in leaves and words.
 Target = tuple[Variable, int, int]
@@ -50,8 +51,8 @@ def with_targets(modules: Iterable[Module]) -> list[Module]:
     """The modules of a whole program, with the names of what known pointers point to."""
     modules = list(modules)
     functions = [function for module in modules for function in module.functions]
-    view = _View(functions, [v for module in modules for v in module.variables], _Pointers(functions))
-    return [view.module(module) for module in modules]
+    view = _TargetView(functions, [v for module in modules for v in module.variables], _Pointers(functions))
+    return [view.module(module, [view.named.get(v, v) for v in module.variables]) for module in modules]
 
 
 class _Pointers:
@@ -83,7 +84,8 @@ class _Pointers:
                 taken.update(function.parameters)
         for pointer in taken & self._gets.keys():
             self._gets[pointer] = None
-        self._known: dict[Variable, Target | None] = {}
+        #: Each pointer that `target` was asked for, with the answer.
+        self.known: dict[Variable, Target | None] = {}
 
     def _add(self, pointer: Variable, value: Expr) -> None:
         values = self._gets.setdefault(pointer, [])
@@ -92,10 +94,10 @@ class _Pointers:
 
     def target(self, pointer: Variable) -> Target | None:
         """What a pointer points to; None: more than one object, or something else."""
-        if pointer not in self._known:
-            self._known[pointer] = None  # it may point to what it is made of itself
-            self._known[pointer] = self._only(pointer)
-        return self._known[pointer]
+        if pointer not in self.known:
+            self.known[pointer] = None  # it may point to what it is made of itself
+            self.known[pointer] = self._only(pointer)
+        return self.known[pointer]
 
     def _only(self, pointer: Variable) -> Target | None:
         if not isinstance(pointer.ctype, PointerType):
@@ -125,7 +127,7 @@ class _Pointers:
         return (target[0], target[1] + lvalue.leaf, target[2] + lvalue.words) if target is not None else None
 
 
-class _View:
+class _TargetView(Rewriting):
     """Writes the trees anew, with the names of targets."""
 
     def __init__(self, functions: list[Function], objects: list[Variable], pointers: _Pointers) -> None:
@@ -143,7 +145,9 @@ class _View:
                 if isinstance(value, AddressOf):
                     self._look(value, None, reached, pointed)
         #: Each object to which only known pointers point, and what it is in these trees.
-        self._named = {v: replace(v, escapes=False) for v in pointed - reached}
+        self.named = {v: replace(v, escapes=False) for v in pointed - reached}
+        super().__init__(self.named)
+        self.about |= {p for p, to in pointers.known.items() if to is not None and to[0] in self.named}
 
     def _look(self, e: Any, s: Stmt | None, reached: set[Variable], pointed: set[Variable]) -> None:
         """Find what a part of a statement reaches by an address."""
@@ -198,63 +202,25 @@ class _View:
                 return self._pointers.target(pointer) is not None
         return False
 
-    # Writing
-
-    def module(self, module: Module) -> Module:
-        """A module with functions that are written anew."""
-        written = copy(module)
-        written.functions = [self._function(function) for function in module.functions]
-        written.variables = [self._named.get(v, v) for v in module.variables]
-        return written
-
-    def _function(self, function: Function) -> Function:
-        body = self._node(function.body, STATEMENT_FIELDS)
-        return function if body is function.body else replace(function, body=body)
-
-    def _node(self, e: Any, fields: Mapping[type, tuple[str, ...]]) -> Any:
-        """A node written anew; itself if nothing in it changes."""
-        match e:
-            case list():
-                new = [self._node(x, fields) for x in e]
-                return e if all(a is b for a, b in zip(e, new, strict=True)) else new
-            case (labels, body) if isinstance(body, list):  # of a switch
-                new = self._node(body, fields)
-                return e if new is body else (labels, new)
+    def instead(self, node: Any) -> Any:
+        """A node with the name of the target of a pointer."""
+        match node:
             case LValue():
-                place = self._pointers.place(e)
-                if place is None or place[0] not in self._named:
-                    place = None
-                if place is not None:
+                place = self._pointers.place(node)
+                if place is not None and place[0] in self.named:
                     root, leaf, words = place
-                    e = replace(e, root=self._named[root], leaf=leaf, words=words, volatile=e.volatile or root.volatile)
+                    volatile = node.volatile or root.volatile
+                    return replace(node, root=self.named[root], leaf=leaf, words=words, volatile=volatile)
             case Call(function=Function(path=path), arguments=arguments) if path in self._parameters:
-                pointers = self._parameters[path]
-                given = [
-                    self._name(pointers[n], value) if n < len(pointers) else value for n, value in enumerate(arguments)
-                ]
-                if any(a is not b for a, b in zip(given, arguments, strict=True)):
-                    e = replace(e, arguments=given)
+                given = list(map(self._name, self._parameters[path], arguments))
+                if not all(map(is_, given, arguments)):
+                    return replace(node, arguments=[*given, *arguments[len(given) :]])
             case (
                 Assign(target=LValue(root=Variable() as pointer), value=value)
                 | Declare(variable=pointer, value=Expr() as value)
             ) if (name := self._name(pointer, value)) is not value:  # fmt: skip
-                written = copy(e)
-                written.value, written.nodes = name, None
-                return written
-        changed = {}
-        for attribute in fields.get(type(e)) or INNER.get(type(e), ()):
-            old = getattr(e, attribute)
-            anew = old if isinstance(old, int | str | None) else self._node(old, fields)
-            if anew is not old:
-                changed[attribute] = anew
-        if not changed:
-            return e
-        other = copy(e)
-        for attribute, anew in changed.items():
-            setattr(other, attribute, anew)
-        if isinstance(other, Stmt):
-            other.nodes = None
-        return other
+                return replace(node, value=name)
+        return node
 
     def _name(self, pointer: Variable, value: Expr) -> Expr:
         """What a pointer gets; without an address, if the pointer is another name of its target, which is no array."""
@@ -262,4 +228,4 @@ class _View:
         match bare(value):
             case AddressOf(lvalue=LValue(ctype=ArrayType())):
                 return value
-        return Null(value.ctype, where=value.where) if target is not None and target[0] in self._named else value
+        return Null(value.ctype, where=value.where) if target is not None and target[0] in self.named else value

@@ -24,7 +24,7 @@ static void sum(const int *t, int n) { while (n-- > 0) count += *t++; }
 def names(source: str) -> set[str]:
     """The names of the objects at file scope that the functions of a program use."""
     modules = read({"drv.c": HEAD + source}).translate()
-    functions = [f for m in with_members(with_targets(modules)).values() for f in m.functions]
+    functions = [f for m in with_members(with_targets(modules)) for f in m.functions]
     found = {v for f in functions for v in variables(within(f.body))}
     return {v.declaration.name for v in found if v.kind == "global"}
 
