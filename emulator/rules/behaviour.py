@@ -194,6 +194,16 @@ object that the program converts where it is (`t_us /= 1000`) make the unit unkn
 """, how="static",
     ),
     _rule(
+        "turns-by-name", Severity.NOTE, "A rate in Hz goes to a name in rpm.", """
+`speed_rpm = 2.0e8f / period` is in turns a second if one pulse comes each turn: 60 times too little for turns a minute.
+
+The number is one divided by a count of a timer, an eCAP or an eQEP, or by a time or a rate whose name states its unit,
+and the name states rpm. It is a note, because a wheel with 60 teeth gives rpm: a comment about 60 keeps this silent.
+
+**Fix:** multiply by 60, or say in a comment what the wheel has.
+""", how="static",
+    ),
+    _rule(
         "unit-in-comment", Severity.NOTE, "The name of a constant states another unit than its comment.", """
 `#define TIMEOUT_MS 5    // 5 s` is 5 ms by its name and 5 s by its comment: one of them is wrong.
 
@@ -243,7 +253,7 @@ eCAP. Three uses are reported:
 * the count goes where a name or a comment states a time (`width > GAP_US`), and a count does not last so long;
 * it is divided by, or multiplied with, a constant whose name says how fast the counter counts (`CYCLES_PER_US`,
   `TICKS_PER_MS`, `TIMER_HZ`), and it counts with another frequency;
-* a number divided by it goes where a name states a rate: turns a second to a name in rpm, or one wrong by 1000 or more.
+* a number divided by it goes where a name states a rate that is wrong by 1000 or more.
 
 Nothing is reported about a counter that stands, an eCAP that prescales its edges, an object that holds other values
 too, or another factor: half of an echo is a distance, too.

@@ -161,7 +161,7 @@ def misread_counts(modules: Iterable[Module], tick_us: int, chip: Chip) -> list[
     """The places where counts of the chip's counters are taken for what they are not, after a run of the program."""
     modules = list(modules)
     units = _Units(modules, tick_us, _Counters(HardwareCounts(modules), chip))
-    return [found for found in _of_all(units, modules) if found.rule == "count-by-name"]
+    return [found for found in _of_all(units, modules) if found.rule in ("count-by-name", "turns-by-name")]
 
 
 def _of_all(units: _Units, modules: list[Module]) -> list[UnitMismatch]:
@@ -837,6 +837,8 @@ def _certain(one: Measured, other: Measured) -> bool:
 
 def _rule(one: Measured, other: Measured) -> str:
     """The rule that a mismatch of two units breaks."""
+    if (one.inverse or other.inverse) and "rotation" in (one.unit.quantity, other.unit.quantity):
+        return "turns-by-name"
     if one.counter or other.counter:
         return "count-by-name"
     return "unit" if _certain(one, other) else "unit-by-name"

@@ -68,10 +68,7 @@ def told(
     ("pulse_us = cap;", "cap is in counts of 5 ns of ECap1, pulse_us in us by its name"),
     ("other = width / CYCLES_PER_US;",
      "CYCLES_PER_US says that CpuTimer1 counts 200 million times a second, and it counts 0.1 million times"),
-    # Turns a second for turns a minute; a clock of 200 kHz.
-    ("if (cap > 0) speed_rpm = 2.0e8f / cap;",
-     "2e+08 / cap is 1 / cap (1/(counts of 5 ns of ECap1)) times 2e+08, a rate in Hz, and speed_rpm is in rpm: turns a "
-     "minute are 60 times turns a second"),
+    # A clock of 200 kHz.
     ("if (cap > 0) pulse_Hz = 200000.0f / cap;",
      "200000 / cap is 1 / cap (1/(counts of 5 ns of ECap1)) times 2e+05, pulse_Hz is in Hz by its name: from 1/(counts "
      "of 5 ns of ECap1) to Hz the factor is 2e+08"),
@@ -79,6 +76,13 @@ def told(
 ])  # fmt: skip
 def test_a_count_that_lasts_another_time_is_told(tmp_path: Path, use: str, message: str) -> None:
     assert told(tmp_path, use) == [message]
+
+
+def test_turns_a_second_for_turns_a_minute_are_a_note(tmp_path: Path) -> None:
+    assert told(tmp_path, "if (cap > 0) speed_rpm = 2.0e8f / cap;", rule="turns-by-name") == [
+        "2e+08 / cap is 1 / cap (1/(counts of 5 ns of ECap1)) times 2e+08, a rate in Hz, and speed_rpm is in rpm: "
+        "turns a minute are 60 times turns a second"
+    ]
 
 
 @pytest.mark.parametrize(("define", "use", "rate"), [
