@@ -16,7 +16,7 @@ def start() -> void:
     GpioCtrlRegs.GPBGMUX2.bit.GPIO60 = 3
     GpioCtrlRegs.GPBMUX2.bit.GPIO58 = 3
     GpioCtrlRegs.GPBMUX2.bit.GPIO59 = {somi}
-    GpioCtrlRegs.GPBMUX2.bit.GPIO60 = 3
+    GpioCtrlRegs.GPBMUX2.bit.GPIO60 = {clk}
     GpioDataRegs.GPBSET.bit.GPIO61 = 1
     GpioCtrlRegs.GPBDIR.bit.GPIO61 = 1
     EDIS()
@@ -55,8 +55,8 @@ def who() -> uint16:
 """
 
 
-def spi(source: str = "", *, talk: int = 1, run: int = 1, somi: int = 3) -> Driver:
-    driver = Driver(SPI.format(talk=talk, run=run, somi=somi) + source)
+def spi(source: str = "", *, talk: int = 1, run: int = 1, somi: int = 3, clk: int = 3) -> Driver:
+    driver = Driver(SPI.format(talk=talk, run=run, somi=somi, clk=clk) + source)
     driver.start()
     return driver
 
@@ -73,7 +73,7 @@ def flush() -> uint16:
 
 
 @pytest.mark.parametrize(("setting", "name"), [
-    ({"talk": 0}, "SpiaRegs.SPICTL.TALK"), ({"run": 0}, "SpiaRegs.SPICCR.SPISWRESET"), ({"somi": 0}, "SPI-A"),
+    ({"talk": 0}, "SpiaRegs.SPICTL.TALK"), ({"run": 0}, "SpiaRegs.SPICCR.SPISWRESET"), ({"clk": 0}, "SPI-A"),
 ])  # fmt: skip
 def test_a_word_for_a_module_that_cannot_send_it(setting: dict[str, int], name: str) -> None:
     driver = spi(
@@ -89,6 +89,23 @@ def send() -> void:
     )
     driver.send()
     assert driver.only("not-configured").object == name
+
+
+def test_an_answer_without_a_pin_is_lost_and_a_word_without_answer_is_not() -> None:
+    driver = spi("""
+# drv.c: send
+def send() -> void:
+    cs(0)
+    transfer(0x8F)
+    cs(1)
+""", somi=0)
+    driver.send()
+    assert not driver.rules()
+    assert driver.who() == 0
+    found = driver.only("not-configured")
+    assert "the answer does not reach the module" in found.message
+    assert found.place is not None
+    assert driver.lines[found.place.line - 1].lstrip().startswith("SpiaRegs.SPITXBUF")
 
 
 def test_a_word_read_while_it_shifts_and_a_word_read_twice() -> None:
