@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from copy import copy
 from dataclasses import replace
@@ -19,16 +20,16 @@ _FIELDS: Final[dict[type[Any], tuple[str, ...]]] = {
 }  # fmt: skip
 
 
-class Rewriting:
+class Rewriting(ABC):
     """Writes functions anew.  A view says what stands for a node."""
 
     def __init__(self, about: Iterable[Variable]) -> None:
         #: A function without any of these variables stays as it is.
         self.about = set(about)
 
+    @abstractmethod
     def instead(self, node: Any) -> Any:
         """The node itself, or a new one; the parts of both are written anew later."""
-        raise NotImplementedError
 
     def module(self, module: Module, objects: list[Variable]) -> Module:
         """A module with these objects, and functions that are written anew."""
