@@ -230,6 +230,11 @@ class _Units:
         for function in functions if self._degrees else ():
             self._infer(function)
 
+        #: Whether the program passes a time in the kernel's tick on as it is: then it takes the tick for that long.
+        self._passed_plainly = any(
+            given.by and given.factor == 1.0 and given.unit.ratio(self._tick) == 1.0
+            for value in self._ticks(functions) if (given := self._value(value)) is not None
+        )  # fmt: skip
         self._raw = RawValues(modules)
         #: Raw objects, with the units to which the program converts them, and the lines.
         self._scales: dict[Key, dict[PhysicalUnit, int]] = {}
@@ -324,6 +329,15 @@ class _Units:
                         continue
                     if _is_number(root.ctype) and self._of_lvalue(_whole(root)) is None:
                         self.variables[root] = Measured(self._tick)
+
+    def _ticks(self, functions: list[Function]) -> Iterator[Expr]:
+        """The values that go where the kernel's ticks are expected."""
+        for function in functions:
+            yield from (v for target, v in _assignments(function) if self._of_lvalue(target) == Measured(self._tick))
+            for p in (p for s in statements(function.body) for p in own_nodes(s) if isinstance(p, Call)):
+                for number, value in enumerate(p.arguments):
+                    if self._of_parameter(p.function, number)[0] == Measured(self._tick):
+                        yield value
 
     def _infer_parameters(self, functions: list[Function]) -> None:
         """Give a unit to parameters to which each call passes a value of this unit."""
@@ -506,7 +520,8 @@ class _Units:
         elif given is None and wanted is not None:
             given = self._in_context(value, wanted)
         if wanted is not None and given is not None:
-            message = self._mixed(given, wanted, _text(given, value), target)
+            waits = to is not None and isinstance(to.root, Variable) and to.root.kind == "parameter"
+            message = self._mixed(given, wanted, _text(given, value), target, waits=waits)
             if message:
                 report(where, message, target, _rule(given, wanted))
         elif wanted is not None and (
@@ -525,10 +540,16 @@ class _Units:
             f"converts such a value to {wanted.unit.name} by a factor"
         )
 
-    def _mixed(self, given: Measured, wanted: Measured, value: str, target: str) -> str:
+    def _mixed(self, given: Measured, wanted: Measured, value: str, target: str, *, waits: bool = False) -> str:
         """The message about two units that are mixed; "": they are not, or a wheel with 60 teeth may mix them."""
         turns = given.inverse and wanted.unit.quantity == "rotation"
-        return "" if turns and self._sixty else _mismatch(given, wanted, value, target)
+        if turns and self._sixty:
+            return ""
+        ticks = wanted.unit == self._tick and self._passed_plainly
+        waits &= wanted.unit.quantity == "time"
+        return _mismatch(given, wanted, value, target) or (
+            _converted_twice(given, wanted, value, target) if ticks or waits else ""
+        )
 
     def _wrong_share(self, e: Expr, wanted: Measured, target: str) -> str:
         """The message about a share of a value (`FULL_MV * permille / 100`) that goes to a target; "": it may.
@@ -803,6 +824,16 @@ def _mismatch(given: Measured, wanted: Measured, value: str, target: str) -> str
         f"{value} is {given.of} ({given}) times {factor:.4g}, {target} is in {wanted}: "
         f"from {one.name} to {other.name} the factor is {ratio:.4g}"
     )
+
+
+def _converted_twice(given: Measured, wanted: Measured, value: str, target: str) -> str:
+    """The message about a time that is made a thousand times smaller units of, and goes where its own are expected."""
+    one, other = given.unit, wanted.unit
+    if one.ratio(other) != 1.0 or given.named or given.inverse or given.counter or wanted.factor != 1.0 or (
+        (_power_of_ten(given.factor) or 0) < _NO_PART
+    ):  # fmt: skip
+        return ""
+    return f"{value} is {given.of} ({given}) times {given.factor:.4g}, and {target} is in {wanted}, which is the same"
 
 
 def _of_turns(given: Measured, value: str, target: str) -> str:

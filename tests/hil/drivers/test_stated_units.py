@@ -105,6 +105,9 @@ def told(folder: Path, text: str, rule: str, name: str = "a.c") -> list[str]:
 
 
 MIXED = [
+    ("delay_ms(POLL_MS * 1000);",
+     "5000 is POLL_MS (ms by its name) times 1000, and parameter n of delay_ms is in ms by its function's name, which is "
+     "the same"),
     ("gapCm = gapMm;", "gapMm is in mm by its name, gapCm in cm by its name"),
     ("gapCm = gapMm * 10;",
      "gapMm * 10 is gapMm (mm by its name) times 10, gapCm is in cm by its name: from mm to cm the factor is 0.1"),
@@ -167,7 +170,7 @@ def test_a_value_in_another_unit_is_told(tmp_path: Path, body: str, message: str
     "stamp_us = POLL_MS * 1000L; stamp_us = tickMs * 1000UL; stamp_us += 1000UL * tickMs;",
     "stamp_us = NOTHING_MS;",
     "tickMs = (uint16_t)(elapsed_us() / 1000); tickMs = (uint16_t)(stamp_us >> 10);",
-    "delay_ms(POLL_MS); delay_ms((uint16_t)(POLL_US / 100));",
+    "delay_ms(POLL_MS); delay_ms((uint16_t)(POLL_US / 100)); delay_ms(POLL_MS * 100); tickMs = POLL_MS * 1000;",
     "tilt_deg = tilt_rad * 57.3f; tilt_rad = tilt_deg * (3.14159f / 180.0f);",
     # Half of it, a tenth of it in microseconds: it can be meant so.
     "stamp_us = tickMs * 500UL; stamp_us = tickMs * 100UL; gapMm = gapCm * 2;",
@@ -392,6 +395,14 @@ Int main(void)
         "PERIOD_US is in us by its name, params.period in ticks of 1 ms",
         "PERIOD_US is in us by its name, parameter timeout of Clock_create in ticks of 1 ms",
     ]),
+    # The tick is a millisecond, or so the program takes it elsewhere.
+    (("PERIOD_MS * 1000UL", "PERIOD_MS", "2"),
+     ["2000 is PERIOD_MS (ms by its name) times 1000, and parameter nticks of Task_sleep is in ticks of 1 ms, which is "
+      "the same"]),
+    (("PERIOD_MS", "1000 * PERIOD_MS", "PERIOD_MS * 10"),
+     ["2000 is PERIOD_MS (ms by its name) times 1000, and params.period is in ticks of 1 ms, which is the same"]),
+    (("PERIOD_MS * 1000UL", "PERIOD_MS * 1000UL", "1"), []),
+    (("PERIOD_MS * 10", "PERIOD_MS", "PERIOD_MS * 100"), []),
 ])  # fmt: skip
 def test_times_of_the_kernel_are_in_ticks(tmp_path: Path, times: tuple[str, str, str], messages: list[str]) -> None:
     assert told(tmp_path, KERNEL % times, "unit-by-name") == messages
