@@ -1363,7 +1363,7 @@ class Connections:
                 self._report(used, f"{block} gets codes but drives no pin", missing, f"{block}.DACOUTEN")
 
     def _serial(self) -> None:
-        """A SCI that is used while SWRESET keeps it in reset, or that hears nothing any more since a break."""
+        """A SCI that is used while SWRESET keeps it in reset, or that hears nothing any more from a break on."""
         for letter in SCI_PIE:
             block = f"Sci{letter.lower()}Regs"
             register = f"{block}.SCICTL1"
@@ -1373,7 +1373,16 @@ class Connections:
                 missing = MissingLink(f"{register}.SWRESET = 0: the module stays in reset", register, "SWRESET")
                 self._report(used, f"{block} never sends or receives a character", missing, register)
             receiver = self._chip.sci[letter].receiver
-            if reads and receiver.unheard and not self._writes_again(register, lambda value: not value, "SWRESET"):
+            reset = self._writes_again(register, lambda value: not value, "SWRESET")
+            heard = receiver.received and not receiver.unheard and not receiver.loopback
+            if reads and heard and self.started_up and not reset:
+                self._chip.findings.report_at(
+                    reads[-1], "break-stops",
+                    f"{block}: a break on the line (a pulled cable, a partner without power) stops the receiver until "
+                    f"SWRESET is cleared, and no statement clears {register}.SWRESET again",
+                    object=f"{block}.SCIRXST", how="dynamic",
+                )  # fmt: skip
+            if reads and receiver.unheard and not reset:
                 at = f"{receiver.broken_at / CYCLES_PER_MS:.3g} ms"
                 why = f"a break at {at} has stopped the receiver, and no statement clears {register}.SWRESET again"
                 message = f"{block} receives nothing any more: {receiver.unheard} characters have come since"

@@ -103,7 +103,7 @@ class SciReceiver:
         #: How many messages have ended in the FIFO, below its level, and waited there for the next one.
         self._ends_waited = 0
         #: Whether a character has come since reset, and the reads of SCIRXBUF before the first one.
-        self._received = False
+        self.received = False
         self._premature = 0
         #: Whether SCIRXBUF has been read, and the loss in loopback before that.
         self._ever_read = False
@@ -135,7 +135,7 @@ class SciReceiver:
     def reset(self) -> None:
         """Module reset; the owner resets the registers."""
         self.hold()
-        self._received = False
+        self.received = False
         self._premature = 0
         self._ever_read, self._lost_unread = False, ""
         self._overflow_answered = False
@@ -231,7 +231,7 @@ class SciReceiver:
     def _deliver(self, data: int, errors: int) -> None:
         if not self._ctl1.value & RXENA:
             return
-        self._received = True
+        self.received = True
         if self.fifo.enabled:
             self._deliver_to_fifo(data, errors)
             return
@@ -335,12 +335,12 @@ class SciReceiver:
 
     def _not_received(self, why: str) -> None:
         """A read of SCIRXBUF without a character.  One before the first character, to empty the buffer, is usual."""
-        if not self._received:
+        if not self.received:
             self._premature += 1
             if self._premature == 1:
                 return
         path = self._rxbuf.path
-        what = f"the character {self._rxbuf.value & 0xFF:#04x} from before" if self._received else "no character at all"
+        what = f"the character {self._rxbuf.value & 0xFF:#04x} from before" if self.received else "no character at all"
         self._cpu.findings.report(
             "result-not-ready", f"{path} was read while {why}: it holds {what}", object=path,
             value=self._rxbuf.value & 0xFF,

@@ -278,6 +278,19 @@ The check is made at the end of a run, for outputs that have actions (`AQCTLA`, 
         "TRM ePWM: trip zone, TZCTL",
     ),
     _rule(
+        "break-stops", Severity.NOTE, "A break on its line stops a receiver for good.", """
+After somebody has pulled the cable or switched the partner off, the program receives nothing until it is started again.
+
+The line is low then for longer than a character. The SCI takes this for a break, sets `BRKDT` and `RXERROR`, and gives
+one more interrupt. From then on it receives nothing, until `SCICTL1.SWRESET` is cleared and set again.
+
+The note is made at the end of a run in which an SCI has received characters, if no statement clears `SWRESET` after the
+start-up. If a break comes in the run, and characters come behind it, it is an error (`not-connected`).
+
+**Fix:** look at `SCIRXST.RXERROR` where a character is taken, and give `SWRESET` a pulse if it is set.
+""", "TRM SCI, SCIRXST.BRKDT",
+    ),
+    _rule(
         "result-not-ready",
         Severity.ERROR,
         "A result was read before it was ready.",

@@ -1360,6 +1360,8 @@ def test_a_receiver_that_a_break_has_stopped_hears_again_only_after_a_reset(
     (tmp_path / "drv.c").write_text(HEARS_A_PC.replace(was, now), encoding="utf-8")
     checked = check_files(DriverFiles([tmp_path / "drv.c"], calls=1, board=board, board_named=True, seconds=0.012))
     assert ["a break at" in f.message for f in checked.findings if f.rule == "not-connected"] == [True] * found
+    noted = [f.place.line for f in checked.findings if f.rule == "break-stops" and f.place is not None]
+    assert noted == ([6] if board is PcStaysOff else [])
 
 
 SKIPS = """        if (SciaRegs.SCIRXST.bit.RXERROR == 1) { Start_Again } else if (SciaRegs.SCIRXST.bit.RXRDY)
