@@ -171,9 +171,9 @@ names both units, and says where each comes from.
 
 `hil check` reports a value that goes to an object, a parameter or a result with another unit of the same quantity, also
 in a list of initial values, and sums and comparisons of two units. A constant factor converts: `x_ms * 1000` is
-microseconds. A power of ten in the wrong direction, or the reverse of the right factor, is reported. So is a time that is
-converted and goes where its own unit is expected (`delay_ms(GAP_MS * 1000)`); for ticks, if the program passes a time in
-this unit on as it is elsewhere. Any other factor may mean something else, and is not.
+microseconds. A power of ten in the wrong direction, or the reverse of the right factor, is reported. So is a time that
+is converted and goes where its own unit is expected (`delay_ms(GAP_MS * 1000)`); for ticks, if the program passes a
+time in this unit on as it is elsewhere. Any other factor may mean something else, and is not.
 A product with 180/pi (57.3) is in degrees: it is reported where it, or an object that takes only such products, goes to
 `sinf` or to a value in radians. A share of a value (`FULL_MV * permille / 100`) that goes to its own quantity is
 reported if its factor is ten times too large, for a share is no multiple; a smaller part of it can be meant.

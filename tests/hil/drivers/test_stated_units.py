@@ -106,8 +106,8 @@ def told(folder: Path, text: str, rule: str, name: str = "a.c") -> list[str]:
 
 MIXED = [
     ("delay_ms(POLL_MS * 1000);",
-     "5000 is POLL_MS (ms by its name) times 1000, and parameter n of delay_ms is in ms by its function's name, which is "
-     "the same"),
+     "5000 is POLL_MS (ms by its name) times 1000, and parameter n of delay_ms is in ms by its function's name, which "
+     "is the same"),
     ("gapCm = gapMm;", "gapMm is in mm by its name, gapCm in cm by its name"),
     ("gapCm = gapMm * 10;",
      "gapMm * 10 is gapMm (mm by its name) times 10, gapCm is in cm by its name: from mm to cm the factor is 0.1"),
