@@ -39,7 +39,7 @@ MAX_PROGRAMS: Final = 256
 #: How many of them a process keeps in memory.
 IN_MEMORY: Final = 32
 #: For how many requests a process keeps programs to take over functions from, and how many: they keep their trees.
-ALIKE: Final = 4
+ALIKE: Final = 8
 ALIKE_EACH: Final = 2
 PACKAGE: Final = Path(__file__).resolve().parent.parent
 #: Folders that a translation depends on in addition to the firmware, and whether their subfolders count too.
@@ -297,9 +297,12 @@ def _keep(file: Path, kept: CachedProgram) -> None:
         with os.fdopen(descriptor, "wb") as target:
             target.write(content)
         os.replace(temporary, file)
-        programs = sorted(file.parent.glob("*.program"), key=lambda p: p.stat().st_mtime_ns)
-        for old in programs[:-MAX_PROGRAMS]:
-            old.unlink()
+        with os.scandir(file.parent) as entries:
+            programs = [entry for entry in entries if entry.name.endswith(".program")]
+        if len(programs) > MAX_PROGRAMS:
+            programs.sort(key=lambda entry: entry.stat().st_mtime_ns)
+            for old in programs[:-MAX_PROGRAMS]:
+                os.unlink(old)
     except (OSError, pickle.PicklingError, TypeError, AttributeError, RecursionError):
         with suppress(OSError):
             if temporary:

@@ -421,6 +421,12 @@ def named_scalar(lvalue: LValue) -> NamedScalar | None:
     return None
 
 
+@once
+def named_scalars(function: Function) -> set[NamedScalar]:
+    """The scalars that a function names."""
+    return {scalar for p in within(function.body) if isinstance(p, LValue) and (scalar := named_scalar(p)) is not None}
+
+
 def fixed_words(lvalue: LValue) -> int | None:
     """The offset of a scalar from the root of its lvalue, in words; None if a subscript is no constant."""
     words = lvalue.words

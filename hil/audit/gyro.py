@@ -13,13 +13,13 @@ from emulator.signals import SpiSlave
 from hil.audit import main_robot_guards, properties
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
 from hil.audit.properties import Z
-from hil.audit.rig import Fixes, Rig, robot, static_findings
+from hil.audit.rig import ALONE, Fixes, Rig, robot, static_findings
 from hil.audit.task_rig import TaskRig
 from hil.golden.scripted_gyro import OUT_TEMP, ScriptedGyro
 from hil.robot.board import GYRO_CS_GPIO
 
 #: A rig with GYRO.c and the modules that it needs.  It is built faster than the whole robot's program.
-_rig: Final = partial(Rig, modules=("firmware_model.gyro",))
+_rig: Final = partial(Rig, modules=ALONE["gyro"])
 
 X: Final = 0
 #: A turn of 1 rad/s.

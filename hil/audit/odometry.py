@@ -10,10 +10,10 @@ from typing import Final
 from hil.audit import properties
 from hil.audit.evidence import Evidence, reported
 from hil.audit.properties import SpeedStep
-from hil.audit.rig import Fixes, Rig
+from hil.audit.rig import ALONE, Fixes, Rig
 
 #: A rig with Odometry.c and the modules that it needs.  It is built faster than the whole robot's program.
-_rig: Final = partial(Rig, modules=("firmware_model.odometry",))
+_rig: Final = partial(Rig, modules=ALONE["odometry"])
 
 
 def slow_turn_lost(fixes: Fixes) -> Evidence:

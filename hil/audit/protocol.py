@@ -10,11 +10,11 @@ from typing import Final
 from hil.audit import properties
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
 from hil.audit.properties import MonitorValues
-from hil.audit.rig import Fixes, Rig, robot
+from hil.audit.rig import ALONE, Fixes, Rig, robot
 from hil.client.orders import checked, set_reference
 
 #: A rig with protocol.c and the modules that it needs.  It is built faster than the whole robot's program.
-_rig: Final = partial(Rig, modules=("firmware_model.protocol",))
+_rig: Final = partial(Rig, modules=ALONE["protocol"])
 
 COMMA: Final = ord(",")
 

@@ -27,6 +27,8 @@ from hil.world.maps import WorldMap
 
 #: A tick of the kernel's clock.
 TICK_S: Final = 1e-3
+#: The modules that many demonstrations link alone: `Rig(fixes, modules=ALONE["us"])`.
+ALONE: Final = {name: (f"firmware_model.{name}",) for name in ("us", "gyro", "odometry", "protocol")}
 
 
 @dataclass(frozen=True, slots=True)

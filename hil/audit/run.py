@@ -26,7 +26,7 @@ from firmware_model.corrections import ALL, resolve
 from hil.audit import forked
 from hil.audit.demonstrations import DEMONSTRATIONS
 from hil.audit.evidence import Evidence, EvidenceKind
-from hil.audit.rig import Rig, Variant, robot
+from hil.audit.rig import ALONE, Rig, Variant, robot
 from hil.audit.templates import Templates
 from hil.collector import uncollected
 from hil.reports.json_report import finding_of
@@ -152,6 +152,8 @@ def _audit_forked(
             Rig(one, static=len(names) > _MANY)
         if len(names) > _MANY:
             Rig({ALL}, static=True)
+            for modules in ALONE.values():
+                Rig(one, modules=modules)
             with robot(one, boot=False):  # its program is watched
                 pass
     calls = ((name, partial(templates.using, partial(show, name))) for name in names)

@@ -17,7 +17,7 @@ from emulator.clock import SYSCLK_HZ
 from emulator.devices.lv_maxsonar_beam import Echo
 from firmware_model.corrections import ALL
 from hil.audit.evidence import Evidence, measured, read
-from hil.audit.rig import Fixes, Rig, robot
+from hil.audit.rig import ALONE, Fixes, Rig, robot
 from hil.robot.board import RobotBoard
 from hil.rta.analysis import Protocol, analyse
 from hil.rta.task_set import NS_PER_US
@@ -30,7 +30,7 @@ _INCH_CM: Final = 2.54
 
 def _sonar_codes(range_m: float) -> float:
     """The left sonar's code, in counts, of a wall at this range."""
-    rig = Rig(modules=("firmware_model.us",))
+    rig = Rig(modules=ALONE["us"])
     rig.board.sonars.set_range_source(lambda _name, _cycles: Echo(range_m))
     rig.fw.us.Init_US()
     rig.wait(0.6)  # three rounds of the ring: a step upwards falls short in the first

@@ -8,10 +8,10 @@ from typing import Final
 
 from hil.audit import properties
 from hil.audit.evidence import Evidence, Picture, Series, measured, reported
-from hil.audit.rig import Fixes, Rig, static_findings
+from hil.audit.rig import ALONE, Fixes, Rig, static_findings
 
 #: A rig with us.c and the modules that it needs.  It is built faster than the whole robot's program.
-_rig: Final = partial(Rig, modules=("firmware_model.us",))
+_rig: Final = partial(Rig, modules=ALONE["us"])
 
 #: Counts of a wall at 1.2 m, where the window of the C applies, and at 50 cm, where the robot navigates.
 FAR, NEAR, OUTLIER = 400, 160, 300

@@ -52,6 +52,7 @@ from emulator.c28x.tree_queries import (
     blocks,
     leaves,
     named_scalar,
+    named_scalars,
     own_nodes,
     parts,
     source_text,
@@ -84,7 +85,7 @@ def check_off_by_one(modules: Iterable[Module], reports: dict[Module, StaticRepo
     gates = [gate for function in owners for gate in _gates(function)]
     for gate in gates:
         local = isinstance(gate.number[0], Variable) and gate.number[0].kind != "global"
-        functions = [gate.function] if local else list(owners)
+        functions = [gate.function] if local else [f for f in owners if gate.number in named_scalars(f)]
         if not (local or whole) or not _only_counted(gate, functions):
             continue
         for function in functions:

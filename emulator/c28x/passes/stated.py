@@ -64,6 +64,7 @@ from emulator.c28x.tree_queries import (
     children,
     leaves,
     named_scalar,
+    named_scalars,
     own_nodes,
     parts,
     roots,
@@ -109,10 +110,12 @@ def check_stated(reports: dict[Module, StaticReport], given: GivenValues) -> Non
     """Report the results of all functions that do not hold what the source lets through."""
     owners = {function: report for module, report in reports.items() for function in module.functions}
     program = _StatedValues(owners, given)
+    waiting = list(owners)
     for _ in range(_ROUNDS):
-        for function in owners:
+        for function in waiting:
             _StatedWalk(function, program, None).block(function.body, [])
-        program.settle()
+        changed = program.settle()
+        waiting = [function for function in owners if not changed.isdisjoint(named_scalars(function))]
     for function, report in owners.items():
         _StatedWalk(function, program, report).block(function.body, [])
 
@@ -150,8 +153,9 @@ class _StatedValues:
             if self._whole and scalar not in self._tested and all(_counts_up(one, scalar) for one in values)
         }  # fmt: skip
 
-    def settle(self) -> None:
-        """Decide for the scalars from the values that were found."""
+    def settle(self) -> set[NamedScalar]:
+        """Decide for the scalars from the values that were found.  Returns those whose answers are new."""
+        scalars, bounds = self.scalars, self.bounds
         self.scalars, self.bounds = {}, {}
         for scalar, values in self.given.scalars.items():
             holder, _ = scalar
@@ -174,6 +178,12 @@ class _StatedValues:
                 least = min(limits)  # a larger one may belong to another mode
                 if self._tested.get(scalar, least.most) >= least.most:
                     self.scalars[scalar] = least
+        # A bound is asked for behind a test only.
+        return {
+            scalar for scalar in self.given.scalars
+            if self.scalars.get(scalar) != scalars.get(scalar)
+            or (scalar in self._tested and self.bounds.get(scalar) != bounds.get(scalar))
+        }  # fmt: skip
 
     def from_outside(self, e: Expr, followed: frozenset[NamedScalar] = frozenset()) -> bool | None:
         """Whether somebody else decides a value: a text, a word that was received, what a pointer leads to.

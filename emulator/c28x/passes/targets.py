@@ -15,8 +15,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from itertools import chain
 from operator import is_
-from typing import Any
+from typing import Any, NamedTuple
 
 from emulator.c28x.ctypes import ArrayType, PointerType
 from emulator.c28x.passes.rewriting import Rewriting
@@ -41,7 +42,7 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import INNER, addressed, bare, own_nodes, roots, statements
+from emulator.c28x.tree_queries import INNER, addressed, bare, once, own_nodes, roots, statements
 
 #: The object to which a pointer points: a variable at file scope, and the offset in it in leaves and words.
 Target = tuple[Variable, int, int]
@@ -55,30 +56,57 @@ def with_targets(modules: Iterable[Module]) -> list[Module]:
     return [view.module(module, [view.named.get(v, v) for v in module.variables]) for module in modules]
 
 
+class _PointerUses(NamedTuple):
+    """What a function does with pointers."""
+
+    #: The statements with an address, a pointer or what it leads to.
+    statements: list[Stmt]
+    #: The pointers that it sets, with what they get.
+    set_to: list[tuple[Variable, Expr]]
+    calls: list[Call]
+    #: The variables and functions whose address it takes.
+    taken: set[Variable]
+    by_address: set[str]
+
+
+@once
+def _pointer_uses(function: Function) -> _PointerUses:
+    found = _PointerUses([], [], [], set(), set())
+    for s in statements(function.body):
+        nodes = own_nodes(s)
+        found.taken.update(addressed(nodes))
+        found.by_address.update(p.function.path for p in nodes if isinstance(p, FunctionRef))
+        found.calls.extend(p for p in nodes if isinstance(p, Call))
+        if any(isinstance(p, AddressOf) or (isinstance(p, LValue) and _by_pointer(p.root)) for p in nodes):
+            found.statements.append(s)
+        match s:
+            case Assign(target=LValue(root=Variable(ctype=PointerType()) as pointer), value=value):
+                found.set_to.append((pointer, value))
+            case Declare(variable=Variable(ctype=PointerType()) as pointer, value=Expr() as value):
+                found.set_to.append((pointer, value))
+    return found
+
+
+def _by_pointer(root: Variable | Expr) -> bool:
+    return isinstance(root, Expr) or isinstance(root.ctype, PointerType)
+
+
 class _Pointers:
     """The pointers of a program that point to one object at file scope, as long as it runs."""
 
     def __init__(self, functions: list[Function]) -> None:
-        taken: set[Variable] = set()
         #: Each pointer with all that it may get; None: with anything.
         self._gets: dict[Variable, list[Expr] | None] = {}
-        by_address: set[str] = set()
-        called: list[Call] = []
-        for function in functions:
-            for s in statements(function.body):
-                nodes = own_nodes(s)
-                taken |= addressed(nodes)
-                by_address |= {p.function.path for p in nodes if isinstance(p, FunctionRef)}
-                called += [p for p in nodes if isinstance(p, Call)]
-                match s:
-                    case Assign(target=LValue(root=Variable(ctype=PointerType()) as pointer), value=value):
-                        self._add(pointer, value)
-                    case Declare(variable=Variable(ctype=PointerType()) as pointer, value=Expr() as value):
-                        self._add(pointer, value)
+        uses = list(map(_pointer_uses, functions))
+        for use in uses:
+            for pointer, value in use.set_to:
+                self._add(pointer, value)
         parameters = {f.path: f.parameters for f in functions}
-        for call in called:
+        for call in chain.from_iterable(use.calls for use in uses):
             for pointer, value in zip(parameters.get(call.function.path, ()), call.arguments, strict=False):
                 self._add(pointer, value)
+        taken = set[Variable]().union(*(use.taken for use in uses))
+        by_address = set[str]().union(*(use.by_address for use in uses))
         for function in functions:
             if function.path in by_address:
                 taken.update(function.parameters)
@@ -137,7 +165,7 @@ class _TargetView(Rewriting):
         reached: set[Variable] = set()
         pointed: set[Variable] = set()
         for function in functions:
-            for s in statements(function.body):
+            for s in _pointer_uses(function).statements:
                 for root in roots(s):
                     self._look(root, s, reached, pointed)
         for v in objects:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Iterator, Mapping
 from itertools import pairwise
 from math import ceil, floor, isfinite
-from typing import Any
+from typing import Any, NamedTuple
 
 from emulator.c28x.arithmetic import COMPARE
 from emulator.c28x.ctypes import LONG_DOUBLE, NOBODY, UCHAR, FloatType, IntType, PointerType
@@ -47,6 +47,7 @@ from emulator.c28x.tree_queries import (
     bare,
     calls,
     different,
+    once,
     own_nodes,
     parts,
     source_text,
@@ -112,6 +113,29 @@ class ConstantChecks:
         self.report_here("integer-division-in-float", message, text)
 
 
+class _KnownLocals(NamedTuple):
+    """What is known of the locals of a function."""
+
+    known: Ranges
+    #: The same without the numbers of turns of loops.
+    loosely: Ranges
+    #: The counters of loops around each statement: a test of one of them may be a choice of the build.
+    turning: dict[int, frozenset[Variable]]
+    #: The values of counters after their loops.
+    ends: CounterEndValues
+    doubtful: set[Variable]
+    fixed: dict[Variable, Const]
+
+
+@once
+def _known_of(function: Function) -> _KnownLocals:
+    return _KnownLocals(
+        known_locals(function, counted=True), known_locals(function, counted=False),
+        turning(function.body, frozenset()), CounterEndValues(function.body), maybe_negative(function),
+        fixed_locals(function),
+    )  # fmt: skip
+
+
 class ValueChecks(ConstantChecks):
     """The checks of one function."""
 
@@ -131,15 +155,8 @@ class ValueChecks(ConstantChecks):
         self.masks = masks
         self.results = results or {}
         self.body = function.body
-        self.known = known_locals(function, counted=True)
-        self.loosely = known_locals(function, counted=False)
-        self.ranges: Ranges = self.known
-        #: The counters of loops around each statement: a test of one of them may be a choice of the build.
-        self.turning = turning(function.body, frozenset())
-        #: The values of counters after their loops.
-        self.ends = CounterEndValues(function.body)
-        self.doubtful = maybe_negative(function)
-        self.fixed = fixed_locals(function)
+        self.locals = _known_of(function)
+        self.ranges: Ranges = self.locals.known
         #: Identities of results that are cast to their own type: a wrap is intended.
         self.meant: set[int] = set()
         #: Identities of assignments in a branch to objects that the other branch assigns too: `x = x` is allowed there.
@@ -147,16 +164,17 @@ class ValueChecks(ConstantChecks):
 
     def run(self) -> None:
         """Make all checks of the function."""
+        known, loosely, ends = self.locals.known, self.locals.loosely, self.locals.ends
         for s in statements(self.body):
             self.where = s.where
-            self.ranges = self.known
-            for counter in self.turning.get(id(s), ()):
-                loosely = {counter: self.loosely[counter]} if counter in self.loosely else {}
-                self.ranges = {v: bounds for v, bounds in self.ranges.items() if v is not counter} | loosely
-            if self.ends.behind.get(id(s)):
-                self.ranges = {**self.ranges, **{v: (end, end) for v, end in self.ends.behind[id(s)].items()}}
-            if id(s) in self.ends.too_late:
-                self.too_late(self.ends.too_late[id(s)])
+            self.ranges = known
+            for counter in self.locals.turning.get(id(s), ()):
+                others = {v: bounds for v, bounds in self.ranges.items() if v is not counter}
+                self.ranges = others | ({counter: loosely[counter]} if counter in loosely else {})
+            if behind := ends.behind.get(id(s)):
+                self.ranges = {**self.ranges, **{v: (end, end) for v, end in behind.items()}}
+            if id(s) in ends.too_late:
+                self.too_late(ends.too_late[id(s)])
             literal = isinstance(s, While) and isinstance(s.test, Const)
             match s:
                 case If(test=test) | While(test=test) if not literal:
@@ -386,7 +404,7 @@ class ValueChecks(ConstantChecks):
                     self.given(argument)
                 if isinstance(e, Call):
                     check_format(e, self.to.double, self.report_here)
-                    check_blocks(e, self.report_here, self.fixed)
+                    check_blocks(e, self.report_here, self.locals.fixed)
             case Const():
                 self.folded(e)
             case Convert(ctype=FloatType(), operand=Binary(op="/", right=Const(value=int(b))) as quotient):
@@ -440,7 +458,7 @@ class ValueChecks(ConstantChecks):
                     ctype=IntType(signed=False) as to,
                     operand=Expr(ctype=IntType(signed=True)) as operand,
                     explicit=False,
-                ) if interval(operand, self.ranges)[0] < 0 and negative(operand, self.doubtful):
+                ) if interval(operand, self.ranges)[0] < 0 and negative(operand, self.locals.doubtful):
                     text = source_text(operand)
                     message = f"{text} may be negative and is compared as {to}: it then counts as large"
                     self.report_here("sign-compare", message, text)
@@ -664,8 +682,8 @@ def fixed_locals(function: Function) -> dict[Variable, Const]:
                 given.setdefault(variable, []).append(value)
             case For(counter=variable):
                 given.setdefault(variable, []).append(None)
-    once = {variable: bare(v[0]) for variable, v in given.items() if len(v) == 1 and v[0] is not None}
-    return {variable: value for variable, value in once.items() if isinstance(value, Const)}
+    single = {variable: bare(v[0]) for variable, v in given.items() if len(v) == 1 and v[0] is not None}
+    return {variable: value for variable, value in single.items() if isinstance(value, Const)}
 
 
 def negative(e: Expr, doubtful: set[Variable]) -> bool:
