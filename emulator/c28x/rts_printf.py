@@ -21,6 +21,7 @@ import re
 from typing import Any, Final
 
 from emulator.c28x.memory import Pointer
+from emulator.c28x.number_text import report_signed_fraction
 from emulator.c28x.rts_strings import Strings
 from emulator.c28x.varargs import ArgumentBlock, Varargs, signed16, signed32
 
@@ -115,7 +116,9 @@ class Printing(Strings):
         def converted(found: re.Match[str]) -> str:
             return self._conversion(name, form, found, va)
 
-        return _SPECIFICATION.sub(converted, form)
+        text = _SPECIFICATION.sub(converted, form)
+        report_signed_fraction(self._runtime.findings, form, text)
+        return text
 
     def _conversion(self, name: str, form: str, found: re.Match[str], va: Varargs) -> str:
         """The text of one conversion specification."""

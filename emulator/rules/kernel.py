@@ -637,9 +637,12 @@ The check compares the format with the divisor. A version (`v%d.%d`) or a date h
 computed, have a unit behind it, or have a sign. A number that goes in steps of which each has all digits
 (`counts * 25`) is not reported.
 
+In C the rest of a negative number is negative, too. When the program runs, a text that shows `-70.-1` or `0.-5` is
+reported where it is printed, or else where it is sent over an SCI. `3.-5` are two numbers.
+
 **Fix:** `%d.%02d`; the sign as a part of its own: `%s%d.%02d` with `x < 0 ? "-" : ""` and the magnitude of `x`.
 """, "ISO C 7.19.6.1, 6.5.5 p6",
-        how="static",
+        how="dynamic/static",
     ),
     _rule(
         "printf-outbuf", Severity.ERROR, "A conversion is wider than the buffer of System_printf.", """

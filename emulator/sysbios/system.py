@@ -23,6 +23,7 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from emulator.c28x.arithmetic import f32
+from emulator.c28x.number_text import report_signed_fraction
 from emulator.c28x.varargs import Varargs, signed16, signed32
 from emulator.sysbios.core import KernelCore, KernelError
 
@@ -237,8 +238,16 @@ class SystemModule:
         self.core.clock.charge(self.core.costs["print_call"])
         if form is None:
             return 0
-        printer = _Printer(self.core, put, Varargs(self.core, arguments), self._floats)
-        printer.run(text_of(form))
+        shown: list[str] = []
+
+        def show(character: str) -> None:
+            shown.append(character)
+            put(character)
+
+        printer = _Printer(self.core, show, Varargs(self.core, arguments), self._floats)
+        text = text_of(form)
+        printer.run(text)
+        report_signed_fraction(self.core.findings, text, "".join(shown))
         return printer.count
 
     def _into(self, buf: Any, room: int | None, form: Any, arguments: Arguments) -> int:

@@ -24,6 +24,7 @@ from hil.drivers.least_pulses import swallowed_pulses
 from hil.drivers.periods import RoutinePeriods, wrong_periods, wrong_timers
 from hil.drivers.places import anchored, mentions_gyro, of_open_trip, of_unused_part
 from hil.drivers.roles import Roles
+from hil.drivers.sent_texts import SentTexts
 from hil.drivers.sources import ArrivalWatch
 from hil.drivers.stale import AgeWatch, watched
 from hil.drivers.stated_rates import wrong_rates
@@ -206,6 +207,7 @@ def _run(
         image.board.clock.after(round(parts_s * SYSCLK_HZ), lambda: cut_off(image.board))
     arrivals = ArrivalWatch(image.board) if roles.main is not None and parts_s is None else None
     routines = RoutinePeriods(image.board)
+    SentTexts(image.board)
     scales, times = FaceScales(image, build, for_s), TimeCounts(image, build)
     budget = TimeBudget(RUN)
     stop: BaseException | None = None

@@ -145,3 +145,22 @@ def test_memmove_takes_words_not_octets() -> None:
     shop = Workshop(source, header=HEADER)
     shop.run(12)
     assert set(shop.rules()) == {"memcpy-octets"}
+
+
+@pytest.mark.parametrize(
+    ("form", "arguments", "wrong"),
+    [
+        ("V%d.%d,%u", "-70, -1, 5", True),
+        ("%d.%d C", "0, -5", True),
+        ("%d.%s", "0, '-5'", True),
+        ("%d.%02d", "0, -5", True),
+        ("%d.%d", "3, -5", False),  # two numbers
+        ("%d. %d", "0, -5", False),
+        ("0.-9: %d", "1", False),  # what the format says itself
+        ("%d.-%d. level", "0, 3", False),
+        ("CH%d.%d", "0, -5", False),
+    ],
+)
+def test_a_number_with_a_sign_behind_its_point_is_told(form: str, arguments: str, *, wrong: bool) -> None:
+    shop, _ = run(f'return sprintf(buf, "{form}", {arguments})')
+    assert shop.rules() == ["fraction-text"] * wrong
