@@ -55,10 +55,16 @@ def _lines(report: Report) -> Iterator[str]:
     called = [f"{one.name} ({one.calls})" for one in report.run.functions if one.called]
     if called:
         yield f"called, with how many argument lists: {', '.join(called)}"
+    left: dict[str, list[str]] = {}
     for one in report.run.functions:
-        if one.note:
-            what = "" if one.called else "not called with generated arguments: "
-            yield f"{what}{one.name} ({relative_path(one.file)}:{one.line}): {one.note}"
+        named = f"{one.name} ({relative_path(one.file)}:{one.line})"
+        if one.note and one.called:
+            yield f"{named}: {one.note}"
+        elif one.note:
+            left.setdefault(one.note, []).append(named)
+    for note, names in left.items():
+        which = names[0] if len(names) == 1 else ", ".join(name.partition(" ")[0] for name in names)
+        yield f"not called with generated arguments: {which}: {'' if len(names) == 1 else 'each: '}{note}"
 
 
 def findings_table(report: Report, width: int, most: int | None = None) -> Table:

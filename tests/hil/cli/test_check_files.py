@@ -280,11 +280,14 @@ class TestC:
 
     def test_the_terminal_shows_places_and_counts(self, folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
         (folder / "lamp.c").write_text(
-            '#include "F28x_Project.h"\nvoid Lamp(void)\n{\n    GpioCtrlRegs.GPADIR.bit.GPIO5 = 1;\n}\n',
+            '#include "F28x_Project.h"\nvoid Lamp(void)\n{\n    GpioCtrlRegs.GPADIR.bit.GPIO5 = 1;\n}\n'
+            "static void On(void) { }\nstatic void Off(void) { }\ninterrupt void Isr(void) { On(); Off(); }\n",
             encoding="utf-8",
         )
         assert invoke(["check", "lamp.c"]) == 1
         out = capfd.readouterr().out
+        assert "arguments: On, Off: each: it is static: only its own file calls it\n" in out
+        assert "arguments: Isr (lamp.c:8): it is an interrupt routine\n" in out
         assert "lamp.c:4:5" in out
         assert out.splitlines()[-1] == "1 error; 1 fails the check"
         assert f"may be {UNCALIBRATED_FACTOR:g} times longer or shorter on the chip: it was not calibrated." in out
