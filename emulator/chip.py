@@ -292,6 +292,7 @@ class Chip:
             self.analog[letter], interrupts, event, vrefhi_v=vrefhi_v,
             noise_lsb=0.0 if noise is None else 1.0, random=noise,
             left_by=lambda n: self.pie.left_by(*ADC_PIE[letter][n]),
+            routine=lambda n: self.pie.routine(*ADC_PIE[letter][n]),
             awaited=partial(self._awaits, letter),
             selected=partial(self._given_to_dma, letter),
             trigger_changed=partial(self._adc_trigger_changed, letter),

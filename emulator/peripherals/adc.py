@@ -116,6 +116,7 @@ class Adc:
         "_results",
         "_sample",
         "_sel_then",
+        "_routine",
         "_selected",
         "_soc",
         "_socs",
@@ -139,6 +140,7 @@ class Adc:
                  vrefhi_v: float = 3.0, vreflo_v: float = 0.0, noise_lsb: float = 0.0, random: Random | None = None,
                  sync_cycles: int = 2, any_write_resets_pointer: bool = False, flag_collision: Collision = "cleared",
                  left_by: Callable[[int], Place | None] = lambda n: None,
+                 routine: Callable[[int], Place | None] = lambda n: None,
                  awaited: Callable[[int], bool] = lambda n: True,
                  selected: Callable[[int], Cause | None] = lambda n: None,
                  trigger_changed: Callable[[int, bool], None] = lambda _trigsel, _on: None) -> None:  # fmt: skip
@@ -149,7 +151,8 @@ class Adc:
         `flag_collision`: what ADCINTFLGCLR does in the cycle of the EOC: `erratum` leaves the flag set (ERR),
         `overflow` clears it and sets ADCINTOVF (TRM), `cleared` only clears it (CHOICE: the default, because the CPU is
         charged a block of statements at a time, so that one cycle of its time means little).
-        `left_by(n)` returns where the routine of ADCINT(n+1) is in the source, if it has run since the last pulse.
+        `routine(n)` returns where the routine of ADCINT(n+1) is in the source, and so does `left_by(n)` if that has run
+        since the last pulse.
         `awaited(n)` tells whether anything uses that interrupt.  `selected(n)` returns the statement that has given it
         to the DMA, if only the DMA uses it.
         `trigger_changed(trigsel, on)` is called when that hardware trigger begins (or ceases) to start conversions.
@@ -164,7 +167,7 @@ class Adc:
         self._interrupts = (*interrupts, event)
         #: The function that a pulse calls: the PIE's input itself, as long as nothing else listens.
         self._pulses, self._adcint1 = list(self._interrupts), interrupts[0]
-        self._left_by, self._awaited, self._selected = left_by, awaited, selected
+        self._left_by, self._routine, self._awaited, self._selected = left_by, routine, awaited, selected
         self._collision, self._notes_collisions = flag_collision, flag_collision != "cleared"
         self._intflg, self._intovf = registers["ADCINTFLG"], registers["ADCINTOVF"]
         self._intsel12, self._intsel34 = registers["ADCINTSEL1N2"], registers["ADCINTSEL3N4"]
@@ -595,7 +598,7 @@ class Adc:
             self._latch_at = NEVER
 
     def _read_early(self, n: int) -> int:
-        """A read while a conversion is under way or latches.  It is reported only if software forced the conversion."""
+        """A read while a conversion is under way or latches.  What software forced is an error."""
         register = self._results[n]
         if register is self._latch and self._clock.now < (self._latched if self._latch_at == NEVER else self._latch_at):
             return self._unlatched
@@ -612,7 +615,31 @@ class Adc:
                 )  # fmt: skip
             else:
                 self._not_ready(n, f"while SOC{n} {state}: it holds the result of an earlier conversion")
+        elif state:
+            self._check_last(n, state)
         return register.value
+
+    def _check_last(self, n: int, state: str) -> None:
+        """Report a read in the routine of another SOC, which the same trigger has started and which has ended."""
+        trigger = self._trigger_of(n)
+        for k in range(4):
+            select = (self._intsel12, self._intsel34)[k // 2].value >> 8 * (k % 2)
+            last = select & SELECT
+            if not select & ENABLE or last == n or self._trigger_of(last) != trigger or self._under_way(last):
+                continue
+            routine = self._routine(k)
+            if routine is not None and self._cpu.routine_at(routine) == self._findings.context():
+                path = self._results[n].path
+                self._findings.report(
+                    "result-of-before",
+                    f"{path} was read in the routine of ADCINT{k + 1}, which comes at the end of SOC{last}, while "
+                    f"SOC{n} of the same trigger {state}: it is the result of the trigger before",
+                    object=path, value=self._results[n].value,
+                )  # fmt: skip
+
+    def _trigger_of(self, n: int) -> int:
+        """TRIGSEL of a SOC."""
+        return self._regs.registers[f"ADCSOC{n}CTL"].value >> 20 & 0x1F
 
     def _read_never(self, n: int) -> int:
         """A read before the first conversion."""

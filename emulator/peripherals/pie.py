@@ -168,8 +168,11 @@ class Pie:
 
     def left_by(self, group: int, n: int) -> Place | None:
         """The place of the firmware's routine of interrupt `group`.`n`, if it has run since the last pulse."""
-        vector = vector_id(group, n)
-        return self._vectors.get(vector, (None, None))[1] if self._served[vector] >= 0 else None
+        return self.routine(group, n) if self._served[vector_id(group, n)] >= 0 else None
+
+    def routine(self, group: int, n: int) -> Place | None:
+        """The place of the firmware's routine of interrupt `group`.`n`."""
+        return self._vectors.get(vector_id(group, n), (None, None))[1]
 
     def set_vector(self, vector_id: int, handler: Callable[[], None] | None, begins: Place | None = None) -> None:
         """Write a vector: `handler` runs when interrupt `vector_id` is taken (13..0xDF).  None: nothing runs.

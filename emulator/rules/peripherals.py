@@ -313,6 +313,19 @@ way; and one read of an empty receive buffer before the first word, because star
         "TRM ADC, SPI, SCI",
     ),
     _rule(
+        "result-of-before", Severity.NOTE, "An ADC routine reads a result whose conversion still runs.", """
+The two results that the routine takes are not of the same moment: one of them is of the trigger before.
+
+A trigger starts several conversions, one after the other. `ADCINTSEL1N2.INT1SEL = 0` requests the interrupt at the end
+of SOC0, and the routine reads `ADCRESULT1` while SOC1 is being converted. Power and phase are wrong then, for voltage
+and current are a period apart. With another compiler the routine may be slower, and gets the new result.
+
+The note is made at such a read in the routine itself. A slow quantity, such as a temperature, may rightly be taken so.
+
+**Fix:** request the interrupt at the end of the last conversion of the trigger.
+""", "TRM ADC, ADCINTSEL1N2",
+    ),
+    _rule(
         "flag-not-cleared",
         Severity.ERROR,
         "An old flag was taken for a new event, or blocks it.",

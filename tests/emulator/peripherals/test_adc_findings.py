@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from hil.drivers.check import DriverFiles, check_files
 from tests.emulator.drivers import Driver
 
 ADC = """
@@ -225,3 +228,59 @@ def test_a_flag_that_triggers_a_soc_must_be_cleared_and_no_other(trigger: int, f
     driver = adc(triggers)
     driver.run()
     assert driver.rules() == found
+
+
+SEQUENCE = """#include "F28x_Project.h"
+int32 power = 0;
+interrupt void sample(void)
+{
+    Uint16 u = AdcaResultRegs.ADCRESULT0;
+    power += (int32)u * AdcaResultRegs.ADCRESULT1;
+    AdcaRegs.ADCINTFLGCLR.bit.ADCINT1 = 1;
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;
+}
+void main(void)
+{
+    InitSysCtrl();
+    DINT;
+    InitPieCtrl();
+    IER = 0;
+    InitPieVectTable();
+    EALLOW;
+    PieVectTable.ADCA1_INT = &sample;
+    AdcaRegs.ADCCTL2.bit.PRESCALE = 6;
+    AdcaRegs.ADCCTL1.bit.INTPULSEPOS = 1;
+    AdcaRegs.ADCCTL1.bit.ADCPWDNZ = 1;
+    DELAY_US(1000);
+    AdcaRegs.ADCSOC0CTL.all = 0x00100000UL + (2UL << 15) + 29;     /* CPU timer 0 */
+    AdcaRegs.ADCSOC1CTL.all = 0x00100000UL + (3UL << 15) + 29;
+    AdcaRegs.ADCINTSEL1N2.bit.INT1SEL = 0;
+    AdcaRegs.ADCINTSEL1N2.bit.INT1E = 1;
+    EDIS;
+    InitCpuTimers();
+    ConfigCpuTimer(&CpuTimer0, 200.0f, 100.0f);
+    PieCtrlRegs.PIEIER1.bit.INTx1 = 1;
+    IER |= M_INT1;
+    EINT;
+    StartCpuTimer0();
+    for (;;) ;
+}
+"""
+
+
+@pytest.mark.parametrize(("was", "now", "noted"), [
+    ("", "", True),
+    ("    Uint16 u =", "    Uint16 u;\n    AdcaRegs.ADCINTFLGCLR.bit.ADCINT1 = 1;\n    u =", True),
+    # The last of the trigger; a routine that is slow enough; another trigger.
+    ("INT1SEL = 0", "INT1SEL = 1", False),
+    ("    Uint16 u =", "    Uint16 u;\n    DELAY_US(1);\n    u =", False),
+    ("ADCSOC1CTL.all = 0x00100000UL", "ADCSOC1CTL.all = 0x00200000UL", False),
+])  # fmt: skip
+def test_a_result_of_the_trigger_before_in_the_routine_of_another_soc(
+    tmp_path: Path, was: str, now: str, noted: bool
+) -> None:
+    (tmp_path / "drv.c").write_text(SEQUENCE.replace(was, now) if was else SEQUENCE, encoding="utf-8")
+    checked = check_files(DriverFiles([tmp_path / "drv.c"], calls=1, seconds=0.005))
+    assert [f.object for f in checked.findings if f.rule == "result-of-before"] == (
+        ["AdcaResultRegs.ADCRESULT1"] * noted
+    )
