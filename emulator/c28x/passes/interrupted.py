@@ -25,6 +25,7 @@ from emulator.c28x.tree import (
     If,
     Load,
     LValue,
+    RegisterAt,
     RegisterRef,
     Stmt,
     Switch,
@@ -56,6 +57,8 @@ _ON: Final = re.compile(
     rf"EINT|enable|unmask|unlock|restore|{_SECTION}\w*leave|leave\w*{_SECTION}", re.IGNORECASE
 )  # fmt: skip
 _ENABLES: Final = re.compile(r"IER|INTENA|FIENA|INTM|ENA\b|TIE\b")
+#: Registers and functions of what gives an interrupt only when `main` or a partner has begun something.
+_SERVED: Final = re.compile(r"(Sci|Spi|I2c|Can|ECap|EQep|XInt|Dma|Mcb|Usb)[a-z0-9]*(Regs|_)", re.IGNORECASE)
 
 
 def place_of(lvalue: LValue) -> Place | None:
@@ -105,7 +108,6 @@ def test_of(s: Stmt) -> Expr | None:
         case If(test=test) | While(test=test) | Switch(subject=test):
             return test
     return None
-
 
 
 def switched(s: Stmt, off: bool) -> bool:
@@ -263,3 +265,16 @@ def sides_of(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> 
     called = below([p.function.path for s in statements(loop.body) for p in own_nodes(s) if isinstance(p, Call)], own)
     bodies = {main: loop.body, **{function: function.body for function in called if function.path not in inside}}
     return Sides(owners, own, bodies, routines)
+
+
+def runs_always(sides: Sides, routine: list[Function]) -> bool:
+    """Whether a routine counts a clock in each run, and serves nothing that `main` or a partner has to start."""
+    clocks = {
+        place for s in routine[0].body
+        if (place := written(s)) is not None and isinstance(s, Assign) and place in sides.asked(routine[0], s.value)
+        and all(constant_of(each.value) is not None for each in sides.main_writes.get(place, ()))
+    }  # fmt: skip
+    nodes = [p for function in routine for s in statements(function.body) for p in own_nodes(s)]
+    served = [register_text(p) for p in nodes if isinstance(p, RegisterRef | RegisterAt)]
+    served += [p.function.name for p in nodes if isinstance(p, Call)]
+    return bool(clocks) and not any(_SERVED.match(name) for name in served)

@@ -1,12 +1,15 @@
-"""Static check of indices that `main` and an interrupt routine both write, without a mask: `race`.
+"""Static check of indices and flags that `main` and an interrupt routine both write, without a mask: `race`.
 
     Out = (Out + 1) % SIZE;             // in main, where the routine does the same if the ring is full
+    Alarms = (Alarms & ~LOW) | (volts < LIMIT ? LOW : 0);       // the routine does `Alarms |= HIGH;`
 
 If the routine comes between the read and the write, what it wrote is lost.  The check needs a whole program without a
 kernel.  `Out += 1` and `Flags &= ~1` are one instruction, and the routine comes before or behind it.
 
-Only of subscripts: other objects may have a routine that writes them once, before `main` does.  Silent if the routine
-writes only under a condition that `main` sets: it may not come then.
+Only of subscripts, and of words of which a routine that counts a clock changes bits and keeps the others: other objects
+may have a routine that writes them once, before `main` does.  Silent if the routine writes only under a condition that
+`main` sets: it may not come then.  And, of flags, if `main` goes by what the routine sets and masks nothing anywhere:
+it may always be done before the routine comes again.
 """
 
 from __future__ import annotations
@@ -14,22 +17,39 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from emulator.c28x.ctypes import IntType
-from emulator.c28x.passes.interrupted import Place, RoutineWrite, Sides, mentions, off_at, place_of, written
+from emulator.c28x.passes.interrupted import (
+    Place,
+    RoutineWrite,
+    Sides,
+    mentions,
+    off_at,
+    place_of,
+    runs_always,
+    switched,
+    test_of,
+    written,
+)
 from emulator.c28x.tree import Assign, Binary, Declare, Expr, Function, Index, Load, LValue, Stmt, Variable
-from emulator.c28x.tree_queries import bare, own_nodes, parts, source_text, statements
+from emulator.c28x.tree_queries import bare, own_nodes, parts, source_text, statements, variables
 
 #: Operators that change a word in memory by one instruction (CPU, `ADD loc16`, `AND loc16`, `ADDL loc32`).
 _ONE_INSTRUCTION = ("+", "-", "&", "|", "^")
+_BITS = ("&", "|", "^")
 
 
 def check_lost_writes(sides: Sides) -> None:
     """Report what `main` computes from its old value and a routine writes, too."""
-    for place, write in _routine_writes(sides).items():
+    always = {function for routine in sides.routines if runs_always(sides, routine) for function in routine}
+    for place, writes in _routine_writes(sides).items():
+        flags = next((w for w in writes if w.function in always and _changes_bits(w.statement, place)), None)
         for function, body in sides.bodies.items():
             for s in statements(body):
                 if not isinstance(s, Assign) or written(s) != place or not _from_itself(function, s.value, place):
                     continue
-                if not _is_index(body, place) or off_at(body, {id(s)}) or sides.mask_of_caller(function):
+                write = writes[0] if _is_index(body, place) else flags
+                if write is None or off_at(body, {id(s)}) or sides.mask_of_caller(function):
+                    continue
+                if write is flags and _kept_apart_by_time(sides):
                     continue
                 assert isinstance(s.target, LValue)
                 name = source_text(Load(s.target.ctype, s.target))
@@ -44,28 +64,52 @@ def _is_index(body: list[Stmt], place: Place) -> bool:
     return any(isinstance(p, Index) and mentions(p.expr, place) for p in nodes)
 
 
-def _routine_writes(sides: Sides) -> dict[Place, RoutineWrite]:
+def _changes_bits(s: Assign, place: Place) -> bool:
+    """Whether a statement changes bits of a word and keeps the others."""
+    value = bare(s.value)
+    return isinstance(value, Binary) and value.op in _BITS and (_is(value.left, place) or _is(value.right, place))
+
+
+def _kept_apart_by_time(sides: Sides) -> bool:
+    """Whether `main` goes by what the routines set, and masks nothing: it may rely on being done in time."""
+    set_there = {place for w in sides.routine_writes if (place := written(w.statement)) is not None}
+    tested = [
+        (function, test) for function, body in sides.bodies.items()
+        for s in statements(body) if (test := test_of(s)) is not None
+    ]  # fmt: skip
+    masks = any(switched(s, off=False) for body in sides.bodies.values() for s in statements(body))
+    return not masks and any(sides.asked(function, test) & set_there for function, test in tested)
+
+
+def _routine_writes(sides: Sides) -> dict[Place, list[RoutineWrite]]:
     """The integers that a routine writes, under conditions that `main` does not set."""
-    found: dict[Place, RoutineWrite] = {}
+    found: dict[Place, list[RoutineWrite]] = {}
     for write in sides.routine_writes:
         place = written(write.statement)
         if place is None or place not in sides.main_writes or not isinstance(write.statement.target.ctype, IntType):
             continue
         asked = set().union(*(sides.asked(write.function, condition.test) for condition in write.conditions))
         if not (asked - {place}) & sides.main_writes.keys():
-            found.setdefault(place, write)
+            found.setdefault(place, []).append(write)
     return found
 
 
 def _from_itself(function: Function, value: Expr, place: Place) -> bool:
     """Whether a value is computed from what the object has, in more than one instruction."""
     match bare(value):
-        case Load(lvalue=LValue(root=Variable(kind="local") as copy, indices=[])) if copy.plain:
-            return any(_computed(given, place) for given in _given(function, copy))
-        case Binary(op=op, left=left, right=right) if op in _ONE_INSTRUCTION:
-            sides = [_is(left, place), _is(right, place)]
-            return not any(sides) and _computed(value, place)
-    return _computed(value, place)
+        case Binary(op=op, left=one, right=other) if op in _ONE_INSTRUCTION and (_is(one, place) or _is(other, place)):
+            return False
+    if _computed(value, place):
+        return True
+    for copy in variables(parts(value)):
+        given = list(_given(function, copy)) if copy.kind == "local" and copy.plain else []
+        if any(_computed(g, place) for g in given):
+            return True
+        taken = [g for g in given if _is(g, place)]
+        changed = [g for g in given if copy in variables(parts(g))]
+        if taken and len(taken) + len(changed) == len(given) and (changed or isinstance(bare(value), Binary)):
+            return True
+    return False
 
 
 def _given(function: Function, local: Variable) -> Iterator[Expr]:

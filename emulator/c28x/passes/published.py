@@ -19,16 +19,23 @@ what a function switches off before, also in its callers.  The mirror is `releas
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
-from emulator.c28x.passes.interrupted import Place, Sides, mentions, off_at, place_of, scalar_of, written
+from emulator.c28x.passes.interrupted import (
+    Place,
+    Sides,
+    mentions,
+    off_at,
+    place_of,
+    runs_always,
+    scalar_of,
+    written,
+)
 from emulator.c28x.passes.state_values import constant_of
 from emulator.c28x.tree import (
     Assign,
     Binary,
-    Call,
     Compare,
     Declare,
     Expr,
@@ -38,19 +45,17 @@ from emulator.c28x.tree import (
     Load,
     Logic,
     LValue,
-    RegisterAt,
-    RegisterRef,
     Stmt,
     Switch,
     Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import all_blocks, bare, own_nodes, parts, register_text, source_text, statements
+from emulator.c28x.tree_queries import all_blocks, bare, own_nodes, parts, source_text, statements
 
 
 def check_published(sides: Sides) -> None:
     """Report the words that are written before the element, or the count, that belongs to them."""
     guards = {index: rings for routine in sides.routines for index, rings in _guards(routine).items()}
-    timed = {found for routine in sides.routines if _runs_always(sides, routine) for found in _timed(sides, routine)}
+    timed = {found for routine in sides.routines if runs_always(sides, routine) for found in _timed(sides, routine)}
     for function, body in sides.bodies.items() if guards or timed else ():
         for s, later in _early(body, guards):
             _report(
@@ -140,29 +145,12 @@ def _is_before(at: Expr, index: Place, given: Expr, copies: dict[Variable, set[P
     return False
 
 
-#: Registers and functions of what gives an interrupt only when `main` or a partner has begun something.
-_SERVED: Final = re.compile(r"(Sci|Spi|I2c|Can|ECap|EQep|XInt|Dma|Mcb|Usb)[a-z0-9]*(Regs|_)", re.IGNORECASE)
-
-
 class _Timed(NamedTuple):
     """A count that a routine moves in a state, and by which it leaves the state: the state's word and value."""
 
     state: Place
     value: int
     counter: Place
-
-
-def _runs_always(sides: Sides, routine: list[Function]) -> bool:
-    """Whether a routine counts a clock in each run, and serves nothing that `main` or a partner has to start."""
-    clocks = {
-        place for s in routine[0].body
-        if (place := written(s)) is not None and isinstance(s, Assign) and place in sides.asked(routine[0], s.value)
-        and all(constant_of(each.value) is not None for each in sides.main_writes.get(place, ()))
-    }  # fmt: skip
-    nodes = [p for function in routine for s in statements(function.body) for p in own_nodes(s)]
-    served = [register_text(p) for p in nodes if isinstance(p, RegisterRef | RegisterAt)]
-    served += [p.function.name for p in nodes if isinstance(p, Call)]
-    return bool(clocks) and not any(_SERVED.match(name) for name in served)
 
 
 def _timed(sides: Sides, routine: list[Function]) -> Iterator[_Timed]:

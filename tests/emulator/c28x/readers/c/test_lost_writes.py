@@ -1,4 +1,4 @@
-"""Indices that `main` and an interrupt routine both write, and right twins."""
+"""Indices and flags that `main` and an interrupt routine both write, and right twins."""
 
 from __future__ import annotations
 
@@ -79,3 +79,86 @@ def test_an_index_that_both_sides_write_is_told(tmp_path: Path, full: str, step:
 )
 def test_an_index_with_one_writer_or_a_mask_is_silent(tmp_path: Path, full: str, step: str, more: str) -> None:
     assert not told(tmp_path, full, step, more)
+
+
+FLAGS = """#include "F28x_Project.h"
+#define HIGH 1U
+#define LOW 2U
+#define LEAK 4U
+typedef struct {{ Uint16 alarms, other; }} State;
+volatile Uint32 Ms;
+Uint16 Alarms, Over, Alive, Volts;
+State Now;
+static void Judge(Uint16 code)
+{{
+    if (code > 3000 && ++Over > 20) {{ {isr} }}
+}}
+interrupt void Sample(void)
+{{
+    Ms++;
+    Judge(AdcaResultRegs.ADCRESULT0);
+    Alive = 1;
+    AdcaRegs.ADCINTFLGCLR.bit.ADCINT1 = 1;
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;
+}}
+static Uint32 Time(void)
+{{
+    Uint32 now;
+    {off} now = Ms; {on}
+    return now;
+}}
+static void Watch(void)
+{{
+    Uint16 a;
+    {main}
+}}
+int main(void)
+{{
+    PieVectTable.ADCA1_INT = &Sample;
+    EINT;
+    for (;;)
+    {{
+        while (!Alive) ;
+        Alive = 0;
+        Volts = AdcaResultRegs.ADCRESULT1;
+        if (Time() > 100) Watch();
+    }}
+}}
+"""
+SETS = "Alarms |= HIGH;"
+COMPUTES = "Alarms = (Alarms & ~LOW) | (Volts < 9 ? LOW : 0);"
+
+
+def told_of_flags(folder: Path, isr: str, main: str, *, masks: bool = True) -> list[str]:
+    """The lines at which `race` is told."""
+    text = FLAGS.format(isr=isr, main=main, off="DINT;" * masks, on="EINT;" * masks)
+    (folder / "a.c").write_text(text, encoding="utf-8")
+    found = Build([str(folder / "a.c")]).compiled.findings
+    return [text.splitlines()[f.place.line - 1].strip() for f in found if f.rule == "race"]
+
+
+@pytest.mark.parametrize(("isr", "main"), [
+    (SETS, COMPUTES),
+    (SETS, "if (Volts < 9) Alarms = ~(~Alarms & ~LOW) & ~LEAK;"),
+    ("Alarms &= ~HIGH;", "a = Alarms; a |= LOW; Alarms = a & 0xFF;"),
+    (SETS, "a = Alarms; if (Volts < 9) a |= LOW; Alarms = a;"),
+    ("Now.alarms |= HIGH;", "Now.alarms = (Now.alarms & ~LOW) | (Volts & LOW);"),
+    (SETS, "DINT; a = Alarms; EINT; a &= ~LOW; Alarms = a;"),
+])  # fmt: skip
+def test_flags_that_both_sides_change_are_told(tmp_path: Path, isr: str, main: str) -> None:
+    assert told_of_flags(tmp_path, isr, main) == [main]
+
+
+@pytest.mark.parametrize(("isr", "main", "masks"), [
+    (SETS, "if (Volts < 9) Alarms |= LOW; else Alarms &= ~LOW;", True),
+    (SETS, "DINT; " + COMPUTES + " EINT;", True),
+    (SETS, "Alarms = 0;", True),
+    (SETS, "a = Alarms; Over = a & HIGH;", True),
+    # The routine writes it whole; only when main wants that; main is always done before the routine comes again.
+    ("Alarms = HIGH;", COMPUTES, True),
+    ("if (Volts < 9) Alarms |= HIGH;", COMPUTES, True),
+    (SETS, COMPUTES, False),
+    ("Now.other |= HIGH;", "Now.alarms = (Now.alarms & ~LOW) | (Volts & LOW);", True),
+])  # fmt: skip
+def test_flags_that_one_side_changes_at_a_time_are_silent(tmp_path: Path, isr: str, main: str, masks: bool) -> None:
+    assert not told_of_flags(tmp_path, isr, main, masks=masks)
