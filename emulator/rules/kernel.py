@@ -116,6 +116,22 @@ filled on request (`Ready = 0; while (!Ready); use(Line);`), one of two buffers,
 """, "ISO C 5.1.2.3 p2", how="static",
     ),
     _rule(
+        "read-in-time", Severity.NOTE,
+        "A buffer that an interrupt routine fills must be read before the next message begins.", """
+If two messages come one behind the other, `main` takes half of each, or loses the first one.
+
+`if (Ready) { for (i = 0; i < 5; i++) order[i] = Line[i]; Ready = 0; }`. The routine sets `Ready` when `Line` is full,
+and does not ask for it when the next character comes: that is written into `Line` again. This is right if the sender
+always waits for an answer, or for longer than `main` ever needs. A block of samples is the same: the next sample comes
+before the block is read.
+
+The check reads the source of a whole program without a kernel. The note is made if nothing that `main` sets decides
+whether and where the routine writes, if `main` does not look at the index, and if no mask holds the routine off.
+
+**Fix:** fill only while the buffer is free (`if (!Ready) Line[n++] = c;`), fill two buffers in turn, or use a ring.
+""", "ISO C 5.1.2.3 p2", how="static",
+    ),
+    _rule(
         "cleared-late", Severity.WARNING,
         "An object that an interrupt routine writes is cleared a while after it was read.", """
 Now and then, an order or a count is lost without a trace.

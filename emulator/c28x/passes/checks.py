@@ -37,7 +37,7 @@ from emulator.c28x.passes.open_integrals import check_open_integrals
 from emulator.c28x.passes.port_writes import check_port_writes
 from emulator.c28x.passes.published import check_published
 from emulator.c28x.passes.quotients import check_quotients
-from emulator.c28x.passes.released import check_released
+from emulator.c28x.passes.released import check_read_in_time, check_released
 from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.ring_back import check_ring_back
 from emulator.c28x.passes.search_end import check_searches
@@ -125,6 +125,7 @@ def check(
         check_port_writes(sides)
         check_published(sides)
         check_released(sides)
+        check_read_in_time(sides)
         check_sent_buffers(sides)
         check_cleared(sides)
         check_lost_writes(sides)

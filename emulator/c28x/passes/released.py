@@ -9,6 +9,11 @@ statement, `main` reads what belongs to the next message.  The mirror is `publis
 publishes it there, data before the word that releases it here.
 
 The check speaks only if `main` has read that word before (so the buffer is full), and until it reads it again.
+
+    if (Ready) { for (i = 0; i < 5; i++) order[i] = Line[i]; Ready = 0; }
+
+Where nothing that `main` sets keeps the routine from writing `Line`, it must be read before the next message begins:
+`read-in-time`, a note, for the sender may always wait so long.
 """
 
 from __future__ import annotations
@@ -20,16 +25,18 @@ from emulator.c28x.passes.interrupted import (
     Place,
     RoutineWrite,
     Sides,
+    mentions,
     off_at,
     place_of,
     reads,
     scalar_of,
     switched,
+    test_of,
     written,
 )
 from emulator.c28x.passes.state_values import constant_of
 from emulator.c28x.tree import Assign, Binary, Compare, Expr, Function, Load, Logic, LValue, Not, Stmt, While
-from emulator.c28x.tree_queries import bare, blocks, leaves, own_nodes, source_text, statements
+from emulator.c28x.tree_queries import bare, blocks, leaves, own_nodes, source_text, statements, within
 
 #: A word whose value gives a buffer to the routine -> the buffers, each with those values.
 _Releases = dict[Place, dict[Place, set[int]]]
@@ -52,6 +59,56 @@ def check_released(sides: Sides) -> None:
             before.append(s)
 
 
+def check_read_in_time(sides: Sides) -> None:
+    """Report the buffers that `main` reads when a word says that they are full, and that nothing keeps as they are."""
+    told: set[Place] = set()
+    tests = [test for body in sides.bodies.values() for s in statements(body) if (test := test_of(s)) is not None]
+    for buffer, word, routine in _unguarded(sides):
+        for function, body in sides.bodies.items() if any(mentions(test, word) for test in tests) else ():
+            read = next((s for s in statements(body) if _name_read(s, {buffer})), None)
+            masked = read is None or off_at(body, {id(read)}) or sides.mask_of_caller(function)
+            if read is not None and not masked and buffer not in told:
+                told.add(buffer)
+                name = _name_read(read, {buffer})
+                message = (
+                    f"nothing keeps {routine.name} from writing the next message into {name}, which is read here: it "
+                    "must be read before that begins"
+                )
+                sides.owners[function].report(function, read.where, "read-in-time", message, object=name)
+
+
+def _unguarded(sides: Sides) -> Iterator[tuple[Place, Place, Function]]:
+    """The buffers that a routine fills from an index of its own whatever `main` does; a word that it sets then."""
+    known = {place_of(p) for body in sides.bodies.values() for p in within(body) if isinstance(p, LValue)}
+    changed = {written(s) for body in sides.bodies.values() for s in statements(body)}
+    for buffer, its in _buffers(sides).items():
+        routine = next(r for r in sides.routines if its[0].function in r)
+        set_to: dict[Place, list[int | None]] = {}
+        for w in sides.routine_writes:
+            if (word := written(w.statement)) is not None and w.function in routine:
+                set_to.setdefault(word, []).append(constant_of(w.statement.value))
+        targets = [(w, w.statement.target) for w in its]
+        at = [sides.asked(w.function, i.expr) for w, t in targets if isinstance(t, LValue) for i in t.indices]
+        asked = set[Place]().union(*at, *(sides.asked(w.function, c.test) for w in its for c in w.conditions))
+        own = all(any(None in set_to.get(place, ()) for place in places) for places in at)
+        if not own or len(at) != len(its) or asked & changed or known & set[Place]().union(*at):
+            continue  # `main` keeps it off, or knows how far it is
+        for word, values in set_to.items():
+            given = {constant_of(s.value) for s in sides.main_writes.get(word, [])}
+            if given and None not in given and None not in values and not given & set(values):
+                yield buffer, word, routine[0]
+
+
+def _buffers(sides: Sides) -> dict[Place, list[RoutineWrite]]:
+    """The arrays of which the routines write elements."""
+    writes: dict[Place, list[RoutineWrite]] = {}
+    for w in sides.routine_writes:
+        target = w.statement.target
+        if isinstance(target, LValue) and target.indices and (buffer := place_of(target)) is not None:
+            writes.setdefault(buffer, []).append(w)
+    return writes
+
+
 def _report(sides: Sides, function: Function, s: Assign, target: LValue, later: tuple[Stmt, str]) -> None:
     name, buffer = source_text(Load(target.ctype, target)), later[1]
     message = (
@@ -63,11 +120,7 @@ def _report(sides: Sides, function: Function, s: Assign, target: LValue, later: 
 
 def _releases(sides: Sides) -> _Releases:
     """The words that keep a routine from writing a buffer, or that say where in it the routine goes on."""
-    writes: dict[Place, list[RoutineWrite]] = {}
-    for w in sides.routine_writes:
-        target = w.statement.target
-        if isinstance(target, LValue) and target.indices and (buffer := place_of(target)) is not None:
-            writes.setdefault(buffer, []).append(w)
+    writes = _buffers(sides)
     set_to: dict[Place, set[int | None]] = {}
     stepped: set[Place] = set()
     for w in sides.routine_writes:
@@ -177,9 +230,16 @@ def _late_read(
         if written(s) == word or reads(s, word) or any(written(t) == word or reads(t, word) for t in inner):
             return None
         for t in [s, *inner] if not off else ():
-            target = t.target if isinstance(t, Assign) else None
-            for p in own_nodes(t):
-                if isinstance(p, LValue) and p is not target and place_of(p) in buffers:
-                    return s, p.text.split("[")[0] or "the buffer"
+            if name := _name_read(t, buffers):
+                return s, name
         off = switched(s, off)
     return None
+
+
+def _name_read(s: Stmt, buffers: set[Place]) -> str:
+    """The name of a buffer that a statement itself reads; empty: it reads none."""
+    target = s.target if isinstance(s, Assign) else None
+    for p in own_nodes(s):
+        if isinstance(p, LValue) and p is not target and place_of(p) in buffers:
+            return p.text.split("[")[0] or "the buffer"
+    return ""

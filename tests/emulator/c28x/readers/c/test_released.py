@@ -50,7 +50,7 @@ def told(folder: Path, **given: str) -> list[tuple[str, str]]:
     file = folder / "a.c"
     text = PROGRAM.format(**{"more": "", "turn": "Serve();", **given})
     file.write_text(text, encoding="utf-8")
-    rules = ("released-early", "cleared-late")
+    rules = ("released-early", "cleared-late", "read-in-time")
     return [(f.rule, f.object) for f in Build([str(file)]).compiled.findings if f.rule in rules]
 
 
@@ -82,6 +82,31 @@ def test_a_release_is_told_when_only_the_caller_has_asked(tmp_path: Path) -> Non
     assert told(tmp_path, comes=FLAGGED, serve=serve, turn="if (Ready) Serve();") == [("released-early", "Ready")]
     masked = "if (Ready) { DINT; Serve(); EINT; }"
     assert told(tmp_path, comes=FLAGGED, serve=serve, turn=masked) == []
+
+
+UNASKED = "Line[Length++] = c; if (Length == 5) { Length = 0; Ready = 1; }"
+TAKES = "if (Ready) { for (i = 0; i < 5; i++) kept[i] = Line[i]; Ready = 0; }"
+
+
+@pytest.mark.parametrize(("comes", "serve", "noted"), [
+    (UNASKED, TAKES, True),
+    (UNASKED, "if (!Ready) return; Copy(5); Ready = 0;", True),
+    (UNASKED, "if (Ready) { memcpy(kept, (const void *)Line, 5); Ready = 0; }", True),
+    ("if (Length > 0 || c == 2) " + UNASKED, TAKES, True),
+    ("if (c == 2) Length = 0; if (Length < 5) Line[Length++] = c; if (Length == 5) Ready = 1;", TAKES, True),
+    # The routine asks; a mask; the index is main's to set back, or known to it; the two halves of a buffer in turn.
+    ("if (!Ready) { " + UNASKED + " }", TAKES, False),
+    ("if (Ready) return; " + UNASKED, TAKES, False),
+    (UNASKED, "DINT; " + TAKES + " EINT;", False),
+    ("if (Length < 5) Line[Length++] = c; else Ready = 1;", TAKES + " if (Order) Length = 0;", False),
+    (UNASKED, TAKES + " if (Length > 2) Bad++;", False),
+    ("Line[Mode * 8 + Length++] = c; if (Length == 5) { Length = 0; Mode = !Mode; Ready = 1; }",
+     "if (Ready) { for (i = 0; i < 5; i++) kept[i] = Line[(!Mode) * 8 + i]; Ready = 0; }", False),
+    # Nothing tells that it is full.
+    ("Line[Length++ & 15] = c;", "Told = Line[3];", False),
+])  # fmt: skip
+def test_a_buffer_that_nothing_keeps_is_noted(comes: str, serve: str, noted: bool, tmp_path: Path) -> None:
+    assert told(tmp_path, comes=comes, serve=serve) == [("read-in-time", "Line")] * noted
 
 
 @pytest.mark.parametrize(
