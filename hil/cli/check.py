@@ -98,8 +98,8 @@ def check(
     silence: Annotated[
         bool | None,
         typer.Option("--silence", help="Run driver files again, longer, with silent serial lines, I2C parts, CAN nodes "
-                     "and pins, and a message that is cut off: find outputs that follow old values, waits that hang, "
-                     "receivers that lose the next message."),
+                     "and pins, a message that is cut off, and others than those of the run: find outputs that follow "
+                     "old values, waits that hang, receivers that lose the next message or leave their buffers."),
     ] = None,
     fail_on: Annotated[
         str | None,

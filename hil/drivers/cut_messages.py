@@ -71,25 +71,26 @@ class SentMessage:
     @property
     def idle(self) -> set[CountedPlace]:
         """What runs without any message."""
-        return _ran(self.quiet, self.steps[0])
+        return ran(self.quiet, self.steps[0])
 
     @property
     def characters(self) -> list[set[CountedPlace]]:
         """What runs for each of its characters."""
-        return [_ran(before, after) for before, after in pairwise(self.steps)]
+        return [ran(before, after) for before, after in pairwise(self.steps)]
 
     @property
     def within(self) -> set[CountedPlace]:
         """What runs before it is complete."""
-        return _ran(self.steps[0], self.steps[-2])
+        return ran(self.steps[0], self.steps[-2])
 
     @property
     def complete(self) -> set[CountedPlace]:
         """What runs when it is complete."""
-        return _ran(self.steps[-2], self.steps[-1])
+        return ran(self.steps[-2], self.steps[-1])
 
 
-def _ran(before: Begun, after: Begun) -> set[CountedPlace]:
+def ran(before: Begun, after: Begun) -> set[CountedPlace]:
+    """What has been begun between two times."""
     return {place for place, count in after.items() if count > before.get(place, 0)}
 
 

@@ -21,6 +21,7 @@ from hil.drivers.cut_messages import TRIAL, CutTrial, cut_messages
 from hil.drivers.face_scale import FaceScales
 from hil.drivers.identities import wrong_identities
 from hil.drivers.least_pulses import swallowed_pulses
+from hil.drivers.other_messages import OTHERS, OtherMessages, other_messages
 from hil.drivers.periods import RoutinePeriods, wrong_periods, wrong_timers
 from hil.drivers.places import anchored, mentions_gyro, of_open_trip, of_unused_part
 from hil.drivers.roles import Roles
@@ -103,7 +104,7 @@ def run_program(
     Findings of tasks without a `main` are notes: the part of their program that creates objects before they run is not
     in these files.  If `main` is in a loop that interrupt routines can end, it runs again, and such loops are allowed.
     `board_named`: the program is meant for this board.  `silence`: run it once more with sources that fall silent
-    (`stale`), and once with a message that is cut off (`cut_messages`).
+    (`stale`), once with a message that is cut off (`cut_messages`), and once with others (`other_messages`).
     """
     ran = _run(build, roles, for_s, progress, patient=False, board_named=board_named)
     if any(f.rule == "endless-loop" and waits_for_others(f, roles) for f in ran.findings):
@@ -117,6 +118,9 @@ def run_program(
         kept = (*kept, *_stale(build, roles, for_s, asked=silence))
     if silence and roles.main is not None and receives_characters(build):
         kept = (*kept, *_cut(build, roles, for_s))
+        known = {(finding.rule, finding.place) for finding in kept}
+        others = _others(build, roles, for_s)
+        kept = (*kept, *(f for f in others if (f.rule, f.place) not in known))
     left = () if silence or roles.main is None else silent_sources(build, roles)
     return replace(ran, findings=kept, not_silenced=left)
 
@@ -175,6 +179,23 @@ def _cut(build: Build, roles: Roles, for_s: float) -> list[Finding]:
             image.close()
 
     seen = (anchored(finding, build.others) for finding in cut_messages(run))
+    return [finding for finding in seen if finding is not None]
+
+
+def _others(build: Build, roles: Roles, for_s: float) -> list[Finding]:
+    """What other messages show than those of the run, found by a run with more messages."""
+
+    def run(prepare: Callable[[Image], OtherMessages]) -> None:
+        image = _begin(build, roles, build.counted())
+        trial = prepare(image)
+        usual = image.board.clock.now + round(for_s * SYSCLK_HZ)
+        image.allow_loops(2 * _LONGER * usual + 2 * OTHERS + SYSCLK_HZ)
+        with suppress(*STOPS):
+            _go(image, roles, lambda: trial.until(usual), TimeBudget(_OBSERVED), lambda fraction: None)
+        with suppress(*STOPS):
+            image.close()
+
+    seen = (anchored(finding, build.others) for finding in other_messages(build.modules, run))
     return [finding for finding in seen if finding is not None]
 
 
