@@ -52,8 +52,9 @@ is filled while a routine may still send it, if another function asks for that b
 
 An index that `main` steps around the end of a ring (`out = (out + 1) % SIZE`) and a routine writes too, as to drop the
 oldest element of a full ring, is reported before the program runs. So are flags that `main` computes from their old
-value (`Alarms = (Alarms & ~LOW) | low`) while a routine that counts a clock changes others of them (`Alarms |= HIGH`),
-unless `main` goes by what the routine sets and masks nothing anywhere: it may always be done in time.
+value (`Alarms = (Alarms & ~LOW) | low`) or takes (`events = Events; Events = 0;`) while a routine that counts a clock
+changes others of them (`Alarms |= HIGH`), unless `main` goes by what the routine sets and masks none of that: it may
+always be done in time.
 
 Host tools see nothing: the host has none of these threads and locks.
 

@@ -2,14 +2,15 @@
 
     Out = (Out + 1) % SIZE;             // in main, where the routine does the same if the ring is full
     Alarms = (Alarms & ~LOW) | (volts < LIMIT ? LOW : 0);       // the routine does `Alarms |= HIGH;`
+    events = Events; Events = 0;                                // or `Events |= LOST;`
 
 If the routine comes between the read and the write, what it wrote is lost.  The check needs a whole program without a
 kernel.  `Out += 1` and `Flags &= ~1` are one instruction, and the routine comes before or behind it.
 
-Only of subscripts, and of words of which a routine that counts a clock changes bits and keeps the others: other objects
+Only of subscripts, and of flags of which a routine that counts a clock changes some and keeps the others: other objects
 may have a routine that writes them once, before `main` does.  Silent if the routine writes only under a condition that
-`main` sets: it may not come then.  And, of flags, if `main` goes by what the routine sets and masks nothing anywhere:
-it may always be done before the routine comes again.
+`main` sets: it may not come then.  And, of flags, if `main` goes by what the routine sets and masks none of that: it
+may always be done before the routine comes again.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ from emulator.c28x.passes.interrupted import (
     test_of,
     written,
 )
+from emulator.c28x.passes.taken import mark_copy_and_clear
 from emulator.c28x.tree import Assign, Binary, Declare, Expr, Function, Index, Load, LValue, Stmt, Variable
 from emulator.c28x.tree_queries import bare, own_nodes, parts, source_text, statements, variables
 
@@ -40,21 +42,27 @@ _BITS = ("&", "|", "^")
 def check_lost_writes(sides: Sides) -> None:
     """Report what `main` computes from its old value and a routine writes, too."""
     always = {function for routine in sides.routines if runs_always(sides, routine) for function in routine}
+    for function in sides.bodies:
+        mark_copy_and_clear(function)
     for place, writes in _routine_writes(sides).items():
         flags = next((w for w in writes if w.function in always and _changes_bits(w.statement, place)), None)
         for function, body in sides.bodies.items():
             for s in statements(body):
-                if not isinstance(s, Assign) or written(s) != place or not _from_itself(function, s.value, place):
+                if not isinstance(s, Assign) or written(s) != place:
                     continue
-                write = writes[0] if _is_index(body, place) else flags
+                if not s.takes and not _from_itself(function, s.value, place):
+                    continue
+                index = not s.takes and _is_index(body, place)
+                write = writes[0] if index else flags
                 if write is None or off_at(body, {id(s)}) or sides.mask_of_caller(function):
                     continue
-                if write is flags and _kept_apart_by_time(sides):
+                if not index and _kept_apart_by_time(sides, write.function):
                     continue
                 assert isinstance(s.target, LValue)
                 name = source_text(Load(s.target.ctype, s.target))
                 lost = f"what {write.function.name} writes in between (line {write.statement.line}) is lost"
-                message = f"{name} is computed from its old value, and the interrupt is not masked: {lost}"
+                how = "cleared behind a read" if s.takes else "computed from its old value"
+                message = f"{name} is {how}, and the interrupt is not masked: {lost}"
                 sides.owners[function].report(function, s.where, "race", message, object=name)
 
 
@@ -70,15 +78,21 @@ def _changes_bits(s: Assign, place: Place) -> bool:
     return isinstance(value, Binary) and value.op in _BITS and (_is(value.left, place) or _is(value.right, place))
 
 
-def _kept_apart_by_time(sides: Sides) -> bool:
-    """Whether `main` goes by what the routines set, and masks nothing: it may rely on being done in time."""
-    set_there = {place for w in sides.routine_writes if (place := written(w.statement)) is not None}
-    tested = [
-        (function, test) for function, body in sides.bodies.items()
-        for s in statements(body) if (test := test_of(s)) is not None
-    ]  # fmt: skip
-    masks = any(switched(s, off=False) for body in sides.bodies.values() for s in statements(body))
-    return not masks and any(sides.asked(function, test) & set_there for function, test in tested)
+def _kept_apart_by_time(sides: Sides, function: Function) -> bool:
+    """Whether `main` goes by what a routine sets, and never masks what it sets: it may rely on being done in time."""
+    routine = next(r for r in sides.routines if function in r)
+    set_there = {
+        place for w in sides.routine_writes if w.function in routine and (place := written(w.statement)) is not None
+    }  # fmt: skip
+    goes_by = masks = False
+    for reader, body in sides.bodies.items():
+        off = False
+        for s in statements(body):
+            test = test_of(s)
+            goes_by |= test is not None and not sides.asked(reader, test).isdisjoint(set_there)
+            off = switched(s, off)
+            masks |= off and any(isinstance(p, LValue) and place_of(p) in set_there for p in own_nodes(s))
+    return goes_by and not masks
 
 
 def _routine_writes(sides: Sides) -> dict[Place, list[RoutineWrite]]:

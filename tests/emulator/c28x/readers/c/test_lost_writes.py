@@ -144,6 +144,7 @@ def told_of_flags(folder: Path, isr: str, main: str, *, masks: bool = True) -> l
     (SETS, "a = Alarms; if (Volts < 9) a |= LOW; Alarms = a;"),
     ("Now.alarms |= HIGH;", "Now.alarms = (Now.alarms & ~LOW) | (Volts & LOW);"),
     (SETS, "DINT; a = Alarms; EINT; a &= ~LOW; Alarms = a;"),
+    (SETS, "a = Alarms; Alarms = 0; Volts = a;"),
 ])  # fmt: skip
 def test_flags_that_both_sides_change_are_told(tmp_path: Path, isr: str, main: str) -> None:
     assert told_of_flags(tmp_path, isr, main) == [main]
@@ -154,10 +155,15 @@ def test_flags_that_both_sides_change_are_told(tmp_path: Path, isr: str, main: s
     (SETS, "DINT; " + COMPUTES + " EINT;", True),
     (SETS, "Alarms = 0;", True),
     (SETS, "a = Alarms; Over = a & HIGH;", True),
-    # The routine writes it whole; only when main wants that; main is always done before the routine comes again.
+    # The routine writes it whole; only when main wants that; main may always be done in time: it masks nothing of it.
     ("Alarms = HIGH;", COMPUTES, True),
     ("if (Volts < 9) Alarms |= HIGH;", COMPUTES, True),
     (SETS, COMPUTES, False),
+    (SETS, "DINT; Volts = 3; EINT; " + COMPUTES, False),
+    (SETS, "DINT; a = Alarms; Alarms = 0; EINT; Volts = a;", True),
+    (SETS, "if (Alarms & HIGH) Alarms = 0;", True),
+    ("Alarms = HIGH;", "a = Alarms; Alarms = 0; Volts = a;", True),
+    ("Alarms++;", "a = Alarms; Alarms = 0; Volts = a;", True),
     ("Now.other |= HIGH;", "Now.alarms = (Now.alarms & ~LOW) | (Volts & LOW);", True),
 ])  # fmt: skip
 def test_flags_that_one_side_changes_at_a_time_are_silent(tmp_path: Path, isr: str, main: str, masks: bool) -> None:
