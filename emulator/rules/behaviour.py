@@ -348,6 +348,23 @@ reported if any object follows the face in the right scale, or if the object fol
 """,
     ),
     _rule(
+        "zero-by-face", Severity.WARNING, "An object follows a part of the board, but lacks its offset.", """
+All pressures are 6.25 cmH2O too high, all temperatures 50 degrees: a limit is reached too early, a regulator gives too
+little.
+
+Many sensors do not begin at 0 V: 0.25 V at 0 cmH2O, 0.5 V at 0 degrees, half of the supply at 0 A. The run shows the
+volts of a part at an input of an ADC as a line over its face, and an object as a line over the volts. The object has
+the scale of the face, or that times a power of ten, but it is 0 at 0 V, where the face is not: the conversion scales,
+and forgets the offset.
+
+It is reported where the object gets its scale, if the face changed in the run. Nothing is reported if any object has
+the zero of the face, as behind a tare, or if a constant of the program, or an object that keeps its value, is the
+offset in volts, in counts or in the unit of the face; nor for an object that holds the volts or the counts themselves.
+
+**Fix:** subtract the offset before the scale is applied.
+""",
+    ),
+    _rule(
         "sign-by-face", Severity.NOTE, "An object follows a part of the board with the other sign.", """
 A speed is negative while the shaft turns forwards: a control that uses it drives away from its target.
 

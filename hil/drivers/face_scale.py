@@ -73,7 +73,7 @@ class _Face(NamedTuple):
     read: Callable[[], float | None]
 
 
-class _Followed(NamedTuple):
+class ObjectInUnit(NamedTuple):
     """An object with its unit, and what states that."""
 
     path: str
@@ -90,8 +90,8 @@ class FaceScales:
         self._modules = build.modules
         self._clock = image.board.clock
         self._faces = list(_faces(image))
-        found = _objects(image, set(build.files)) if self._faces else ()
-        self._objects = [each for each in found if any(_alike(face.unit, each.unit) for face in self._faces)]
+        found = objects_in_units(image, set(build.files)) if self._faces else ()
+        self._objects = [each for each in found if any(alike(face.unit, each.unit) for face in self._faces)]
         #: At each sample: the values of the faces, and those of the objects.
         self._seen: list[tuple[list[float | None], list[float | None]]] = []
         self._step = max(1, round(seconds * SYSCLK_HZ / _SAMPLES))
@@ -109,7 +109,7 @@ class FaceScales:
             told: list[tuple[float, UnitMismatch]] = []
             right = False
             for m, each in enumerate(self._objects):
-                if not _alike(face.unit, each.unit):
+                if not alike(face.unit, each.unit):
                     continue
                 wanted = face.unit.ratio(each.unit)
                 relation = self._relation(n, m)
@@ -144,7 +144,7 @@ class FaceScales:
     def _rivals(self, face: int) -> list[int]:
         """The other faces with the quantity of a face."""
         unit = self._faces[face].unit
-        return [n for n, other in enumerate(self._faces) if n != face and _alike(unit, other.unit)]
+        return [n for n, other in enumerate(self._faces) if n != face and alike(unit, other.unit)]
 
     def _distance(self, face: int, followed: int, factor: float) -> float:
         """How far an object is from a multiple of a face, in all."""
@@ -243,13 +243,13 @@ def _number(device: object, name: str) -> float | None:
     return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
 
 
-def _alike(one: PhysicalUnit, other: PhysicalUnit) -> bool:
+def alike(one: PhysicalUnit, other: PhysicalUnit) -> bool:
     """Whether two units are of one quantity; a degree may be one of both kinds, and `tenths` of any."""
     same = one.quantity == other.quantity or (one.is_degree and other.is_degree)
     return same or not (one.quantity and other.quantity)
 
 
-def _objects(image: Image, files: set[str]) -> Iterator[_Followed]:
+def objects_in_units(image: Image, files: set[str]) -> Iterator[ObjectInUnit]:
     """The numbers at file scope in a stated unit; members of structures too."""
     said = members(files, silent_agrees=True)
     declared = {path: obj.declaration for path, obj in image.linked.objects.items()}
@@ -264,7 +264,7 @@ def _objects(image: Image, files: set[str]) -> Iterator[_Followed]:
         if found is not None and found.factor == 1.0 and found.unit.scale:
             line = where.line if 0 < where.line <= len(lines_with_comments(where.file)) else 0
             place = Place(where.file, line, "", where.file)
-            yield _Followed(path.partition(".")[2], place, found.unit, found.by, read)
+            yield ObjectInUnit(path.partition(".")[2], place, found.unit, found.by, read)
 
 
 def _owners(path: str) -> Iterator[str]:

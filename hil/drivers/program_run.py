@@ -19,6 +19,7 @@ from emulator.registers.spi import SPICCR, SPICTL
 from hil.drivers.budget import RUN, TimeBudget, computed
 from hil.drivers.cut_messages import TRIAL, CutTrial, cut_messages
 from hil.drivers.face_scale import FaceScales
+from hil.drivers.face_zero import FaceZeros
 from hil.drivers.identities import wrong_identities
 from hil.drivers.least_pulses import swallowed_pulses
 from hil.drivers.other_messages import OTHERS, OtherMessages, other_messages
@@ -230,6 +231,7 @@ def _run(
     routines = RoutinePeriods(image.board)
     SentTexts(image.board)
     scales, times = FaceScales(image, build, for_s), TimeCounts(image, build)
+    zeros = FaceZeros(image, build, for_s)
     budget = TimeBudget(RUN)
     stop: BaseException | None = None
     stood = EndPosition()
@@ -267,6 +269,7 @@ def _run(
     tick_us = image.board.kernel.clocks.tick_period_us
     told = (
         *((*wrong_periods(build.modules, routines.periods()), *times.wrong()) if known else ()), *scales.wrong(),
+        *zeros.wrong(),
         *(misread_counts(build.modules, tick_us, image.board) if known else ()),
         *wrong_rates(build.modules, image.board, tick_us, peer_known=board_named),
         *wrong_timers(build.modules, image.board),
