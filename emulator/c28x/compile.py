@@ -75,7 +75,7 @@ def compile_program(
             writer = PythonWriter(
                 function, FunctionNames(own.owner, looked_at), costs=costs, factor=factor, watch=options.watch,
                 residue=options.residue, keep_locals=options.keep_locals, coverage=options.coverage,
-                steps=options.steps, follow=options.follow, charge_by_call=options.charge_by_call,
+                steps=options.steps, follow=options.follow, charge_by_call=options.charge_by_call, idle=facts.idle,
             )  # fmt: skip
             functions.append(CompiledFunction(function, function.where.file, writer.write(), own))
     return Compiled(program, options, functions, objects, findings)

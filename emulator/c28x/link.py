@@ -148,8 +148,11 @@ class Linked:
         self.runtime.loop_limit = self.namespace["_c_loop_limit"] = cycles
 
     def skip_turns(self) -> None:
-        """From now on, time skips the turns of loops that change nothing.  Needs an image linked with `watch`."""
-        self.runtime.skips_turns = True
+        """From now on, time skips the turns of loops that change nothing.  Needs an image linked with `watch`.
+
+        Not if functions of the program are replaced: what stands for them does not say whether it changes anything.
+        """
+        self.runtime.skips_turns = not any(each.function.name in self.replaced for each in self.compiled.functions)
 
     # Objects
 
@@ -277,7 +280,8 @@ class Linked:
             "_c_error_side_float": runtime.error_side_float,
             "_c_overflow": runtime.overflow, "_c_float_to_int": runtime.float_to_int,
             "_c_float_argument": runtime.float_argument, "_c_stamps": runtime.stamps, "_c_past": runtime.past,
-            "_c_turn": runtime.turn, "_c_extended": runtime.extended, "_c_parsed": runtime.parsed,
+            "_c_turn": runtime.turn, "_c_busy": runtime.busy,
+            "_c_extended": runtime.extended, "_c_parsed": runtime.parsed,
             "_c_pulse": runtime.pulse, "_c_regulated": runtime.regulated, "_c_regulated_float": runtime.regulated_float,
             "_c_divide_floats": runtime.divide_floats, "_c_divide_doubles": runtime.divide_doubles,
             "_c_divide_ints": runtime.divide_ints,
@@ -353,9 +357,11 @@ class Linked:
 
         Raises ValueError for a function of a compiled program, which calls it directly.
         """
+        self.replaced[name] = function
         for prefix in ("_f_", "_x_"):
             if prefix + name in self.namespace:
                 self.namespace[prefix + name] = function
+                self.runtime.skips_turns &= prefix == "_x_"
 
     def _spill(self, what: tuple[str, list[Variable]], fp: int | None, values: tuple[Any, ...]) -> None:
         """Write the locals of a returning function to the stack memory, and keep them for tests."""

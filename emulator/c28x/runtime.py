@@ -288,6 +288,8 @@ class Runtime:
         #: After the last such turn: the time, the time of the next event, how many events were ever scheduled,
         #: and the occurrences of findings.
         self._idle_turn = (-1, -1, -1, -1)
+        #: When a function last did what no idle turn does.
+        self._busy = -1
         memory.take_policy_from(self)
 
     # Reports
@@ -1368,13 +1370,17 @@ class Runtime:
         self.hit(site, "endless-poll", f"{site.name} has been polled for {limit_s:g} s without an end")
         return clock.now + self.poll_limit
 
+    def busy(self) -> None:
+        """A function that an idle turn may call does what none does."""
+        self._busy = self.clock.now
+
     def turn(self, began: int, until: int) -> None:
         """A turn of a loop that began at `began` has changed nothing (pass `idle_turns`).
 
         If no event came in it or was scheduled, and the turn before it was such a one too, the next ones are the same.
         Time skips those that end before the next event, and before `until`.
         """
-        if not self.skips_turns:
+        if not self.skips_turns or self._busy >= began:
             return
         clock, findings = self.clock, self.findings
         if self._idle_turn == (began, int(clock.next), int(clock.scheduled), findings.occurrences):

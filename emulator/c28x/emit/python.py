@@ -35,7 +35,7 @@ from emulator.c28x.passes.guards import (
     octet_range,
     wraps,
 )  # fmt: skip
-from emulator.c28x.passes.idle_turns import idle_turns
+from emulator.c28x.passes.idle_turns import IdleCalls, idle_turns
 from emulator.c28x.passes.intervals import bounds_of
 from emulator.c28x.sites import Place, Site
 from emulator.c28x.tree import (
@@ -121,12 +121,13 @@ class _Breakable:
 class PythonWriter:
     """Writes one function.
 
-    `costs` has put the cycles on its statements, `factor` scales them; the other arguments come from `CompileOptions`.
+    `costs` has put the cycles on its statements, `factor` scales them.  `idle` is the result of `idle_calls`.  The
+    other arguments come from `CompileOptions`.
     """
 
     def __init__(
         self, function: Function, names: FunctionNames, *, costs: Costs, factor: float, watch: bool, residue: bool,
-        keep_locals: bool, coverage: bool, steps: bool, follow: bool, charge_by_call: bool,
+        keep_locals: bool, coverage: bool, steps: bool, follow: bool, charge_by_call: bool, idle: IdleCalls,
     ) -> None:  # fmt: skip
         self.function = function
         self.names = names
@@ -158,7 +159,9 @@ class PythonWriter:
         #: Label -> the flag that a `goto` from within another loop or switch has set.
         self.jump_flags: dict[str, str] = {}
         #: The loops with turns that time may skip, and what ends the idleness of a turn.  Nobody stops there.
-        self.idle_loops, self.busy = idle_turns(function) if watch and not steps else ({}, {})
+        self.idle_loops, self.busy, self.busy_calls = (
+            idle_turns(function, idle) if watch and not steps else ({}, {}, set[int]())
+        )
         #: Identity of a loop -> the variable with the beginning of its turn, and the text of its time limit.
         self.turn_of: dict[int, str] = {}
         self.limits: dict[int, str] = {}
@@ -314,6 +317,8 @@ class PythonWriter:
             for loop in self.busy.get(id(s), ()):
                 if loop in self.turn_of:
                     self.put(f"{self.turn_of[loop]} = -1")
+            if id(s) in self.busy_calls:
+                self.put("_c_busy()")
             if executes(s):
                 self.begin(s, s.where)
             self.statement(s)

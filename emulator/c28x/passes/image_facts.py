@@ -8,6 +8,7 @@ from typing import Any
 
 from emulator.c28x.passes.feedback import reversed_errors
 from emulator.c28x.passes.fields import flag_scalars
+from emulator.c28x.passes.idle_turns import IdleCalls, idle_calls
 from emulator.c28x.passes.pulses import pulses
 from emulator.c28x.passes.signs import SignedWord, signed_words
 from emulator.c28x.passes.stamps import Stamps
@@ -51,6 +52,8 @@ class ImageFacts:
     sums: Set[int]
     #: The paths of the functions that only compute.
     computing: Set[str]
+    #: The result of `idle_calls`.
+    idle: IdleCalls
     #: The suspicions of pass `stamps`.
     stamps: Mapping[int, str]
     #: The results of the passes `pulses`, `wind_up` and `signs`.
@@ -74,7 +77,7 @@ class ImageFacts:
 @once
 def _keys(function: Function) -> set[Any]:
     """All that facts can be about in a function."""
-    keys: set[Any] = {*function.parameters, *function.locals, *function.calls}
+    keys: set[Any] = {*function.parameters, *function.locals, *function.calls, function.path}
     for s in statements(function.body):
         keys.add(id(s))
         if isinstance(s, Declare):
@@ -95,6 +98,7 @@ def facts_of(functions: Sequence[Function], stamps: Stamps, *, watch: bool) -> I
         compared=compared(functions), limited=limited(functions), made_float=made_float(functions),
         in_a_range=limited_scalars(functions), flags=flag_scalars(functions), numbers=numbers,
         sums=sums_of_samples(functions, numbers), computing=only_compute(functions),
+        idle=idle_calls(functions),
         stamps=stamps.suspicions(), pulses=pulses(stamps), regulators=wind_up(functions) if watch else {},
         words=signed_words(functions) | reversed_errors(functions),
     )  # fmt: skip

@@ -84,10 +84,52 @@ def told() -> uint16:
         if unset[1] == 5:
             Turns += 1
     return Done
+# drv.c: due
+def due(last: uint16) -> uint16:
+    now: uint16 = Ticks
+    return now != last
+# drv.c: serve
+def serve() -> void:
+    if Out == Ticks:
+        return
+    Done += cost(Out)
+    Out = Ticks
+# drv.c: send
+def send() -> void:
+    while Turns < Ticks:
+        Turns += 1
+# drv.c: called
+def called() -> uint16:
+    last: uint16 = 0
+    while last < 8:
+        if due(last):
+            last += 1
+        serve()
+        send()
+    return Done
+# drv.c: count
+def count() -> void:
+    if Ticks < 8:
+        Turns += 1
+# drv.c: counted_elsewhere
+def counted_elsewhere() -> uint32:
+    while due(8):
+        count()
+    return Turns
+# drv.c: again
+def again(n: uint16) -> uint16:
+    if n == 0:
+        return Ticks
+    return again(n - 1)
+# drv.c: called_by_itself
+def called_by_itself() -> uint16:
+    while again(3) < 8:
+        serve()
+    return Done
 """
-SKIPPED = ("tested", "continued", "waited", "emptied", "chosen")
-#: A loop that counts its turns, and one with a finding in each turn.
-EXECUTED = ("counted", "told")
+SKIPPED = ("tested", "continued", "waited", "emptied", "chosen", "called")
+#: Loops that count their turns, one with a finding in each turn, and one that calls what nobody follows.
+EXECUTED = ("counted", "counted_elsewhere", "told", "called_by_itself")
 
 
 def run(name: str, gaps: list[int], *, skips: bool, coverage: Coverage | None = None) -> tuple[Any, int]:
@@ -141,3 +183,14 @@ def test_who_counts_lines_sees_those_of_a_run_that_does_not_skip(name: str) -> N
 def test_a_turn_that_changes_or_tells_something_is_executed(name: str) -> None:
     outcome, executed = run(name, [1_000] * 8, skips=True)
     assert executed == outcome[1]
+
+
+def test_a_function_that_is_replaced_runs_in_each_turn() -> None:
+    firmware = Workshop(SOURCE, watch=True)
+    firmware.linked.skip_turns()
+    ticks = firmware.linked.objects["drv.Ticks"].data
+    turns: list[int] = []
+    firmware.linked.replace("send", lambda: turns.append(1))
+    firmware.clock.schedule(10_000, lambda: ticks.__setitem__(0, 8))
+    firmware.called()
+    assert len(turns) > 50
