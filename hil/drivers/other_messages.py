@@ -42,8 +42,8 @@ from hil.image import Image
 #: A pause before each message, and the time that a program has to take it.
 _PAUSE: Final = 30 * CYCLES_PER_MS
 _TAKEN: Final = 60 * CYCLES_PER_MS
-#: So many different messages of a line are varied, each in so many places; at most this many are sent.
-_VARIED: Final = 6
+#: So many numbers of a line's messages are varied, in so many places of each; at most this many messages are sent.
+_VARIED: Final = 12
 _PLACES: Final = 8
 _MOST: Final = 120
 #: A message is sent so often to see how it is taken; so often without a pause.
@@ -129,14 +129,16 @@ class OtherMessages:
                 texts = list(filter(_WHOLE.fullmatch, texts))
             row = b"".join((texts * _ROW)[: max(_ROW, len(texts))])
             yield from self._outside(send, row, "messages without a pause")
-            done = set[tuple[bytes, bytes, str]]()
-            for text in texts[:_VARIED]:
+            done = set[tuple[bytes, str]]()
+            for text in texts:
+                varied = len(done)
                 for number in _numbers(text, texts, checked=renew(text[:-1] + b"\0") != text[:-1] + b"\0"):
-                    rest = text[: number.start], text[number.end : -1], number.kind
-                    if rest not in done:
+                    same = renew(number.put(text, 0)), f"{number.kind} at {number.start}"
+                    if same not in done and len(done) < _VARIED:
+                        done.add(same)
                         yield from self._vary(send, text, number, renew)
-                    done.add(rest)
-                yield from send(text)
+                if len(done) > varied:
+                    yield from send(text)
             yield from self._outside(send, _too_long(texts[-1]), "a message that is too long")
 
     def _vary(
