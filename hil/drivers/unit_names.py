@@ -192,6 +192,7 @@ _PARTS: Final = {
 #: Names that are a unit and nothing else.
 _ALONE: Final = frozenset((
     "ms", "us", "mv", "mm", "rpm", "hz", "khz", "degrees", "millivolts", "celsius", "percent", "permille", "promille",
+    "millis", "milliseconds", "microseconds",
 ))  # fmt: skip
 #: An amount in a name: `RATE_6400_Hz` and `TIMEOUT_500MS` need not be numbers of this unit.
 _AMOUNT: Final = re.compile(r"(?:_|^)\d+_?[A-Za-z]+$|[a-z]\d+[A-Z][a-z]+$")

@@ -145,6 +145,9 @@ def _computed(number: Expr, given: GivenValues, depth: int = 0) -> bool:
             return True
         case Binary(op="/" | ">>", left=left):
             return _computed(left, given, depth)
+        case Call(function=Function(path=path)) if depth < _DEEPEST:
+            results = given.results.get(path, ())
+            return magnitude or any(v.value is not None and _computed(v.value, given, depth + 1) for v in results)
         case Load(lvalue=lvalue) if depth < _DEEPEST and (scalar := named_scalar(lvalue)) is not None:
             values = given.of(scalar)
             return magnitude or any(v.value is not None and _computed(v.value, given, depth + 1) for v in values)

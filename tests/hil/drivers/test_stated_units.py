@@ -25,7 +25,7 @@ from hil.image import Build
     ("PULSE_JE_MS", ""), ("temp_sixteenths", "sixteenths of a unit"),
     ("wheel_rad", ""), ("chargeMa", "mA"), ("PHASE_MA", "mA"), ("ma", ""),
     ("current_mA", "mA"), ("temp_dC", "decidegree Celsius"), ("pack_mA", ""), ("HOT_C", "degree Celsius"),
-    ("PHASE_C", ""),
+    ("PHASE_C", ""), ("Millis", "ms"),
     # No units: other words, rates, amounts, mega or milli.
     ("items", ""), ("params", ""), ("VRMS", ""), ("motorRPMs", ""), ("max_min", ""), ("filterDegree", ""),
     ("powerMeter", ""), ("RAMP_RPM_PER_MS", ""), ("RATE_6400_HZ", ""),

@@ -9,11 +9,13 @@ from tests.emulator.c28x.readers.c.workshop import findings_of
 HEAD = """#include <stdio.h>
 #include <stdlib.h>
 char line[80]; static int raw, plain, cv, stepped, version, sum; static long mg, ms, um; static unsigned u; int day;
-struct NOW { long um; int tenths; } now;
+struct NOW { long um; int tenths; int mv; } now;
+static int To_mv(int n) { return (int)((long)n * 33L / 40L - 5L); }
 void Step(void)
 {
     cv = raw * 33 / 40 - 500; mg = (long)raw * 250; ms++; um = mg - 5; stepped = raw * 25; now.um = mg + um;
     version = day * 100 + 7; sum += raw; now.tenths = raw - 400;
+    now.mv = To_mv(raw);
 }
 """
 
@@ -42,6 +44,7 @@ def told(body: str) -> bool:
         'sprintf(line, "%d.%02d", plain / 100, abs(plain % 100));',  # -0.5
         'sprintf(line, "%d.%d C", n->tenths / 10, abs(n->tenths % 10));',
         'sprintf(line, "T %d.%d", plain / 10, abs(plain) % 10);',
+        'sprintf(line, "U=%d.%d I=%u", n->mv / 1000, n->mv % 1000, u);',
     ],
 )
 def test_a_fraction_without_its_zeros_or_its_sign_is_told(body: str) -> None:
