@@ -84,7 +84,7 @@ STAYS: Final = {
     ),
     "what firmware calls beside the chip: the library of C, frames of CAN; not compiled so far": (
         "emulator/c28x/called_as.py", "emulator/c28x/intrinsics.py", "emulator/c28x/iq_arithmetic.py",
-        "emulator/c28x/objects.py", "emulator/c28x/rts_*.py",
+        "emulator/c28x/number_text.py", "emulator/c28x/objects.py", "emulator/c28x/rts_*.py",
         "emulator/can_bus.py",
     ),
 }  # fmt: skip

@@ -90,6 +90,8 @@ class Linked:
         self.externs = intrinsics(cast(InterruptMask, runtime.cpu)) | dict(externs)
         self._iqmath = IQmath(runtime)
         self.replaced = dict(replaced)
+        #: Whether `replace` has redirected calls of functions of the program.
+        self._redirected = False
         #: The counters of an image that counts statements (`CompileOptions.coverage`).
         self.coverage = coverage or Coverage()
         self.objects: dict[str, Object] = {}
@@ -152,7 +154,8 @@ class Linked:
 
         Not if functions of the program are replaced: what stands for them does not say whether it changes anything.
         """
-        self.runtime.skips_turns = not any(each.function.name in self.replaced for each in self.compiled.functions)
+        redirected = any(each.function.name in self.replaced for each in self.compiled.functions)
+        self.runtime.skips_turns = not redirected and not self._redirected
 
     # Objects
 
@@ -357,11 +360,11 @@ class Linked:
 
         Raises ValueError for a function of a compiled program, which calls it directly.
         """
-        self.replaced[name] = function
         for prefix in ("_f_", "_x_"):
             if prefix + name in self.namespace:
                 self.namespace[prefix + name] = function
-                self.runtime.skips_turns &= prefix == "_x_"
+                self._redirected |= prefix == "_f_"
+        self.runtime.skips_turns &= not self._redirected
 
     def _spill(self, what: tuple[str, list[Variable]], fp: int | None, values: tuple[Any, ...]) -> None:
         """Write the locals of a returning function to the stack memory, and keep them for tests."""
