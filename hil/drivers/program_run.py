@@ -170,14 +170,7 @@ def _cut(build: Build, roles: Roles, for_s: float) -> list[Finding]:
     """Receivers that do not understand the message after one that was cut off, found by a run with more messages."""
 
     def run(prepare: Callable[[Image], CutTrial]) -> None:
-        image = _begin(build, roles, build.counted())
-        trial = prepare(image)
-        usual = image.board.clock.now + round(for_s * SYSCLK_HZ)
-        image.allow_loops(2 * _LONGER * usual + 2 * TRIAL + SYSCLK_HZ)
-        with suppress(*STOPS):
-            _go(image, roles, lambda: trial.until(usual), TimeBudget(_OBSERVED), lambda fraction: None)
-        with suppress(*STOPS):
-            image.close()
+        _with_more_messages(build, roles, for_s, prepare, TRIAL)
 
     seen = (anchored(finding, build.others) for finding in cut_messages(run))
     return [finding for finding in seen if finding is not None]
@@ -187,17 +180,24 @@ def _others(build: Build, roles: Roles, for_s: float) -> list[Finding]:
     """What other messages show than those of the run, found by a run with more messages."""
 
     def run(prepare: Callable[[Image], OtherMessages]) -> None:
-        image = _begin(build, roles, build.counted())
-        trial = prepare(image)
-        usual = image.board.clock.now + round(for_s * SYSCLK_HZ)
-        image.allow_loops(2 * _LONGER * usual + 2 * OTHERS + SYSCLK_HZ)
-        with suppress(*STOPS):
-            _go(image, roles, lambda: trial.until(usual), TimeBudget(_OBSERVED), lambda fraction: None)
-        with suppress(*STOPS):
-            image.close()
+        _with_more_messages(build, roles, for_s, prepare, OTHERS)
 
     seen = (anchored(finding, build.others) for finding in other_messages(build.modules, run))
     return [finding for finding in seen if finding is not None]
+
+
+def _with_more_messages(
+    build: Build, roles: Roles, for_s: float, prepare: Callable[[Image], CutTrial | OtherMessages], longest: int
+) -> None:
+    """Run the program as usual, and then for at most `longest` cycles of further messages."""
+    image = _begin(build, roles, build.counted())
+    trial = prepare(image)
+    usual = image.board.clock.now + round(for_s * SYSCLK_HZ)
+    image.allow_loops(2 * _LONGER * usual + 2 * longest + SYSCLK_HZ)
+    with suppress(*STOPS):
+        _go(image, roles, lambda: trial.until(usual), TimeBudget(_OBSERVED), lambda fraction: None)
+    with suppress(*STOPS):
+        image.close()
 
 
 def _begin(build: Build, roles: Roles, compiled: Compiled | None = None) -> Image:

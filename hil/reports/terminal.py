@@ -15,7 +15,7 @@ from rich.text import Text
 from emulator.rules import Severity, counted
 from hil.reports.differences import RunDifferences
 from hil.reports.excerpt import excerpt, function_of, location, readable, relative_path, shown
-from hil.reports.model import Report, ReportEntry
+from hil.reports.model import CalledFunction, Report, ReportEntry
 
 STYLE: Final = {Severity.ERROR: "bold red", Severity.WARNING: "yellow", Severity.NOTE: "cyan"}
 #: How many differing outputs a finding's details show.
@@ -55,16 +55,20 @@ def _lines(report: Report) -> Iterator[str]:
     called = [f"{one.name} ({one.calls})" for one in report.run.functions if one.called]
     if called:
         yield f"called, with how many argument lists: {', '.join(called)}"
-    left: dict[str, list[str]] = {}
+    left: dict[str, list[CalledFunction]] = {}
     for one in report.run.functions:
-        named = f"{one.name} ({relative_path(one.file)}:{one.line})"
         if one.note and one.called:
-            yield f"{named}: {one.note}"
+            yield f"{_placed(one)}: {one.note}"
         elif one.note:
-            left.setdefault(one.note, []).append(named)
-    for note, names in left.items():
-        which = names[0] if len(names) == 1 else ", ".join(name.partition(" ")[0] for name in names)
-        yield f"not called with generated arguments: {which}: {'' if len(names) == 1 else 'each: '}{note}"
+            left.setdefault(one.note, []).append(one)
+    for note, functions in left.items():
+        several = f"{', '.join(one.name for one in functions)}: each"
+        which = several if len(functions) > 1 else _placed(functions[0])
+        yield f"not called with generated arguments: {which}: {note}"
+
+
+def _placed(function: CalledFunction) -> str:
+    return f"{function.name} ({relative_path(function.file)}:{function.line})"
 
 
 def findings_table(report: Report, width: int, most: int | None = None) -> Table:
