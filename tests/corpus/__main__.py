@@ -9,6 +9,7 @@ from concurrent.futures import ProcessPoolExecutor
 from itertools import starmap
 
 from tests.corpus.corpus import CLASSES, Damage, Driver, Result, check, chosen, drivers
+from tests.corpus.forms import FORMS, false_alarms, found_in
 
 HOWS = ("found", "noted", "elsewhere", "missed")
 
@@ -30,14 +31,40 @@ def table(counts: Counter[tuple[str, str]]) -> list[str]:
     return rows
 
 
+def in_forms(pool: ProcessPoolExecutor, forms: Sequence[str], names: Sequence[str], *, right: bool) -> None:
+    """Print what is found in the original form and lost in others; with `right`, the false alarms in them."""
+    if right:
+        of_c = [driver for driver in drivers() if driver.in_c]
+        for driver, alarms in zip(of_c, pool.map(false_alarms, of_c, [forms] * len(of_c)), strict=True):
+            for form, told in alarms.items():
+                print(f"{form}: {driver.name}: {told or 'silent'}", flush=True)
+        return
+    counts: Counter[tuple[str, bool]] = Counter()
+    wanted = [(driver, damage) for driver, damage in chosen(*names) if driver.in_c]
+    done = pool.map(found_in, *zip(*wanted, strict=True), [forms] * len(wanted))
+    for (driver, damage), found in zip(wanted, done, strict=True):
+        for form, lost in found.items():
+            counts[form, lost is None] += 1
+            if lost is not None:
+                print(f"{form:18} {driver.name}: {damage.id}: {lost}", flush=True)
+    print("| form | found as written | found in this form | of them |\n|---|---:|---:|---:|")
+    for form in forms:
+        kept, every = counts[form, True], counts[form, True] + counts[form, False]
+        print(f"| {form} | {every} | {kept} | {kept / max(every, 1):.0%} |")
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     """The command."""
     parser = argparse.ArgumentParser(prog="python -m tests.corpus", description=__doc__)
     parser.add_argument("names", nargs="*", metavar="CLASS|DRIVER|ID", help="only these")
     parser.add_argument("-j", "--jobs", type=int, default=1, help="so many at a time")
     parser.add_argument("--right", action="store_true", help="the right drivers instead: every line is a false alarm")
+    parser.add_argument("--form", choices=[*FORMS, "all"], help="in this form (forms.py): what is lost in it")
     asked = parser.parse_args(arguments)
     with ProcessPoolExecutor(asked.jobs) as pool:
+        if asked.form is not None:
+            in_forms(pool, tuple(FORMS) if asked.form == "all" else (asked.form,), asked.names, right=asked.right)
+            return
         if asked.right:
             right = drivers()
             for driver, result in zip(right, pool.map(check, right, [each.text for each in right]), strict=True):

@@ -44,6 +44,11 @@ class Driver:
         """The name of its file, without the ending."""
         return self.file.stem
 
+    @property
+    def in_c(self) -> bool:
+        """Whether it is written in C."""
+        return self.file.suffix == ".c"
+
     @cached_property
     def text(self) -> str:
         """The text of its file."""

@@ -1,0 +1,138 @@
+"""Other forms of drivers are the same programs, and `hil check` finds in them what it finds in the original."""
+
+from __future__ import annotations
+
+import os
+from collections import defaultdict
+from pathlib import Path
+
+import pytest
+
+from emulator.registers.cell import Cell
+from hil.machine import Setup
+from hil.running import RunningBoard
+from tests.corpus.corpus import DRIVERS, Driver, chosen, drivers
+from tests.corpus.forms import FORMS, false_alarms, found_in, rewrite
+
+OF_C = [driver for driver in drivers() if driver.in_c]
+#: A run of the tests takes only what is quick; `HIL_CORPUS=all` takes all drivers and damages, which lasts hours.
+ALL = os.environ.get("HIL_CORPUS") == "all"
+QUICK = [driver for driver in OF_C if driver.name == "settings"]
+DAMAGES = ("set-greatest-never-set",)
+#: Acknowledged in the order of interrupts, which a few cycles more can turn.
+ORDERED_BY_TIME = "PieCtrlRegs.PIEACK"
+
+HEAD = """\
+#include "F28x_Project.h"
+static volatile Uint16 ticks = 0;
+static Uint16 levels[4];
+static int32 sum = 0;
+static Uint16 Half(Uint16 n)
+{
+"""
+TAIL = """
+}
+void main(void)
+{
+    ticks = Half(3);
+}
+"""
+
+
+def body(form: str, lines: str) -> str:
+    """What `lines` of a function with the parameter `n` become."""
+    text = rewrite("t.c", HEAD + lines + TAIL, form).text
+    assert text.startswith(HEAD)
+    return text[len(HEAD) : text.index("\n}\nvoid main")]
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("    ticks++;", "    ticks = ticks + 1;"),
+        ("    --sum;", "    sum = sum - 1;"),
+        ("    sum -= n ? 1 : 2;", "    sum = sum - (n ? 1 : 2);"),
+        ("    sum = sum + n * 2;", "    sum += n * 2;"),
+        ("    sum = n + sum;", "    sum = n + sum;"),
+        ("    sum = sum + n - 2;", "    sum = sum + n - 2;"),
+        ("    levels[ticks] += 1;", "    levels[ticks] += 1;"),  # else it would read `ticks` twice
+        ("    GpioDataRegs.GPADAT.bit.GPIO4 ^= 1;", "    GpioDataRegs.GPADAT.bit.GPIO4 ^= 1;"),
+        ("    for (;; n += 2)\n        break;", "    for (;; n = n + 2)\n        break;"),
+    ],
+)
+def test_compound(before: str, after: str) -> None:
+    assert body("compound", before) == after
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("    sum = n * 2;", "    { int32 held1 = n * 2; sum = held1; }"),
+        ("    levels[n] = n\n        + 1;", "    { unsigned int held1 = n + 1; levels[n] = held1\n; }"),
+        ("    return ticks;", "    { Uint16 held1 = ticks; return  held1; }"),
+        ("    if (n)\n        ticks = 1;", "    { int held1 = n != 0; if (held1)\n        ticks = 1; }"),
+        (
+            "    if (n > 1)\n        ticks = 1;\n    else if (!n)\n        ticks = 2;",
+            "    { int held1 = n > 1; if (held1)\n        ticks = 1;\n    else { int held2 = !n; if (held2)\n"
+            "        ticks = 2; } }",
+        ),
+    ],
+)
+def test_temporary(before: str, after: str) -> None:
+    assert body("temporary", before) == after
+
+
+def written(driver: Driver, text: str, folder: Path) -> dict[str, list[int]]:
+    """What the program writes to each register of the chip, in order."""
+    file = folder / driver.file.name
+    file.write_text(text, encoding="utf-8")
+    board = str(DRIVERS / driver.board) if driver.board.endswith(".py") else "bare"
+    machine = RunningBoard.of(Setup(board=board, firmware=(str(file),)))
+    words: defaultdict[str, list[int]] = defaultdict(list)
+
+    def seen(cell: Cell, access: str, word: int, mask: int) -> None:
+        if access == "write":
+            words[cell.path].append(word & mask)
+
+    for block in machine.board.blocks.values():
+        for cell in block.registers.values():
+            cell.tap(seen)
+    machine.boot()
+    machine.run_for(min(driver.seconds, 0.05))
+    words.pop(ORDERED_BY_TIME, None)
+    return words
+
+
+def same(one: list[int], other: list[int]) -> bool:
+    """Whether two runs wrote the same; a few cycles more make a loop write a little less."""
+    both = min(len(one), len(other))
+    return one[:both] == other[:both] and max(len(one), len(other)) <= 1.03 * both + 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("driver", OF_C if ALL else QUICK, ids=lambda driver: driver.name)
+def test_a_form_does_what_the_original_does(driver: Driver, tmp_path: Path) -> None:
+    as_written = written(driver, driver.text, tmp_path)
+    for form in FORMS:
+        text = rewrite(driver.file.name, driver.text, form).text
+        assert text.count("\n") == driver.text.count("\n")
+        if text != driver.text:
+            now = written(driver, text, tmp_path)
+            assert as_written.keys() == now.keys(), form
+            assert [register for register, words in as_written.items() if not same(words, now[register])] == [], form
+
+
+@pytest.mark.skipif(not ALL, reason="HIL_CORPUS=all: takes long")
+@pytest.mark.parametrize("driver", OF_C, ids=lambda driver: driver.name)
+def test_a_right_driver_is_told_nothing_in_any_form(driver: Driver) -> None:
+    assert false_alarms(driver, list(FORMS)) == dict.fromkeys(FORMS, "")
+
+
+@pytest.mark.slow
+def test_what_is_found_is_found_in_each_form() -> None:
+    wanted = [(driver, damage) for driver, damage in chosen() if driver.in_c and (ALL or damage.id in DAMAGES)]
+    lost = {
+        (form, damage.id): how for driver, damage in wanted for form, how in found_in(driver, damage, [*FORMS]).items()
+        if how is not None
+    }  # fmt: skip
+    assert lost == {}
