@@ -5,15 +5,18 @@ A damage that `hil check` finds in one form should be found in each of them, and
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
+from itertools import zip_longest
 from typing import Any, Final
 
 from pycparser import c_ast
 
+from emulator.c28x.ctypes import FunctionType
 from hil.board import load
 from tests.corpus.corpus import Damage, Driver, check
-from tests.corpus.source import Source, nodes, value_declaration
+from tests.corpus.source import Source, declaration_of, named, nodes, value_declaration
 
 #: The operators of assignments that compute.
 _COMPOUND: Final = ("+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>=")
@@ -117,9 +120,10 @@ def temporary(source: Source) -> None:
                             source.before(part, f"{{ {declaration} = {source.of(value)}; ")
                             source.replace(value, f" {name}")
                             source.after(part, " }")
-                if isinstance(part, c_ast.If | c_ast.Assignment | c_ast.Return):
-                    source.move(part.cond if isinstance(part, c_ast.If) else part, source.line(part, statement=True),
-                                statement=not isinstance(part, c_ast.If))
+                if isinstance(part, c_ast.If):
+                    source.move(part.cond, source.line(part, statement=True))
+                elif isinstance(part, c_ast.Assignment | c_ast.Return):
+                    source.move(part, source.line(part, statement=True), statement=True)
 
 
 def _truth(source: Source, cond: Any) -> str:
@@ -134,7 +138,206 @@ def _result(function: Any, name: str) -> str | None:
     return value_declaration(declaration, name)
 
 
-FORMS: Final[dict[str, Callable[[Source], None]]] = {"compound": compound, "temporary": temporary}
+def helper_expression(source: Source) -> None:
+    """The value of an assignment, a condition, an argument and a result is computed by a function of its own."""
+    for function in source.functions:
+        _Computed(source, function).visit(function.body)
+
+
+class _Computed:
+    """Expressions of one function become functions in front of it, with the locals that they read as parameters."""
+
+    def __init__(self, source: Source, function: Any) -> None:
+        self.source = source
+        self.function = function
+        self.declared = source.declared(function)
+
+    def visit(self, node: Any) -> None:
+        """Make functions of the expressions in a statement or an expression, outer ones first."""
+        source = self.source
+        done = None
+        match node:
+            case c_ast.Assignment(op="=", rvalue=value) if self.made(
+                value, lambda name: source.target_type(node, name, self.declared), source.of(value)
+            ):
+                done = value
+            case c_ast.If(cond=cond) | c_ast.While(cond=cond) | c_ast.DoWhile(cond=cond) if self.made(
+                cond, lambda name: f"int {name}", _truth(source, cond)
+            ):
+                done = cond
+            case c_ast.Return(expr=value) if value is not None and self.made(
+                value, lambda name: _result(self.function, name), source.of(value), " "
+            ):
+                done = value
+            case c_ast.FuncCall(args=c_ast.ExprList(exprs=arguments)) if (called := source.called(node)) is not None:
+                for argument, ctype in zip_longest(arguments, called.ctype.parameters[: len(arguments)]):
+                    if (
+                        ctype is None
+                        or isinstance(ctype, FunctionType)
+                        or not self.made(argument, partial(declaration_of, ctype), source.of(argument))
+                    ):
+                        self.visit(argument)
+                return
+        for _, child in node.children():
+            if child is not done:
+                self.visit(child)
+
+    def made(self, value: Any, typed: Callable[[str], str | None], text: str, space: str = "") -> bool:
+        """Whether a function for an expression was made; `typed` declares its name with the type of its result."""
+        given = self.parameters(value)
+        told = isinstance(value, c_ast.ID) and value.name not in self.declared and text != self.source.of(value)
+        if given is None or not (_computes(value) or told):
+            return False
+        name = self.source.fresh("found")
+        declaration = typed(f"{name}({', '.join(given.values()) or 'void'})")
+        if declaration is None:
+            return False
+        self.source.above(self.function, f"static {declaration} {{ return {text}; }} ")
+        self.source.replace(value, f"{space}{name}({', '.join(given)})")
+        self.source.move(value, self.source.line(self.function, statement=True))
+        return True
+
+    def parameters(self, value: Any) -> dict[str, str] | None:
+        """The declaration of each local that an expression reads; None: it wants more of one than its value."""
+        names = self.source.free(value, self.declared)
+        for part in nodes(value):
+            operand: Any = None
+            match part:
+                case c_ast.UnaryOp(op="++" | "--" | "p++" | "p--" | "&" | "sizeof", expr=operand):
+                    pass
+                case c_ast.Assignment(lvalue=operand):
+                    pass
+            if operand is not None and self.source.free(operand, self.declared):
+                return None
+        declarations = {}
+        for name in names:
+            declaration = self.declared[name]
+            if declaration is None or "volatile" in declaration.quals:
+                return None
+            text = value_declaration(declaration, name, parameter=True)
+            if text is None:
+                return None
+            declarations[name] = text
+        return declarations
+
+
+def _computes(value: Any) -> bool:
+    """Whether a value is more than a number, a name or an address."""
+    while isinstance(value, c_ast.UnaryOp) and value.op in ("-", "+", "~", "&"):
+        value = value.expr
+    return not isinstance(value, c_ast.Constant | c_ast.ID)
+
+
+def helper_statement(source: Source) -> None:
+    """The innermost blocks of `if` and loops become functions; of a loop that ends a function, its whole body."""
+    for function in source.functions:
+        helpers = _Blocks(source, function)
+        last = (function.body.block_items or [None])[-1]
+        if not (isinstance(last, c_ast.For | c_ast.While) and helpers.split(last.stmt)):
+            helpers.visit(function.body)
+
+
+class _Blocks:
+    """Blocks of one function become functions: locals are passed as values, or as pointers if they are changed."""
+
+    def __init__(self, source: Source, function: Any) -> None:
+        self.source = source
+        self.function = function
+        self.declared = source.declared(function)
+
+    def visit(self, node: Any) -> bool:
+        """Make functions of the innermost blocks in a statement; whether there was one."""
+        parts = [node.stmt] if isinstance(node, c_ast.Switch) else _parts(node)
+        chosen = isinstance(node, c_ast.If | c_ast.While | c_ast.For | c_ast.DoWhile)
+        made = [self.visit(part) or (chosen and self.made(part)) for part in parts]
+        return any(made)
+
+    def made(self, block: Any) -> bool:
+        """Whether a function for a block was made in front of this one."""
+        if not isinstance(block, c_ast.Compound) or not block.block_items or any(_leaves(block)):
+            return False
+        given = self.parameters(block)
+        if given is None or any(isinstance(part, c_ast.Switch) for part in nodes(block)):
+            return False
+        source = self.source
+        name = source.fresh("step")
+        pointers = {local: f"(*{local})" for local, (_, argument) in given.items() if argument != local}
+        source.above(self.function, f"{self.head(name, given)} {{ {source.within(block, pointers)} }} ")
+        source.replace(block, f"{{ {self.call(name, given)} }}", statement=True)
+        source.move(block, source.line(self.function, statement=True), statement=True)
+        return True
+
+    def split(self, block: Any) -> bool:
+        """Whether the body of the loop that ends this function became a function, in its place."""
+        left = list(_leaves(block))
+        if not isinstance(block, c_ast.Compound) or any(not isinstance(part, c_ast.Continue) for part in left):
+            return False
+        given = self.parameters(block)
+        if given is None:
+            return False
+        source = self.source
+        name = source.fresh("step")
+        source.above(self.function, f"{self.head(name, given)}; ")
+        source.brace(block, f"{{ {self.call(name, given)} }} }} {self.head(name, given)} {{")
+        for part in named(block):
+            if part.name in given and given[part.name][1] != part.name:
+                source.replace(part, f"(*{part.name})")
+        for part in left:
+            source.replace(part, "return;", statement=True)
+        source.brace(self.function.body, "", closing=True)
+        return True
+
+    def head(self, name: str, given: Mapping[str, tuple[str, str]]) -> str:
+        """The head of the function `name`."""
+        return f"static void {name}({', '.join(declaration for declaration, _ in given.values()) or 'void'})"
+
+    def call(self, name: str, given: Mapping[str, tuple[str, str]]) -> str:
+        """The call of the function `name`."""
+        return f"{name}({', '.join(argument for _, argument in given.values())});"
+
+    def parameters(self, block: Any) -> dict[str, tuple[str, str]] | None:
+        """Local -> the declaration of its parameter and the argument; None: a local cannot be passed."""
+        changed = set()
+        for part in nodes(block):
+            match part:
+                case c_ast.UnaryOp(op="++" | "--" | "p++" | "p--" | "&", expr=target) | c_ast.Assignment(lvalue=target):
+                    while isinstance(target, c_ast.ArrayRef) or (
+                        isinstance(target, c_ast.StructRef) and target.type == "."
+                    ):
+                        target = target.name
+                    changed.update([target.name] if isinstance(target, c_ast.ID) else [])
+        given = {}
+        for local in self.source.free(block, self.declared):
+            declaration = self.declared[local]
+            if declaration is None or "volatile" in declaration.quals:
+                return None
+            array = isinstance(declaration.type, c_ast.ArrayDecl)
+            pointer = local in changed and not array
+            text = value_declaration(declaration, f"*{local}" if pointer else local, parameter=True)
+            if text is None:
+                return None
+            given[local] = text, f"&{local}" if pointer else local
+        return given
+
+
+def _leaves(node: Any) -> Iterator[Any]:
+    """The jumps out of a statement."""
+    match node:
+        case c_ast.Return() | c_ast.Goto() | c_ast.Label() | c_ast.Break() | c_ast.Continue():
+            yield node
+        case c_ast.While() | c_ast.For() | c_ast.DoWhile():
+            yield from (part for part in _leaves(node.stmt) if not isinstance(part, c_ast.Break | c_ast.Continue))
+        case c_ast.Switch():
+            yield from (part for part in _leaves(node.stmt) if not isinstance(part, c_ast.Break))
+        case _:
+            for part in _parts(node):
+                yield from _leaves(part)
+
+
+FORMS: Final[dict[str, Callable[[Source], None]]] = {
+    "compound": compound, "temporary": temporary, "helper-expression": helper_expression,
+    "helper-statement": helper_statement,
+}  # fmt: skip
 
 
 def found_in(driver: Driver, damage: Damage, forms: Sequence[str]) -> dict[str, str | None]:

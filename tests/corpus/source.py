@@ -8,7 +8,7 @@ from __future__ import annotations
 import copy
 import tempfile
 from collections import defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
@@ -133,6 +133,22 @@ class Source:
         first, last = self.span(node, statement=statement)
         return spelled([lexeme.token for lexeme in self._lexemes[first : last + 1]])
 
+    def within(self, block: Any, names: Mapping[str, str]) -> str:
+        """The text in the braces of a block in one line, with other texts for some names."""
+        first, last = self.span(block, statement=True)
+        others = {self.span(name)[0]: names[name.name] for name in named(block) if name.name in names}
+        tokens = []
+        for index in range(first + 1, last):
+            token = copy.copy(self._lexemes[index].token)
+            token.text = others.get(index, token.text)
+            tokens.append(token)
+        return spelled(tokens)
+
+    def brace(self, block: Any, text: str, *, closing: bool = False) -> None:
+        """Replace the opening or the closing brace of a block."""
+        brace = self.span(block, statement=True)[closing]
+        self.replace_lexemes(brace, brace, text)
+
     def operand(self, node: Any) -> str:
         """The text of an expression as an operand: in parentheses if they may be needed."""
         text = self.of(node)
@@ -185,15 +201,12 @@ class Source:
         return symbol if isinstance(symbol, Function) else None
 
     def declared(self, function: Any) -> dict[str, Any]:
-        """The declarations of the parameters and locals of a function; those of two of one name are left out."""
+        """The declarations of the parameters and locals of a function; None for two of one name."""
         found: dict[str, Any] = {}
-        twice: set[str] = set()
         for node in nodes(function):
             if isinstance(node, c_ast.Decl) and node is not function.decl and node.name:
-                if node.name in found:
-                    twice.add(node.name)
-                found[node.name] = node
-        return {name: node for name, node in found.items() if name not in twice}
+                found[node.name] = None if node.name in found else node
+        return found
 
     @cached_property
     def objects(self) -> dict[str, Any]:
@@ -207,7 +220,8 @@ class Source:
     def target_type(self, assignment: Any, name: str, declared: dict[str, Any]) -> str | None:
         """The declaration of `name` with the type of the target of an assignment; None: the type is not known."""
         if isinstance(assignment.lvalue, c_ast.ID):
-            declaration = declared.get(assignment.lvalue.name) or self.objects.get(assignment.lvalue.name)
+            object_name = assignment.lvalue.name
+            declaration = declared[object_name] if object_name in declared else self.objects.get(object_name)
             if declaration is not None and (text := value_declaration(declaration, name)) is not None:
                 return text
         where = assignment.coord
@@ -236,6 +250,12 @@ class Source:
                     if isinstance(symbol, RegisterBlock | CoreRegister) or getattr(symbol, "volatile", False):
                         return True
         return False
+
+    def free(self, node: Any, declared: dict[str, Any]) -> list[str]:
+        """The parameters and locals (`declared`) that an expression or statement names and does not declare itself."""
+        own = {part.name for part in nodes(node) if isinstance(part, c_ast.Decl)}
+        names = dict.fromkeys(part.name for part in named(node))
+        return [name for name in names if name in declared and name not in own]
 
     # ---- edits
 
@@ -266,6 +286,10 @@ class Source:
         """Write text behind a node."""
         _, end = self._offsets(node, statement)
         self._edit(end, 0, end, text)
+
+    def above(self, function: Any, text: str) -> None:
+        """Write text in front of a function, in the line in which that begins."""
+        self.before(function, text)
 
     def move(self, node: Any, line: int, *, statement: bool = False) -> None:
         """Note that a node moves to a line, or is there also."""
@@ -314,6 +338,15 @@ def nodes(node: Any) -> Iterator[Any]:
         yield from nodes(child)
 
 
+def named(node: Any) -> Iterator[Any]:
+    """The names in an expression or a statement that can be those of objects and functions, not those of members."""
+    if isinstance(node, c_ast.ID):
+        yield node
+    for part, child in node.children():
+        if not (isinstance(node, c_ast.StructRef) and part == "field"):
+            yield from named(child)
+
+
 def declaration_of(ctype: CType, name: str) -> str:
     """The declaration of `name` with a type; with that of its word for a bit-field."""
     if isinstance(ctype, IntType) and ":" in ctype.name:
@@ -321,15 +354,20 @@ def declaration_of(ctype: CType, name: str) -> str:
     return declarator(ctype, name)
 
 
-def value_declaration(declaration: Any, name: str) -> str | None:
-    """The declaration of `name` with the type of the value of a declared object; None: it cannot be said twice."""
+def value_declaration(declaration: Any, name: str, *, parameter: bool = False) -> str | None:
+    """The declaration of `name` with the type of the value of a declared object; None: it cannot be said twice.
+
+    An array has no value; it is passed to a `parameter` as a pointer.
+    """
     if any(isinstance(node, c_ast.Enum) or getattr(node, "decls", None) for node in nodes(declaration.type)):
         return None
     made = copy.deepcopy(declaration)
     made.name, made.quals, made.storage, made.funcspec, made.init = name, [], [], [], None
     outer = made.type
-    if isinstance(outer, c_ast.ArrayDecl | c_ast.FuncDecl):
+    if isinstance(outer, c_ast.FuncDecl) or (isinstance(outer, c_ast.ArrayDecl) and not parameter):
         return None
+    if isinstance(outer, c_ast.ArrayDecl):
+        outer = made.type = c_ast.PtrDecl([], outer.type)
     outer.quals = []
     inner = outer
     while not isinstance(inner, c_ast.TypeDecl):

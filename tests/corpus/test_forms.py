@@ -32,9 +32,10 @@ static Uint16 Half(Uint16 n)
 """
 TAIL = """
 }
+/* main */
 void main(void)
 {
-    ticks = Half(3);
+    Half(3);
 }
 """
 
@@ -42,8 +43,13 @@ void main(void)
 def body(form: str, lines: str) -> str:
     """What `lines` of a function with the parameter `n` become."""
     text = rewrite("t.c", HEAD + lines + TAIL, form).text
-    assert text.startswith(HEAD)
-    return text[len(HEAD) : text.index("\n}\nvoid main")]
+    return text[text.index("\n{\n") + 3 : text.index("\n/* main */")].removesuffix("}").removesuffix("\n")
+
+
+def above(form: str, lines: str) -> str:
+    """What is written in front of the function with these lines."""
+    text = rewrite("t.c", HEAD + lines + TAIL, form).text
+    return text[text.index("sum = 0;") + 9 : text.index(" static Uint16 Half")]
 
 
 @pytest.mark.parametrize(
@@ -80,6 +86,38 @@ def test_compound(before: str, after: str) -> None:
 )
 def test_temporary(before: str, after: str) -> None:
     assert body("temporary", before) == after
+
+
+@pytest.mark.parametrize(
+    ("before", "function", "after"),
+    [
+        ("    sum = n + ticks;", "static int32 found1(Uint16 n) { return n + ticks; }", "    sum = found1(n);"),
+        ("    if (sum)\n        ;", "static int found1(void) { return sum != 0; }", "    if (found1())\n        ;"),
+        ("    n = Half(n / 2);", "static Uint16 found1(Uint16 n) { return Half(n / 2); }", "    n = found1(n);"),
+        ("    sum = n++ + Half(n / 2);", "static unsigned int found1(Uint16 n) { return n / 2; }",
+         "    sum = n++ + Half(found1(n));"),
+    ],
+)  # fmt: skip
+def test_helper_expression(before: str, function: str, after: str) -> None:
+    assert above("helper-expression", before) == function
+    assert body("helper-expression", before) == after
+
+
+@pytest.mark.parametrize(
+    ("before", "function", "after"),
+    [
+        ("    if (n) {\n        n = 1;\n        sum = n;\n    } else {\n        sum = n;\n    }",
+         "static void step1(Uint16 *n) { (*n) = 1; sum = (*n); } static void step2(Uint16 n) { sum = n; }",
+         "    if (n) { step1(&n); }\n\n\n else { step2(n); }\n\n"),
+        ("    for (;;) {\n        if (n)\n            continue;\n        n++;\n    }",
+         "static void step1(Uint16 *n);",
+         "    for (;;) { step1(&n); } } static void step1(Uint16 *n) {\n        if ((*n))\n            return;\n"
+         "        (*n)++;\n    }"),
+    ],
+)  # fmt: skip
+def test_helper_statement(before: str, function: str, after: str) -> None:
+    assert above("helper-statement", before) == function
+    assert body("helper-statement", before) == after
 
 
 def written(driver: Driver, text: str, folder: Path) -> dict[str, list[int]]:
