@@ -27,7 +27,7 @@ from hil.client.decode import FrameDecoder, OdometryFrame
 
 IDS: Final = frozenset(name for name, entry in CATALOGUE.items() if entry.kind is DefectKind.CONSOLE)
 #: The time in s after which the window can be clicked.
-READY_S: Final = 3.5
+READY_S: Final = 3.1
 #: A robot that stands moves by less than this.
 STOPPED_M: Final = 1e-3
 #: The period in s with which the console sends orders.
@@ -68,9 +68,9 @@ def speed(bench: Bench) -> Series:
 
 
 def _still_drives(what: str, bench: Bench, _desk: Desk) -> Evidence:
-    """Measure the distance of two seconds that begin a second from now."""
-    bench.run_for(1.0)
-    evidence = measured(f"way in 2 s, a second after {what}", distance(bench, 2.0), "m", high=STOPPED_M)
+    """Measure the distance of a second that begins half a second from now."""
+    bench.run_for(0.5)
+    evidence = measured(f"way in 1 s, half a second after {what}", distance(bench, 1.0), "m", high=STOPPED_M)
     return evidence.shown(Picture("The robot's true speed", "time in s", "speed in m/s", [speed(bench)]))
 
 
@@ -147,8 +147,9 @@ def _obeys_set(bench: Bench, _desk: Desk) -> Evidence:
 
 
 def _highest_speed(_bench: Bench, desk: Desk) -> Evidence:
-    speeds_m_s = [float(data.removeprefix(b"#SETR").partition(b",")[0]) for _, data in desk.wire if b"#SETR" in data]
-    what = "speed that the robot is told, after 6 s of the arrow"
+    orders = [order.removeprefix(b"#SETR") for order in desk.sent.split(b"\r") if order.startswith(b"#SETR")]
+    speeds_m_s = [float(order.partition(b",")[0]) for order in orders]
+    what = "speed that the robot is told, after 4.5 s of the arrow"
     return measured(what, max(speeds_m_s, default=0.0), "m/s", low=V_MOST_M_S, high=V_MOST_M_S)
 
 
@@ -170,61 +171,61 @@ def _label(_bench: Bench, desk: Desk) -> Evidence:
 
 #: Three points at 0, 1 and 100 cm.
 _DRIVE: Final = f"{HEADER}0,0,0,650,427,1922\n10,0,0,650,427,1922\n1000,0,0,650,427,1922\n"
-_UP: Final = PressedKey("up", 4.2, 5.3)
+_UP: Final = PressedKey("up", 4.0, 4.8)
 
 DEMONSTRATIONS: Final[Mapping[str, Callable[[Fixes], Evidence]]] = {
     "CONS-port-name": partial(_shown, Script(1.0, port="COM10 "), _port_opened),
     "CONS-byte-ends-map": partial(
-        _shown, Script(8.0, ((READY_S, "MISION"),), noise=((5.0, b"\xff"),)), partial(_drawn_after, 6.0)
+        _shown, Script(6.0, ((READY_S, "MISION"),), noise=((4.0, b"\xff"),)), partial(_drawn_after, 5.0)
     ),
     "CONS-oldest-first": partial(
-        _shown, Script(11.0, ((READY_S, "SET"), (9.0, "MISION")), v="0.1", w="0.0"), _first_point
+        _shown, Script(6.0, ((READY_S, "SET"), (5.5, "MISION")), v="0.1", w="0.0"), _first_point
     ),
-    "CONS-torn-number": partial(_shown, Script(20.0, ((READY_S, "MISION"),), drawing_s=0.06), _torn_points),
+    "CONS-torn-number": partial(_shown, Script(12.0, ((READY_S, "MISION"),), drawing_s=0.06), _torn_points),
     "CONS-points-repeated": partial(
-        _shown, Script(9.0, ((READY_S, "MISION"),), (PressedKey("esc", 8.0, 8.5),)), partial(_lines, READY_S, 8.0)
+        _shown, Script(6.0, ((READY_S, "MISION"),), (PressedKey("esc", 5.5, 6.0),)), partial(_lines, READY_S, 5.5)
     ),
     "CONS-load-other-file": partial(
-        _shown, Script(7.0, ((READY_S, "MISION"), (6.5, "LOAD FILE")), (PressedKey("esc", 5.5, 6.0),)), _loaded
+        _shown, Script(5.5, ((READY_S, "MISION"), (5.2, "LOAD FILE")), (PressedKey("esc", 4.5, 5.0),)), _loaded
     ),
     "CONS-loaded-as-text": partial(
-        _shown, Script(5.0, ((READY_S, "LOAD FILE"),), files=((DRIVE_FILE, _DRIVE), (LOAD_FILE, _DRIVE))), _axes
+        _shown, Script(3.5, ((READY_S, "LOAD FILE"),), files=((DRIVE_FILE, _DRIVE), (LOAD_FILE, _DRIVE))), _axes
     ),
-    "CONS-archive-unused": partial(_shown, Script(6.0, ((READY_S, "MISION"),), archive="pasillo.txt"), _named_file),
+    "CONS-archive-unused": partial(_shown, Script(4.5, ((READY_S, "MISION"),), archive="pasillo.txt"), _named_file),
     "CONS-drive-erased": partial(
         _shown,
-        Script(13.0, ((READY_S, "MISION"), (10.0, "MISION")), (PressedKey("esc", 8.0, 8.5),)),
-        partial(_frame_share, 4.5, 7.5),
+        Script(7.0, ((READY_S, "MISION"), (6.5, "MISION")), (PressedKey("esc", 5.5, 6.0),)),
+        partial(_frame_share, 4.0, 5.0),
     ),
-    "CONS-legend-grows": partial(_shown, Script(7.0, ((READY_S, "MISION"),)), _legend),
+    "CONS-legend-grows": partial(_shown, Script(5.0, ((READY_S, "MISION"),)), _legend),
     "CONS-set-in-tele": partial(
-        _shown, Script(8.0, ((READY_S, "TELE"), (6.0, "SET")), v="0.1", w="0.0"), _obeys_set
+        _shown, Script(6.5, ((READY_S, "TELE"), (5.0, "SET")), v="0.1", w="0.0"), _obeys_set
     ),
     "CONS-keys-anywhere": partial(
-        _shown, Script(6.0, ((READY_S, "TELE"),), (PressedKey("up", 5.0, 6.0),), elsewhere_from_s=4.8),
+        _shown, Script(5.0, ((READY_S, "TELE"),), (PressedKey("up", 4.2, 5.0),), elsewhere_from_s=4.0),
         partial(_still_drives, "the arrow was pressed in another program"),
     ),
     "CONS-speeds-kept": partial(
-        _shown, Script(9.0, ((READY_S, "TELE"), (6.0, "STOP"), (8.0, "TELE")), (_UP, PressedKey("esc", 6.5, 6.8))),
+        _shown, Script(7.0, ((READY_S, "TELE"), (5.0, "STOP"), (6.0, "TELE")), (_UP, PressedKey("esc", 5.3, 5.6))),
         partial(_still_drives, "TELE was clicked again and no key touched"),
     ),
     "CONS-escape-drives": partial(
-        _shown, Script(7.5, ((READY_S, "TELE"),), (_UP, PressedKey("esc", 7.0, 7.3))), partial(_still_drives, "Escape")
+        _shown, Script(6.0, ((READY_S, "TELE"),), (_UP, PressedKey("esc", 5.3, 5.6))), partial(_still_drives, "Escape")
     ),
     "CONS-arrows-unbounded": partial(
-        _shown, Script(11.0, ((READY_S, "TELE"),), (PressedKey("up", 4.2, 10.2),)), _highest_speed
+        _shown, Script(8.5, ((READY_S, "TELE"),), (PressedKey("up", 3.8, 8.3),)), _highest_speed
     ),
     "CONS-escape-leaves": partial(
         _shown,
-        Script(9.0, ((READY_S, "TELE"), (5.0, "MISION"), (8.5, "STOP")), (PressedKey("esc", 7.0, 7.5),)),
+        Script(6.5, ((READY_S, "TELE"), (4.5, "MISION"), (6.2, "STOP")), (PressedKey("esc", 5.5, 6.0),)),
         partial(_still_drives, "Escape, and a click on STOP if there is a window"),
     ),
-    "CONS-set-verbatim": partial(_shown, Script(5.0, ((READY_S, "SET"),), v="0,1", w="0.2"), _turn),
+    "CONS-set-verbatim": partial(_shown, Script(4.0, ((READY_S, "SET"),), v="0,1", w="0.2"), _turn),
     "CONS-window-sleeps": partial(
-        _shown, Script(12.0, ((READY_S, "CALIBRACIÓN"), (5.0, "STOP"))), partial(_late_stop, 5.0)
+        _shown, Script(10.0, ((READY_S, "CALIBRACIÓN"), (4.0, "STOP"))), partial(_late_stop, 4.0)
     ),
     "CONS-leave-drives": partial(
-        _shown, Script(8.0, ((READY_S, "TELE"), (7.0, "Salir")), (_UP,)), partial(_still_drives, "Salir")
+        _shown, Script(5.5, ((READY_S, "TELE"), (5.2, "Salir")), (_UP,)), partial(_still_drives, "Salir")
     ),
-    "CONS-connected-once": partial(_shown, Script(9.0, silent_from_s=5.0), _label),
+    "CONS-connected-once": partial(_shown, Script(6.0, silent_from_s=3.5), _label),
 }

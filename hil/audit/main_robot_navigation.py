@@ -56,7 +56,7 @@ def turn_not_kept(fixes: Fixes) -> Evidence:
         bench.run_for(0.8)
         bench.world.place(Pose(3.13, 0.6, 0.0))
         bench.feed(b"#MISN\r")
-        bench.run_for(7.5)
+        bench.run_for(5.5)
         path = bench.true_path()
         start = path[0].time_s
         turned = Series("turned", [p.time_s - start for p in path], [degrees(p.heading_rad) for p in path])
@@ -114,7 +114,7 @@ def blind_spot(fixes: Fixes) -> Evidence:
         bench.run_for(0.8)
         bench.world.place(Pose(3.15, 1.0, radians(90.0)))
         bench.feed(b"#MISN\r")
-        bench.run_for(6.0)
+        bench.run_for(4.5)
         hits = bench.world.robot.collisions
         path = bench.true_path()
         driven = Series("path", [p.x_m for p in path], [p.y_m for p in path])

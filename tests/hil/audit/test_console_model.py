@@ -10,7 +10,7 @@ import re
 import pytest
 
 from firmware_model.catalogue import CATALOGUE, DefectKind
-from hil.audit.console import IDS, READY_S
+from hil.audit.console import DEMONSTRATIONS, IDS, READY_S
 from hil.audit.console_desk import RECEIVED_MOST, Desk, PressedKey, Script
 from hil.audit.console_model import ConsoleModel
 from hil.audit.console_program import VARIABLE, ConsoleProgram, at_hand
@@ -90,6 +90,12 @@ def test_the_console_takes_the_heading_for_radians(fixes: tuple[str, ...], taken
     last = desk.drawn[-1]
     drawn_rad = math.atan2(last.left[1] - last.robot[1], last.left[0] - last.robot[0]) - math.pi / 2
     assert math.remainder(drawn_rad - taken_rad, math.tau) == pytest.approx(0.0, abs=0.0045)
+
+
+@needs_program
+@pytest.mark.parametrize("name", sorted(IDS))
+def test_the_program_shows_each_entry(name: str) -> None:
+    assert DEMONSTRATIONS[name](frozenset()).seen
 
 
 @needs_program
