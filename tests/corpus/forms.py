@@ -334,9 +334,170 @@ def _leaves(node: Any) -> Iterator[Any]:
                 yield from _leaves(part)
 
 
+def inverted(source: Source) -> None:
+    """`if` and `?:` with the opposite condition; an `if` at the end of a function or a loop leaves it early."""
+    for function in source.functions:
+        early = {}
+        if source.of(function.decl.type.type) == "void" and function.decl.name != "main":
+            early[_last(function.body)] = "return"
+        for node in nodes(function.body):
+            if isinstance(node, c_ast.While | c_ast.For):
+                early[_last(node.stmt)] = "continue"
+        _invert(source, function.body, early)
+
+
+def _invert(source: Source, node: Any, early: Mapping[Any, str]) -> None:
+    match node:
+        case c_ast.TernaryOp(cond=cond, iftrue=then, iffalse=otherwise):
+            _negate(source, cond)
+            one, other = source.of(then), source.of(otherwise)
+            source.replace(then, f"({other})" if isinstance(otherwise, c_ast.TernaryOp) else other)
+            source.replace(otherwise, f"({one})" if isinstance(then, c_ast.ExprList | c_ast.Assignment) else one)
+            return
+        case c_ast.If(cond=cond, iftrue=then, iffalse=None) if node in early:
+            _negate(source, cond)
+            source.before(then, f"{early[node]}; ")
+        case c_ast.If(cond=cond, iftrue=then, iffalse=otherwise) if otherwise is not None and not any(
+            isinstance(part, c_ast.Switch) for part in nodes(node)
+        ):
+            _negate(source, cond)
+            one, other = _block(source, then), _block(source, otherwise)
+            source.replace(then, other, statement=True)
+            source.replace(otherwise, one, statement=True)
+            source.move(then, source.line(otherwise, statement=True), statement=True)
+            source.move(otherwise, source.line(then, statement=True), statement=True)
+            return
+    for _, child in node.children():
+        _invert(source, child, early)
+
+
+def _last(block: Any) -> Any:
+    """The last statement of a block."""
+    return (block.block_items or [None])[-1] if isinstance(block, c_ast.Compound) else None
+
+
+def _block(source: Source, statement: Any) -> str:
+    """The text of a statement as a block."""
+    text = source.of(statement, statement=True)
+    return text if isinstance(statement, c_ast.Compound) else f"{{ {text} }}"
+
+
+def _negate(source: Source, cond: Any) -> None:
+    """Replace a condition by its opposite."""
+    match cond:
+        case c_ast.UnaryOp(op="!", expr=operand):
+            source.replace(cond, source.of(operand))
+        case c_ast.BinaryOp(op="==" | "!=" as op, left=left, right=right):
+            source.replace(cond, f"{source.of(left)} {'!=' if op == '==' else '=='} {source.of(right)}")
+        case _:
+            source.replace(cond, f"!{source.operand(cond)}")
+
+
+_TURNED: Final = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}
+
+
+def turned(source: Source) -> None:
+    """`a < b` as `b > a`; `x == 0` as `!x`, and that as `x == 0`."""
+    for function in source.functions:
+        _turn(source, function.body)
+
+
+def _turn(source: Source, node: Any) -> None:
+    match node:
+        case c_ast.BinaryOp(op="==", left=left, right=c_ast.Constant(value="0" | "0u" | "0U")):
+            source.replace(node, f"!{source.operand(left)}")
+            return
+        case c_ast.UnaryOp(op="!", expr=operand):
+            source.replace(node, f"{source.operand(operand)} == 0")
+            return
+        case c_ast.BinaryOp(op=op, left=left, right=right) if op in _TURNED and not (
+            source.reads_volatile(left) and source.reads_volatile(right)
+        ):
+            source.replace(node, f"{source.operand(right)} {_TURNED[op]} {source.operand(left)}")
+            return
+    for _, child in node.children():
+        _turn(source, child)
+
+
+def loops(source: Source) -> None:
+    """`for` as `while`, that as `for`, and `switch` as a chain of `if`."""
+    for function in source.functions:
+        declared = source.declared(function)
+        for node in nodes(function.body):
+            match node:
+                case c_ast.For() if node.next is None or not _continues(node.stmt):
+                    _as_while(source, node)
+                case c_ast.While():
+                    source.header(node, f"for (; {source.of(node.cond)}; )")
+                case c_ast.Switch(stmt=c_ast.Compound(block_items=list(items))) if _separate(items):
+                    _as_chain(source, node, declared)
+
+
+def _continues(body: Any) -> bool:
+    """Whether the body of a loop has a `continue` of that loop."""
+    return any(isinstance(part, c_ast.Continue) for part in _leaves(body))
+
+
+def _as_while(source: Source, node: Any) -> None:
+    first = node.init
+    begin = (
+        ""
+        if first is None
+        else source.of(first, statement=True)
+        if isinstance(first, c_ast.DeclList)
+        else (f"{source.of(first)};")
+    )
+    source.header(node, f"{{ {begin} while ({'1' if node.cond is None else source.of(node.cond)}) {{")
+    source.after(node, f" {source.of(node.next) + '; ' if node.next is not None else ''}}} }}")
+
+
+def _separate(items: list[Any]) -> bool:
+    """Whether the cases of a switch are separate: each ends in a jump, none breaks before, a default is the last."""
+    for number, item in enumerate(items):
+        last = number == len(items) - 1
+        if not isinstance(item, c_ast.Case | c_ast.Default) or (isinstance(item, c_ast.Default) and not last):
+            return False
+        body = item.stmts or []
+        if not body:
+            if last:
+                return False
+            continue
+        breaks = [part for part in _leaves(item) if isinstance(part, c_ast.Break)]
+        ends = isinstance(body[-1], c_ast.Break | c_ast.Return | c_ast.Continue)
+        if breaks != [part for part in body[-1:] if isinstance(part, c_ast.Break)] or not (ends or last):
+            return False
+        if any(isinstance(part, c_ast.Decl) for part in body):
+            return False
+    return True
+
+
+def _as_chain(source: Source, node: Any, declared: dict[str, Any]) -> None:
+    name = source.fresh("chosen")
+    declaration = source.subject_type(node, name, declared)
+    if declaration is None:
+        return
+    source.header(node, f"{{ {declaration} = {source.of(node.cond)};")
+    source.brace(node.stmt, "")
+    word, values = "if", []
+    for item in node.stmt.block_items:
+        if isinstance(item, c_ast.Case):
+            values.append(f"{name} == {source.operand(item.expr)}")
+        if not item.stmts:
+            source.label(item, "")
+            continue
+        test = f"{word} ({' || '.join(values)}) {{" if isinstance(item, c_ast.Case) else "else {"
+        source.label(item, test)
+        word, values = "else if", []
+        if isinstance(item.stmts[-1], c_ast.Break):
+            source.replace(item.stmts[-1], "}", statement=True)
+        else:
+            source.after(item.stmts[-1], " }")
+
+
 FORMS: Final[dict[str, Callable[[Source], None]]] = {
     "compound": compound, "temporary": temporary, "helper-expression": helper_expression,
     "helper-statement": helper_statement,
+    "inverted": inverted, "turned": turned, "loops": loops,
 }  # fmt: skip
 
 

@@ -112,6 +112,9 @@ class Source:
 
     def span(self, node: Any, *, statement: bool = False) -> Span:
         """The first and the last lexeme of an expression, with its parentheses; or of a statement, with its `;`."""
+        if statement and node not in self._statements:  # the block of a `switch`, which is made anew
+            first = self._at[node.coord.line, node.coord.column]
+            return first, self._closing(first)
         if statement:
             return self._statements[node]
         known = self._expressions.get(node)
@@ -157,11 +160,11 @@ class Source:
         return text if simple or self._closing(first) == last else f"({text})"
 
     def _closing(self, first: int) -> int:
-        """The lexeme that closes the parenthesis `first`; `first`: it is none."""
+        """The lexeme that closes the parenthesis or brace `first`; `first`: it is none."""
         depth = 0
         for index in range(first, len(self._lexemes)):
             kind = self._lexemes[index].type
-            depth += (kind == "LPAREN") - (kind == "RPAREN")
+            depth += (kind in ("LPAREN", "LBRACE")) - (kind in ("RPAREN", "RBRACE"))
             if not depth:
                 return index
         raise ValueError("the parenthesis is not closed")
@@ -228,6 +231,15 @@ class Source:
         found = self._typed.get((where.line, where.column))
         return declaration_of(found.target.ctype, name) if isinstance(found, tree.Assign) else None
 
+    def subject_type(self, switch: Any, name: str, declared: dict[str, Any]) -> str | None:
+        """The declaration of `name` with the type of what a `switch` decides on; None: the type is not known."""
+        if isinstance(switch.cond, c_ast.ID):
+            declaration = declared.get(switch.cond.name) or self.objects.get(switch.cond.name)
+            if declaration is not None and (text := value_declaration(declaration, name)) is not None:
+                return text
+        found = self._typed.get((switch.coord.line, switch.coord.column))
+        return declaration_of(found.subject.ctype, name) if isinstance(found, tree.Switch) else None
+
     def is_register(self, node: Any) -> bool:
         """Whether an lvalue begins with the name of a register block or of a register of the core."""
         while not isinstance(node, c_ast.ID):
@@ -276,6 +288,16 @@ class Source:
         """Replace the lexemes from number `first` to number `last`."""
         start, end = self._start(first), self._end(last)
         self._edit(start, 2, end, text + "\n" * self.text.count("\n", start, end))
+
+    def header(self, node: Any, text: str) -> None:
+        """Replace what is in front of the body of a loop or a `switch`."""
+        self.replace_lexemes(self.span(node, statement=True)[0], self.span(node.stmt, statement=True)[0] - 1, text)
+
+    def label(self, case: Any, text: str) -> None:
+        """Replace the label of a `case` or a `default`, with its colon."""
+        first = self._at[case.coord.line, case.coord.column]
+        last = first + 1 if isinstance(case, c_ast.Default) else self.span(case.expr)[1] + 1
+        self.replace_lexemes(first, last, text)
 
     def before(self, node: Any, text: str, *, statement: bool = True) -> None:
         """Write text in front of a node."""

@@ -120,6 +120,36 @@ def test_helper_statement(before: str, function: str, after: str) -> None:
     assert body("helper-statement", before) == after
 
 
+@pytest.mark.parametrize(
+    ("form", "before", "after"),
+    [
+        ("inverted", "    if (n > 1) {\n        sum = 1;\n    } else\n        sum = n;",
+         "    if (!(n > 1)) { sum = n; }\n\n else\n        { sum = 1; }"),
+        ("inverted", "    if (!n)\n        n = 1;\n    else if (n == 2)\n        n = 3;",
+         "    if (n)\n        { if (n == 2) n = 3; }\n    else { n = 1; }\n"),
+        ("inverted", "    sum = n != 2 ? n : 5;", "    sum = n == 2 ? 5 : n;"),
+        ("inverted", "    while (n) {\n        n--;\n        if (ticks)\n            sum = n;\n    }",
+         "    while (n) {\n        n--;\n        if (!ticks)\n            continue; sum = n;\n    }"),
+        ("turned", "    return n < sum && ticks == 0;", "    return sum > n && !ticks;"),
+        ("turned", "    while (!n || ticks > levels[ticks])\n        ;",
+         "    while (n == 0 || ticks > levels[ticks])\n        ;"),
+        ("loops", "    for (n = 0; n < 4; n++)\n        levels[n] = 0;",
+         "    { n = 0; while (n < 4) {\n        levels[n] = 0; n++; } }"),
+        ("loops", "    for (; n < 4; n++)\n        if (n)\n            continue;",
+         "    for (; n < 4; n++)\n        if (n)\n            continue;"),
+        ("loops", "    while (n)\n        n--;", "    for (; n; )\n        n--;"),
+        ("loops", "    switch (n) {\n    case 1:\n        n = 2;\n        break;\n    case 2:\n    case 3:\n"
+         "        return 1;\n    default:\n        n = 0;\n    }",
+         "    { Uint16 chosen1 = n; \n    if (chosen1 == 1) {\n        n = 2;\n        }\n    \n"
+         "    else if (chosen1 == 2 || chosen1 == 3) {\n        return 1; }\n    else {\n        n = 0; }\n    }"),
+        ("loops", "    switch (n) {\n    case 1:\n        n = 2;\n    default:\n        n = 0;\n    }",
+         "    switch (n) {\n    case 1:\n        n = 2;\n    default:\n        n = 0;\n    }"),
+    ],
+)  # fmt: skip
+def test_branches_and_loops(form: str, before: str, after: str) -> None:
+    assert body(form, before) == after
+
+
 def written(driver: Driver, text: str, folder: Path) -> dict[str, list[int]]:
     """What the program writes to each register of the chip, in order."""
     file = folder / driver.file.name
