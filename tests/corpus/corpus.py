@@ -18,7 +18,8 @@ from typing import Any, Final
 from emulator.c28x.findings import Finding
 from emulator.rules import Severity
 from hil.board import load
-from hil.drivers.check import DriverFiles, check_files
+from hil.drivers.check import DriverFiles, check_files, source_findings
+from hil.image import Build
 from hil.reports.policy import Policy
 
 DRIVERS: Final = Path(__file__).parent / "drivers"
@@ -124,15 +125,20 @@ class Result:
         return "elsewhere" if self.told else "missed"
 
 
-def check(driver: Driver, text: str) -> Result:
-    """Check a text as the driver's file.  Raises what `check_files` raises."""
+def check(driver: Driver, text: str, *, run: bool = True) -> Result:
+    """Check a text as the driver's file; without `run`, only its source.  Raises what `check_files` raises."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / driver.file.name
         file.write_text(text, encoding="utf-8")
         beside = driver.file.parent / driver.board
         board = load(str(beside) if driver.board.endswith(".py") else driver.board or "robot")
-        wanted = DriverFiles([file], seconds=driver.seconds, board=board, board_named=bool(driver.board), silence=True)
-        findings = check_files(wanted).findings
+        if run:
+            wanted = DriverFiles(
+                [file], seconds=driver.seconds, board=board, board_named=bool(driver.board), silence=True
+            )  # fmt: skip
+            findings = check_files(wanted).findings
+        else:
+            findings = source_findings(Build([str(file)], board=board))
     policy = Policy()
     rows: dict[bool, list[tuple[int, str, str]]] = {True: [], False: []}
     for finding in findings:

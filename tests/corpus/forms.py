@@ -13,10 +13,11 @@ from typing import Any, Final
 
 from pycparser import c_ast
 
-from emulator.c28x.ctypes import FunctionType
+from emulator.c28x.ctypes import FloatType, FunctionType, IntType, PointerType
+from emulator.c28x.tree import Variable
 from hil.board import load
-from tests.corpus.corpus import Damage, Driver, check
-from tests.corpus.source import Source, declaration_of, named, nodes, value_declaration
+from tests.corpus.corpus import Damage, Driver, Result, check
+from tests.corpus.source import FieldOf, Source, declaration_of, named, nodes, value_declaration
 
 #: The operators of assignments that compute.
 _COMPOUND: Final = ("+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>=")
@@ -281,7 +282,7 @@ class _Blocks:
         source.brace(block, f"{{ {self.call(name, given)} }} }} {self.head(name, given)} {{")
         for part in named(block):
             if part.name in given and given[part.name][1] != part.name:
-                source.replace(part, f"(*{part.name})")
+                source.replace_name(part, f"(*{part.name})")
         for part in left:
             source.replace(part, "return;", statement=True)
         source.brace(self.function.body, "", closing=True)
@@ -494,10 +495,147 @@ def _as_chain(source: Source, node: Any, declared: dict[str, Any]) -> None:
             source.after(item.stmts[-1], " }")
 
 
+def member(source: Source) -> None:
+    """Objects that are declared one after the other are members of one structure."""
+    for name, objects in _structures(source):
+        _join(source, "", name, objects)
+        for function in source.functions:
+            for part in named(function.body):
+                if part.name in objects:
+                    source.replace_name(part, f"{name}.{part.name}")
+
+
+def _join(source: Source, tag: str, name: str, objects: Mapping[str, Any]) -> None:
+    """Make objects the members of a structure, where they stand."""
+    declarations = list(objects.values())
+    static = "static " * ("static" in declarations[0].storage)
+    source.before(declarations[0], f"{static}struct {tag}{{ ")
+    done = set()
+    for declaration in declarations:
+        line = source.span(declaration, statement=True)
+        if static and line not in done:
+            source.remove_word(declaration, "static")
+        done.add(line)
+        if declaration.init is not None:
+            source.remove_initialiser(declaration)
+    values = ", ".join(source.of(each.init) for each in declarations if each.init is not None)
+    source.after(declarations[-1], f" }} {name}{f' = {{ {values} }}' * bool(values)};")
+
+
+def _structures(source: Source) -> list[tuple[str, dict[str, Any]]]:
+    """Names of structures, and the declarations of their members: neighbours of which all or none have a value."""
+    settled = source.settled()
+    runs: list[dict[str, Any]] = []
+    kind: tuple[bool, bool] | None = None
+    for node in source.tree.ext:
+        here = None
+        if (
+            isinstance(node, c_ast.Decl)
+            and node.name in source.objects
+            and node.name not in settled
+            and not ("const" in node.quals or (isinstance(node.type, c_ast.ArrayDecl) and node.type.dim is None))
+        ):
+            here = "static" in node.storage, node.init is not None
+        if here is not None and here != kind:
+            runs.append({})
+        if here is not None:
+            runs[-1][node.name] = node
+        kind = here
+    return [(source.fresh("own"), run) for run in runs if len(run) > 1]
+
+
+def accessor(source: Source) -> None:
+    """Scalars of the file are read through `Get_x()` and written through `Set_x(value)`."""
+    settled = source.settled()
+    bodies = [function.body for function in source.functions]
+    for body in bodies:
+        settled |= {
+            part.name for node in nodes(body) if isinstance(node, c_ast.UnaryOp) and node.op in ("&", "sizeof")
+            for part in named(node)
+        }  # fmt: skip
+    assigned = [node for node in _effects(source) if isinstance(node, c_ast.Assignment) and node.op == "="]
+    for name, declaration in source.objects.items():
+        value = value_declaration(declaration, f"Get_{name}(void)")
+        symbol = source.symbol(name)
+        if (
+            name in settled
+            or value is None
+            or "const" in declaration.quals
+            or not (isinstance(symbol, Variable) and isinstance(symbol.ctype, IntType | FloatType | PointerType))
+        ):
+            continue
+        written = {node.lvalue for node in assigned if isinstance(node.lvalue, c_ast.ID) and node.lvalue.name == name}
+        others = {
+            target for body in bodies for node in nodes(body)
+            if (target := _changed(node)) is not None and target not in written
+        }  # fmt: skip
+        read = [
+            part for body in bodies for part in named(body)
+            if part.name == name and part not in written and part not in others
+        ]  # fmt: skip
+        for part in read:
+            source.replace_name(part, f"Get_{name}()")
+        for node in assigned:
+            if node.lvalue in written:
+                source.replace_target(node, f"Set_{name}(")
+                source.after(node.rvalue, ")", statement=False)
+        text = f" static {value} {{ return {name}; }}" if read else ""
+        if written:
+            text += f" static void Set_{name}({value_declaration(declaration, 'value')}) {{ {name} = value; }}"
+        source.after(declaration, text)
+
+
+def _changed(node: Any) -> Any:
+    """What a node assigns to, counts up or down; None: nothing."""
+    match node:
+        case c_ast.Assignment(lvalue=target) | c_ast.UnaryOp(op="++" | "--" | "p++" | "p--", expr=target):
+            return target
+    return None
+
+
+def mask(source: Source) -> None:
+    """Fields of registers as bits of the whole register, where all of it can be written back."""
+    for function in source.functions:
+        for node in nodes(function.body):
+            for part in _parts(node):
+                if isinstance(part, c_ast.Assignment) and part.op == "=" and (found := source.field(part.lvalue)):
+                    whole, field = found
+                    if field.plain:
+                        source.replace(part, _masked(source, part.rvalue, whole, field))
+            tests = [node.cond] if isinstance(node, c_ast.If | c_ast.While | c_ast.DoWhile) else []
+            if isinstance(node, c_ast.BinaryOp) and node.op in ("&&", "||"):
+                tests = [node.left, node.right]
+            if isinstance(node, c_ast.UnaryOp) and node.op == "!":
+                tests = [node.expr]
+            for test in tests:
+                if found := source.field(test):
+                    whole, field = found
+                    source.replace(test, f"({whole} & {field.number(field.mask)})")
+            if isinstance(node, c_ast.BinaryOp) and node.op in ("==", "!=") and (found := source.field(node.left)):
+                whole, field = found
+                shifted = f"({whole} >> {field.lo})" if field.lo else whole
+                source.replace(node.left, f"({shifted} & {field.number(field.mask >> field.lo)})")
+
+
+def _masked(source: Source, value: Any, whole: str, field: FieldOf) -> str:
+    """The assignment of a value to a field, as one to the whole register."""
+    others = f"{whole} = ({whole} & ~{field.number(field.mask)})"
+    text = source.of(value)
+    if not (isinstance(value, c_ast.Constant) and text.rstrip("uUlL").isdigit()):
+        shift = f" << {field.lo}" * bool(field.lo)
+        word = "Uint32" if field.wide else "Uint16"
+        return f"{others} | ((({word}){source.operand(value)}{shift}) & {field.number(field.mask)})"
+    number = int(text.rstrip("uUlL")) << field.lo & field.mask
+    if number in (0, field.mask):
+        return f"{whole} |= {field.number(number)}" if number else f"{whole} &= ~{field.number(field.mask)}"
+    return f"{others} | {field.number(number)}"
+
+
 FORMS: Final[dict[str, Callable[[Source], None]]] = {
     "compound": compound, "temporary": temporary, "helper-expression": helper_expression,
     "helper-statement": helper_statement,
-    "inverted": inverted, "turned": turned, "loops": loops,
+    "inverted": inverted, "turned": turned, "loops": loops, "member": member,
+    "accessor": accessor, "mask": mask,
 }  # fmt: skip
 
 
@@ -508,7 +646,7 @@ def found_in(driver: Driver, damage: Damage, forms: Sequence[str]) -> dict[str, 
     """
     text = damage.of(driver.text)
     lines = damage.lines(text)
-    plain = check(driver, text)
+    plain = _found(driver, text, lines)
     if plain.at(lines) != "found":
         return {}
     rules = sorted({rule for line, rule, _ in plain.told if line in lines})
@@ -516,11 +654,17 @@ def found_in(driver: Driver, damage: Damage, forms: Sequence[str]) -> dict[str, 
     for form in forms:
         other = rewrite(driver.file.name, text, form)
         if other.text != text:
-            result = check(driver, other.text)
+            result = _found(driver, other.text, other.lines(lines))
             how = result.at(other.lines(lines))
             told = ", ".join(f"{line} {rule}" for line, rule, _ in result.told[:4])
             found[form] = None if how == "found" else f"{how}, was {', '.join(rules)}; told: {told or 'nothing'}"
     return found
+
+
+def _found(driver: Driver, text: str, lines: frozenset[int]) -> Result:
+    """The findings of the source if one is at these lines, which is quick; else those of the whole check."""
+    quick = check(driver, text, run=False)
+    return quick if quick.at(lines) == "found" else check(driver, text)
 
 
 def false_alarms(driver: Driver, forms: Sequence[str]) -> dict[str, str]:

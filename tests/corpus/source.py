@@ -9,6 +9,7 @@ import copy
 import tempfile
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
@@ -25,6 +26,7 @@ from emulator.c28x.readers.c.tokens import SourceText, Token, TokenBudget, spell
 from emulator.c28x.symbols import CoreRegister, Module, RegisterBlock, Symbol
 from emulator.c28x.tree import Function, Stmt
 from emulator.c28x.tree_queries import statements, within
+from emulator.registers.fields import R0W1, RSV, RW, R
 from hil.board import Board
 from hil.image import program
 
@@ -33,6 +35,7 @@ _LIMITS: Final = ParserLimits()
 _EXPRESSIONS: Final = (
     "_parse_primary_expression", "_parse_postfix_expression", "_parse_unary_expression", "_parse_cast_expression",
     "_parse_conditional_expression", "_parse_assignment_expression", "_parse_expression", "_parse_constant_expression",
+    "_parse_initializer",
 )  # fmt: skip
 _STATEMENTS: Final = (
     "_parse_statement", "_parse_declaration", "_parse_external_declaration", "_parse_compound_statement",
@@ -60,6 +63,23 @@ class _SpannedGrammar(Grammar):
             return found
 
         return noting
+
+
+@dataclass(frozen=True)
+class FieldOf:
+    """The bits of a field of a register.
+
+    `plain`: it reads as it was written, writing back the others does nothing, and it is no half of the register.
+    """
+
+    mask: int
+    lo: int
+    wide: bool
+    plain: bool
+
+    def number(self, value: int) -> str:
+        """A number that is as wide as the register."""
+        return f"0x{value:X}{'UL' if self.wide else 'U'}"
 
 
 class Source:
@@ -113,7 +133,7 @@ class Source:
     def span(self, node: Any, *, statement: bool = False) -> Span:
         """The first and the last lexeme of an expression, with its parentheses; or of a statement, with its `;`."""
         if statement and node not in self._statements:  # the block of a `switch`, which is made anew
-            first = self._at[node.coord.line, node.coord.column]
+            first = self._lexeme(node)
             return first, self._closing(first)
         if statement:
             return self._statements[node]
@@ -121,7 +141,7 @@ class Source:
         if known is not None:
             return known
         below = [self.span(child) for _, child in node.children()]
-        first = self._at[node.coord.line, node.coord.column]
+        first = self._lexeme(node)
         if not below:
             return first, first
         last = max(end for _, end in below)
@@ -131,6 +151,10 @@ class Source:
             last += 1
         return min(first, *(start for start, _ in below)), last
 
+    def _lexeme(self, node: Any) -> int:
+        """The lexeme at the place of a node."""
+        return self._at[node.coord.line, node.coord.column]
+
     def of(self, node: Any, *, statement: bool = False) -> str:
         """The text of a node in one line."""
         first, last = self.span(node, statement=statement)
@@ -139,7 +163,7 @@ class Source:
     def within(self, block: Any, names: Mapping[str, str]) -> str:
         """The text in the braces of a block in one line, with other texts for some names."""
         first, last = self.span(block, statement=True)
-        others = {self.span(name)[0]: names[name.name] for name in named(block) if name.name in names}
+        others = {self._lexeme(name): names[name.name] for name in named(block) if name.name in names}
         tokens = []
         for index in range(first + 1, last):
             token = copy.copy(self._lexemes[index].token)
@@ -220,6 +244,16 @@ class Source:
             and "extern" not in node.storage
         }  # fmt: skip
 
+    def settled(self) -> set[str]:
+        """The names of objects that must stay as they are: directives, initialisers or locals have their names."""
+        names = {token.text for directive in self.directives for token in directive}
+        for node in self.tree.ext:
+            if isinstance(node, c_ast.FuncDef):
+                names |= self.declared(node).keys()
+            elif isinstance(node, c_ast.Decl):
+                names |= {part.name for part in named(node)}
+        return names
+
     def target_type(self, assignment: Any, name: str, declared: dict[str, Any]) -> str | None:
         """The declaration of `name` with the type of the target of an assignment; None: the type is not known."""
         if isinstance(assignment.lvalue, c_ast.ID):
@@ -248,6 +282,26 @@ class Source:
             else:
                 return False
         return isinstance(self.symbol(node.name), RegisterBlock | CoreRegister)
+
+    def field(self, node: Any) -> tuple[str, FieldOf] | None:
+        """The text of the whole register and the bits of a field of it, `Regs.R.bit.F`; None: it is none."""
+        match node:
+            case c_ast.StructRef(
+                type=".", field=c_ast.ID(name=name), name=c_ast.StructRef(
+                    type=".", field=c_ast.ID(name="bit"), name=c_ast.StructRef(
+                        type=".", field=c_ast.ID(name=register), name=c_ast.ID(name=block) as base
+                    ),
+                ),
+            ) if isinstance(symbol := self.symbol(block), RegisterBlock):  # fmt: skip
+                description = symbol.layout[register].register
+                fields = description.fields
+                plain = (
+                    all(each.access in (RW, R, R0W1, RSV) for each in fields.values()) and fields[name].access is RW
+                    and fields[name].width < 16
+                )  # fmt: skip
+                bits = FieldOf(fields[name].mask, fields[name].lo, description.bits == 32, plain)
+                return f"{self.of(base)}.{register}.all", bits
+        return None
 
     def reads_volatile(self, node: Any) -> bool:
         """Whether an expression may read something volatile, or call, or change something."""
@@ -284,10 +338,32 @@ class Source:
         start, end = self._offsets(node, statement)
         self._edit(start, 2, end, text + "\n" * self.text.count("\n", start, end))
 
+    def replace_name(self, name: Any, text: str) -> None:
+        """Replace a name, not the parentheses around it."""
+        lexeme = self._lexeme(name)
+        self.replace_lexemes(lexeme, lexeme, text)
+
     def replace_lexemes(self, first: int, last: int, text: str) -> None:
         """Replace the lexemes from number `first` to number `last`."""
         start, end = self._start(first), self._end(last)
         self._edit(start, 2, end, text + "\n" * self.text.count("\n", start, end))
+
+    def replace_target(self, assignment: Any, text: str) -> None:
+        """Replace the target of an assignment and its operator."""
+        self.replace_lexemes(self.span(assignment.lvalue)[0], self.span(assignment.rvalue)[0] - 1, text)
+
+    def remove_word(self, statement: Any, word: str) -> None:
+        """Remove a word of a declaration."""
+        first, last = self.span(statement, statement=True)
+        for index in range(first, last):
+            if self._lexemes[index].value == word:
+                self.replace_lexemes(index, index, "")
+                return
+
+    def remove_initialiser(self, declaration: Any) -> None:
+        """Remove `= ...` of a declaration."""
+        first, last = self.span(declaration.init)
+        self.replace_lexemes(first - 1, last, "")
 
     def header(self, node: Any, text: str) -> None:
         """Replace what is in front of the body of a loop or a `switch`."""
@@ -295,7 +371,7 @@ class Source:
 
     def label(self, case: Any, text: str) -> None:
         """Replace the label of a `case` or a `default`, with its colon."""
-        first = self._at[case.coord.line, case.coord.column]
+        first = self._lexeme(case)
         last = first + 1 if isinstance(case, c_ast.Default) else self.span(case.expr)[1] + 1
         self.replace_lexemes(first, last, text)
 
