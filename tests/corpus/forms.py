@@ -5,6 +5,8 @@ A damage that `hil check` finds in one form should be found in each of them, and
 
 from __future__ import annotations
 
+import copy
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -14,6 +16,7 @@ from typing import Any, Final
 from pycparser import c_ast
 
 from emulator.c28x.ctypes import FloatType, FunctionType, IntType, PointerType
+from emulator.c28x.readers.c.tokens import spelled
 from emulator.c28x.tree import Variable
 from hil.board import load
 from tests.corpus.corpus import Damage, Driver, Result, check
@@ -544,6 +547,36 @@ def _structures(source: Source) -> list[tuple[str, dict[str, Any]]]:
     return [(source.fresh("own"), run) for run in runs if len(run) > 1]
 
 
+def handle(source: Source) -> None:
+    """As `member`; functions that only calls name get a pointer to the structure."""
+    settled = source.settled()
+    inside = [part for function in source.functions for part in nodes(function.body)]
+    called = {part.name for part in inside if isinstance(part, c_ast.FuncCall) and isinstance(part.name, c_ast.ID)}
+    fixed = settled | {part.name for part in inside if isinstance(part, c_ast.ID) and part not in called}
+    taken: defaultdict[str, dict[str, str]] = defaultdict(dict)
+    for name, objects in _structures(source):
+        _join(source, f"{name.capitalize()} ", name, objects)
+        pointer = source.fresh("its")
+        for function in source.functions:
+            own = function.decl.name
+            uses = [part for part in named(function.body) if part.name in objects]
+            if uses and "static" in function.decl.storage and own not in fixed:
+                taken[own][name] = pointer
+            for part in uses:
+                source.replace_name(
+                    part, f"{taken[own][name]}->{part.name}" if name in taken[own] else f"{name}.{part.name}"
+                )
+    for function in source.functions:
+        own = function.decl.name
+        if taken[own]:
+            parameters = (f"struct {name.capitalize()} *{pointer}" for name, pointer in taken[own].items())
+            source.add_first(source.opening(function), ", ".join(parameters))
+        for part in named(function.body):
+            if part in called and taken[part.name]:
+                arguments = (taken[own].get(name, f"&{name}") for name in taken[part.name])
+                source.add_first(source.opening(part), ", ".join(arguments))
+
+
 def accessor(source: Source) -> None:
     """Scalars of the file are read through `Get_x()` and written through `Set_x(value)`."""
     settled = source.settled()
@@ -631,11 +664,54 @@ def _masked(source: Source, value: Any, whole: str, field: FieldOf) -> str:
     return f"{others} | {field.number(number)}"
 
 
+def expanded(source: Source) -> None:
+    """The driver's macros are the numbers that they stand for."""
+    texts: dict[str, str] = {}
+    for _, word, *rest in source.directives:
+        if word.text == "define" and len(rest) > 1 and (rest[1].text != "(" or rest[1].space):
+            tokens = [copy.copy(token) for token in rest[1:]]
+            for token in tokens:
+                token.text = texts.get(token.text, token.text)
+            text = spelled(tokens)
+            texts[rest[0].text] = text if len(tokens) == 1 else f"({text})"
+    source.expand(texts)
+
+
+def constants(source: Source) -> None:
+    """Numbers in functions are named: an `enum` for an `int`, a `static const` for others."""
+    for function in source.functions:
+        names: dict[str, str] = {}
+        fixed = {
+            part
+            for node in nodes(function.body)
+            if isinstance(node, c_ast.Case | c_ast.Decl)
+            for part in nodes(node)
+            if isinstance(node, c_ast.Decl) or part is node.expr
+        }
+        for node in nodes(function.body):
+            if not isinstance(node, c_ast.Constant) or "int" not in node.type or node in fixed:
+                continue
+            number, unsigned = int(node.value.rstrip("uUlL"), 0), "u" in node.value.lower()
+            if number < 2 or "l" in node.value.lower():
+                continue
+            if node.value not in names:
+                name = names[node.value] = source.fresh("NUMBER_")
+                if number > 0x7FFF and not unsigned and not node.value.lower().startswith("0x"):
+                    text = f"static const long {name} = {node.value};"
+                elif number > 0xFFFF:
+                    text = f"static const {'unsigned ' * unsigned}long {name} = {node.value};"
+                elif number > 0x7FFF or unsigned:
+                    text = f"static const unsigned int {name} = {node.value};"
+                else:
+                    text = f"enum {{ {name} = {node.value} }};"
+                source.above(function, f"{text} ")
+            source.replace(node, names[node.value])
+
+
 FORMS: Final[dict[str, Callable[[Source], None]]] = {
     "compound": compound, "temporary": temporary, "helper-expression": helper_expression,
-    "helper-statement": helper_statement,
-    "inverted": inverted, "turned": turned, "loops": loops, "member": member,
-    "accessor": accessor, "mask": mask,
+    "helper-statement": helper_statement, "inverted": inverted, "turned": turned, "loops": loops, "member": member,
+    "handle": handle, "accessor": accessor, "mask": mask, "expanded": expanded, "constants": constants,
 }  # fmt: skip
 
 

@@ -22,7 +22,7 @@ from emulator.c28x.ctypes import CType, IntType
 from emulator.c28x.readers.c.declarators import declarator
 from emulator.c28x.readers.c.grammar import Grammar
 from emulator.c28x.readers.c.parser import Lexeme, ParserLimits, lexemes_of
-from emulator.c28x.readers.c.tokens import SourceText, Token, TokenBudget, spelled
+from emulator.c28x.readers.c.tokens import NAME, SourceText, Token, TokenBudget, spelled
 from emulator.c28x.symbols import CoreRegister, Module, RegisterBlock, Symbol
 from emulator.c28x.tree import Function, Stmt
 from emulator.c28x.tree_queries import statements, within
@@ -351,6 +351,29 @@ class Source:
     def replace_target(self, assignment: Any, text: str) -> None:
         """Replace the target of an assignment and its operator."""
         self.replace_lexemes(self.span(assignment.lvalue)[0], self.span(assignment.rvalue)[0] - 1, text)
+
+    def add_first(self, opening: int, text: str) -> None:
+        """Write the first parameter or argument behind the parenthesis `opening`, in the place of `void`."""
+        following = self._lexemes[opening + 1]
+        if following.value == "void" and self._lexemes[opening + 2].type == "RPAREN":
+            self.replace_lexemes(opening + 1, opening + 1, text)
+        else:
+            end = self._end(opening)
+            self._edit(end, 1, end, text if following.type == "RPAREN" else f"{text}, ")
+
+    def opening(self, name: Any) -> int:
+        """The parenthesis behind the name of a called function, or behind that of a defined one."""
+        if not isinstance(name, c_ast.FuncDef):
+            return self._lexeme(name) + 1
+        first, last = self.span(name, statement=True)
+        return next(i for i in range(first, last) if self._lexemes[i].value == name.decl.name) + 1
+
+    def expand(self, texts: Mapping[str, str]) -> None:
+        """Replace macros by texts."""
+        for index, lexeme in enumerate(self._lexemes):
+            member = index and self._lexemes[index - 1].type in ("PERIOD", "ARROW")
+            if lexeme.value in texts and lexeme.token.kind == NAME and not member:
+                self.replace_lexemes(index, index, texts[lexeme.value])
 
     def remove_word(self, statement: Any, word: str) -> None:
         """Remove a word of a declaration."""

@@ -204,6 +204,62 @@ def test_accessor() -> None:
     )
 
 
+HANDLED = """\
+#include "F28x_Project.h"
+#define STEP 3u
+#define TWICE (2u * STEP)
+static volatile Uint16 count = 0;
+static Uint16 last = STEP;
+static void Count(void)
+{
+    count += TWICE;
+}
+static Uint16 Sum(Uint16 more)
+{
+    Count();
+    return last + count + 40000u + more;
+}
+interrupt void Tick(void)
+{
+    count = Sum(7) + STEP;
+}
+"""
+
+
+def test_handle() -> None:
+    text = rewrite("t.c", HANDLED, "handle").text
+    assert "static struct Own1 {  volatile Uint16 count ;\n Uint16 last ; } own1 = { 0, STEP };" in text
+    assert text.endswith(
+        """\
+static void Count(struct Own1 *its2)
+{
+    its2->count += TWICE;
+}
+static Uint16 Sum(struct Own1 *its2, Uint16 more)
+{
+    Count(its2);
+    return its2->last + its2->count + 40000u + more;
+}
+interrupt void Tick(void)
+{
+    own1.count = Sum(&own1, 7) + STEP;
+}
+"""
+    )
+
+
+def test_expanded() -> None:
+    assert rewrite("t.c", HANDLED, "expanded").text == (
+        HANDLED.replace("last = STEP", "last = 3u").replace("+= TWICE", "+= ((2u * 3u))").replace("+ STEP", "+ 3u")
+    )
+
+
+def test_constants() -> None:
+    text = rewrite("t.c", HANDLED, "constants").text
+    assert "static const unsigned int NUMBER_1 = 40000u; static Uint16 Sum(Uint16 more)" in text
+    assert "enum { NUMBER_2 = 7 }; interrupt void Tick(void)\n{\n    count = Sum(NUMBER_2) + STEP;" in text
+
+
 @pytest.mark.parametrize(
     ("before", "after"),
     [
