@@ -14,10 +14,9 @@ from pathlib import Path
 from typing import Any
 
 from emulator.c28x.cache import compiled
-from emulator.c28x.compiled_program import Compiled, CompileOptions
+from emulator.c28x.compiled_program import Compiled
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import BASIC, ArrayType, CType, StructType, specified
-from emulator.c28x.emit.written import CHARGE_BY_CALL
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.c28x.link import Linked
 from emulator.c28x.memory import Pointer
@@ -34,6 +33,7 @@ from emulator.c28x.objects import (
     to_python,
     write,
 )
+from emulator.c28x.options import CHARGE_BY_CALL, CompileOptions
 from emulator.c28x.program import type_named
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime

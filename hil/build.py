@@ -66,9 +66,9 @@ STAYS: Final = {
         "emulator/c28x/build/*.py", "emulator/c28x/emit/*.py", "emulator/c28x/passes/*.py",
         "emulator/c28x/readers/**/*.py", "emulator/c28x/cache.py", "emulator/c28x/compile.py",
         "emulator/c28x/compiled_program.py", "emulator/c28x/ctypes.py", "emulator/c28x/declarations.py",
-        "emulator/c28x/float_division.py", "emulator/c28x/language.py", "emulator/c28x/program.py",
-        "emulator/c28x/rts.py", "emulator/c28x/symbols.py", "emulator/c28x/tree.py", "emulator/c28x/tree_queries.py",
-        "emulator/c28x/typed_text.py",
+        "emulator/c28x/float_division.py", "emulator/c28x/language.py", "emulator/c28x/options.py",
+        "emulator/c28x/program.py", "emulator/c28x/rts.py", "emulator/c28x/symbols.py", "emulator/c28x/tree.py",
+        "emulator/c28x/tree_queries.py", "emulator/c28x/typed_text.py",
         "emulator/sysbios/headers.py",
     ),
     "works while a chip is made, or where its program starts and ends": (

@@ -15,12 +15,13 @@ from pathlib import Path
 from typing import Any, Final
 
 from emulator.c28x.compile import compile_program
-from emulator.c28x.compiled_program import Compiled, CompileOptions
+from emulator.c28x.compiled_program import Compiled
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.ctypes import BlockType
 from emulator.c28x.findings import Finding
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.c28x.memory import Pointer
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
 from emulator.c28x.symbols import Module, library_headers
 from emulator.c28x.tree import Declaration, Function

@@ -21,13 +21,14 @@ import tempfile
 import zlib
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
 
-from emulator.c28x.compiled_program import Compiled, CompileOptions
+from emulator.c28x.compiled_program import Compiled
 from emulator.c28x.ctypes import CType
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program, digest, folders
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import EnumType, Module, NotAlike, SourceError, Symbol
@@ -106,29 +107,19 @@ def _alike(described: str) -> list[CachedProgram]:
     return []
 
 
+@dataclass(frozen=True)
 class CachedProgram:
     """A compiled program, with the sources and register properties that it depends on."""
 
-    def __init__(self, compiled: Compiled, digests: dict[str, str], looked_at: dict[tuple[str, str], bool]) -> None:
-        self.compiled = compiled
-        self.digests = digests
-        self.looked_at = looked_at
+    compiled: Compiled
+    digests: dict[str, str]
+    looked_at: dict[tuple[str, str], bool]
 
     def fits(self, looked_at: Callable[[str, str], bool]) -> bool:
         """Whether its sources and the effects of reading registers are unchanged."""
         return all(digest(name) == known for name, known in self.digests.items()) and all(
             looked_at(*register) == known for register, known in self.looked_at.items()
         )
-
-    def __getstate__(self) -> dict[str, Any]:
-        codes = {f.path: marshal.dumps(f.code()) for f in self.compiled.functions}
-        return {**self.__dict__, "codes": codes}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        codes = state.pop("codes")
-        self.__dict__.update(state)
-        for function in self.compiled.functions:
-            function.take_code(marshal.loads(codes[function.path]))
 
 
 def _folder() -> Path | None:

@@ -10,10 +10,11 @@ from __future__ import annotations
 import fnmatch
 from collections.abc import Callable, Iterable
 
-from emulator.c28x.compiled_program import Compiled, CompiledFunction, CompileOptions, Depends, LinkError
+from emulator.c28x.compiled_program import Compiled, CompiledFunction, Depends, LinkError
 from emulator.c28x.emit.names import FunctionNames, of_file
 from emulator.c28x.emit.python import PythonWriter
 from emulator.c28x.float_division import float_division
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.passes import frame
 from emulator.c28x.passes.checks import check
 from emulator.c28x.passes.costs import Costs
@@ -25,7 +26,7 @@ from emulator.c28x.passes.stamps import Stamps
 from emulator.c28x.passes.taken import mark_copy_and_clear
 from emulator.c28x.program import Program
 from emulator.c28x.readers.reading import reading
-from emulator.c28x.symbols import Module, NotAlike
+from emulator.c28x.symbols import NotAlike
 from emulator.c28x.tree import Function, Where
 
 
@@ -40,44 +41,38 @@ def compile_program(
     source outside the language, LinkError for an entry that matches no function, NotAlike if `like` is of no use.
     """
     modules = program.translate()
-    every = [function for module in modules for function in module.functions]
+    every = {function: module for module in modules for function in module.functions}
     taken = {} if like is None else {compiled.function: compiled for compiled in like.functions}
-    for module in modules:
-        for function in module.functions:
-            if function in taken:
-                continue
-            if not function.where.file:
-                function.where = Where(module.unit(function.name).file, function.line)
-            annotate_bounds(function.body)
-            Flow(function).run()
+    for function, module in every.items():
+        if function in taken:
+            continue
+        if not function.where.file:
+            function.where = Where(module.unit(function.name).file, function.line)
+        annotate_bounds(function.body)
+        Flow(function).run()
     objects = [(variable, variable.initial) for module in modules for variable in module.variables]
-    entries = _entries(modules, options)
+    entries = _entries([function.path for function in every], options)
     stamps = Stamps(modules, entries)
-    facts = facts_of(every, stamps, watch=options.watch)
+    facts = facts_of([*every], stamps, watch=options.watch)
     depends = _depends(every, facts)
     if any(function in taken and taken[function].depends != own for function, own in depends.items()):
         raise NotAlike
     findings = check(modules, dict(objects), stamps, entries) if options.static else []
     costs = Costs(float_division(options.float_division))
     functions = []
-    for module in modules:
-        for function in module.functions:
-            if function in taken:
-                functions.append(taken[function])
-                continue
-            factors = options.calibration
-            factor = factors.get(f"{module.name}.{function.name}", factors.get(module.name, 1.0))
-            frame.lay_out(function, options.room, residue=options.residue)
-            Guards(function, facts, watch=options.watch, ieee=options.ieee, room=options.room).run()
-            costs.leave(function)
-            mark_copy_and_clear(function)
-            own = depends[function]
-            writer = PythonWriter(
-                function, FunctionNames(own.owner, looked_at), costs=costs, factor=factor, watch=options.watch,
-                residue=options.residue, keep_locals=options.keep_locals, coverage=options.coverage,
-                steps=options.steps, follow=options.follow, charge_by_call=options.charge_by_call, idle=facts.idle,
-            )  # fmt: skip
-            functions.append(CompiledFunction(function, function.where.file, writer.write(), own))
+    for function, module in every.items():
+        if function in taken:
+            functions.append(taken[function])
+            continue
+        factor = options.calibration.get(function.path, options.calibration.get(module.name, 1.0))
+        frame.lay_out(function, options.room, residue=options.residue)
+        Guards(function, facts, watch=options.watch, ieee=options.ieee, room=options.room).run()
+        costs.leave(function)
+        mark_copy_and_clear(function)
+        own = depends[function]
+        names = FunctionNames(own.owner, looked_at)
+        writer = PythonWriter(function, names, options, costs=costs, factor=factor, idle=facts.idle)
+        functions.append(CompiledFunction(function, writer.write(), own))
     return Compiled(program, options, functions, objects, findings)
 
 
@@ -94,9 +89,8 @@ def _depends(functions: Iterable[Function], facts: ImageFacts) -> dict[Function,
     return found
 
 
-def _entries(modules: Iterable[Module], options: CompileOptions) -> frozenset[str]:
+def _entries(paths: Iterable[str], options: CompileOptions) -> frozenset[str]:
     """The functions that `CompileOptions.entries` names.  Raises LinkError for an entry that matches none."""
-    paths = [function.path for module in modules for function in module.functions]
     meant: set[str] = set()
     for entry in options.entries:
         found = fnmatch.filter(paths, entry)

@@ -6,14 +6,15 @@ translator.
 
 from __future__ import annotations
 
+import marshal
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from types import CodeType
 from typing import TYPE_CHECKING, Any, Final
 
-from emulator.c28x.emit.written import CHARGE_BY_CALL, EmittedFunction
-from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
+from emulator.c28x.emit.written import EmittedFunction
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
 from emulator.c28x.tree import Function, Variable
 
@@ -23,39 +24,6 @@ if TYPE_CHECKING:
 
 class LinkError(ValueError):
     """A name that nothing defines, or a construct outside the language."""
-
-
-@dataclass
-class CompileOptions:
-    """Options of the translation."""
-
-    #: Write locals to the stack memory at return (for the fill policy `stack`).
-    residue: bool = False
-    #: Keep a function's locals for tests.
-    keep_locals: bool = False
-    #: Call `Runtime.touch` at every load and store of an object that other threads can reach.
-    watch: bool = False
-    #: Count how often each statement is begun (`coverage.py`).
-    coverage: bool = False
-    #: Call `Position.hold`, if it is set, before each statement.
-    steps: bool = False
-    #: Call `Position.follow`, if it is set, with each statement before it begins, and with the locals.
-    follow: bool = False
-    #: Charge time by a call and not in line: faster with a compiled clock, slower without.
-    charge_by_call: bool = CHARGE_BY_CALL
-    #: Report what the typed tree shows without running it.
-    static: bool = False
-    #: Functions (`module.name`, or a pattern) that are called from outside of the image: `static` does not report them
-    #: as never called, nor their parameters as unused.
-    entries: frozenset[str] = frozenset()
-    #: A division of floats gives the IEEE result.  (`float_division` decides only how long it takes.)
-    ieee: bool = True
-    #: The build that decides how long a float division takes: a name in `FLOAT_DIVISIONS`.
-    float_division: str = DEFAULT_FLOAT_DIVISION
-    #: Arrays (`module.function.name`) that have more elements than the source says.
-    room: dict[str, int] = field(default_factory=dict)
-    #: Full name of a module, or of a function in it -> factor on its cycles.
-    calibration: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -70,31 +38,27 @@ class Depends:
 
 @dataclass
 class CompiledFunction:
-    """A function as Python code, and the source file that its line numbers refer to."""
+    """A function as Python code."""
 
     function: Function
-    file: str
     written: EmittedFunction
     depends: Depends | None = field(default=None, repr=False)
-    _code: CodeType | None = field(default=None, repr=False)
 
     @property
     def path(self) -> str:
         """`module.name`."""
         return self.function.path
 
+    @cached_property
     def code(self) -> CodeType:
         """The code that defines the function.  Its places are numbered from `FIRST_NUMBER`."""
-        if self._code is None:
-            self._code = _code(self.written.text, self.file, self.written.lines)
-        return self._code
-
-    def take_code(self, code: CodeType) -> None:
-        """Use `code`, which was compiled earlier from the same text."""
-        self._code = code
+        return _code(self.written.text, self.function.where.file, self.written.lines)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_code": None, "depends": None}  # code objects cannot be pickled
+        return {**self.__dict__, "code": marshal.dumps(self.code), "depends": None}  # code objects cannot be pickled
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state, code=marshal.loads(state["code"]))
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,7 @@ from emulator.c28x.emit.written import FIRST_NUMBER
 from emulator.c28x.intrinsics import InterruptMask, intrinsics
 from emulator.c28x.memory import NULL, RAM_WORDS, Object, Pointer
 from emulator.c28x.rts_iqmath import IQmath
-from emulator.c28x.runtime import Runtime
+from emulator.c28x.runtime import Runtime, called_names
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import (
@@ -254,46 +254,13 @@ class Linked:
 
     def _runtime_names(self) -> dict[str, Any]:
         runtime = self.runtime
-        watch = self.options.watch
-        return {
-            "_c_touch": runtime.touch, "_c_load": runtime.watched_load if watch else runtime.load,
-            "_c_store": runtime.watched_store if watch else runtime.store,
-            "_c_copy": runtime.watched_copy if watch else runtime.copy_struct,
-            "_c_load_struct": runtime.load_struct, "_c_store_struct": runtime.store_struct,
-            "_c_load_bits": runtime.load_bits, "_c_store_bits": runtime.store_bits,
-            "_c_load_octet": runtime.load_octet, "_c_store_octet": runtime.store_octet,
+        called = {name: getattr(runtime, method) for name, method in called_names(watch=self.options.watch).items()}
+        return called | {
             "_c_clock": runtime.clock, "_c_position": runtime.findings.position, "_cpu": runtime.cpu,
-            "_c_runtime": runtime, "_range": range, "_max": max, "_len": len, "_c_NULL": NULL,
-            "_c_f32": f32, "_c_uninit": runtime.uninit, "_c_oob_load": runtime.oob_load,
-            "_c_oob_store": runtime.oob_store, "_c_member_index": runtime.member_index,
-            "_c_address": runtime.address, "_c_code": runtime.code, "_c_function_at": runtime.function_at,
-            "_c_cast": runtime.cast, "_c_pointer_at": runtime.pointer_at,
-            "_c_register": runtime.register, "_c_register_address": self._register_address,
-            "_c_given": runtime.given, "_c_taken": runtime.taken,
-            "_c_enter": runtime.enter, "_c_retire": runtime.retire, "_c_callable": runtime.callable,
-            "_c_oob_deep_load": runtime.oob_deep_load, "_c_oob_deep_store": runtime.oob_deep_store,
-            "_c_stale": runtime.stale, "_c_wrapped": runtime.wrapped, "_c_octet": runtime.octet,
-            "_c_no_case": runtime.no_case, "_c_narrowed": runtime.narrowed, "_c_quotient": runtime.quotient,
-            "_c_fields": runtime.fields,
-            "_c_float_result": runtime.float_result, "_c_float_out": runtime.float_out,
-            "_c_quantity": runtime.quantity, "_c_sign_lost": runtime.sign_lost,
-            "_c_signed_word": runtime.signed_word, "_c_gone_back": runtime.gone_back,
-            "_c_fraction": runtime.fraction, "_c_shifted_sign": runtime.shifted_sign,
-            "_c_word_of_24": runtime.word_of_24, "_c_error_side": runtime.error_side,
-            "_c_error_side_float": runtime.error_side_float,
-            "_c_overflow": runtime.overflow, "_c_float_to_int": runtime.float_to_int,
-            "_c_float_argument": runtime.float_argument, "_c_stamps": runtime.stamps, "_c_past": runtime.past,
-            "_c_turn": runtime.turn, "_c_busy": runtime.busy,
-            "_c_extended": runtime.extended, "_c_parsed": runtime.parsed,
-            "_c_pulse": runtime.pulse, "_c_regulated": runtime.regulated, "_c_regulated_float": runtime.regulated_float,
-            "_c_divide_floats": runtime.divide_floats, "_c_divide_doubles": runtime.divide_doubles,
-            "_c_divide_ints": runtime.divide_ints,
-            "_c_modulo_ints": runtime.modulo_ints, "_c_shift": runtime.shift,
-            "_c_endless": runtime.endless, "_c_loop_limit": runtime.loop_limit,
-            "_c_poll": runtime.poll, "_c_idle": runtime.idle, "_c_NEVER": NEVER, "_c_poll_limit": runtime.poll_limit,
-            "_c_unmodelled_wait": runtime.unmodelled_wait,
-            "_c_stack_check": runtime.stack_check, "_c_outward": _to_extern,
-            "_c_spill": self._spill, "__builtins__": builtins.__dict__,
+            "_c_runtime": runtime, "_range": range, "_max": max, "_len": len, "_c_NULL": NULL, "_c_NEVER": NEVER,
+            "_c_f32": f32, "_c_register_address": self._register_address, "_c_loop_limit": runtime.loop_limit,
+            "_c_poll_limit": runtime.poll_limit, "_c_unmodelled_wait": runtime.unmodelled_wait,
+            "_c_outward": _to_extern, "_c_spill": self._spill, "__builtins__": builtins.__dict__,
         }  # fmt: skip
 
     def _define(self, compiled: CompiledFunction, method: Callable[..., Any] | None) -> None:
@@ -304,7 +271,7 @@ class Linked:
         if method is not None:
             defined = method
         else:
-            (code,) = [c for c in compiled.code().co_consts if isinstance(c, CodeType)]
+            (code,) = [c for c in compiled.code.co_consts if isinstance(c, CodeType)]
             defined = PyFunction(_numbered(code, first, compiled.function.name), self.namespace)
             defined.__qualname__ = path
         self.functions[path] = defined
@@ -315,7 +282,7 @@ class Linked:
         self.runtime.findings.beginnings[defined] = begins
         if function.interrupt is not None:
             self.runtime.findings.interrupts[begins] = function.interrupt
-        self.runtime.findings.sources[compiled.file] = compiled.function.c_file
+        self.runtime.findings.sources[where.file] = function.c_file
 
     def _bind(self, compiled: CompiledFunction) -> None:
         """Bind every name that the text of a function refers to."""
@@ -323,7 +290,7 @@ class Linked:
         space.update(names.constants)
         if compiled.written.counted:
             function = compiled.function
-            space[names.counters] = self.coverage.counters(compiled.file, function.name, compiled.written.counted)
+            space[names.counters] = self.coverage.counters(function.where.file, function.name, compiled.written.counted)
         for name, (block, register, access) in names.registers.items():
             if name not in space:
                 cell = self.registers(block, register)

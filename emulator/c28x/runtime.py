@@ -903,7 +903,7 @@ class Runtime:
                 self.not_finite(value, site, obj.declaration.path)
         self.store(p, words, value, number)
 
-    def watched_copy(self, target: Pointer, source: Pointer, words: int, number: int) -> None:
+    def watched_copy_struct(self, target: Pointer, source: Pointer, words: int, number: int) -> None:
         """`copy_struct`, with calls of the watcher."""
         self.touch_block(source, words, False)
         self.touch_block(target, words, True)
@@ -1421,3 +1421,9 @@ class Runtime:
             "behind that this stack ends, or has no room left for an interrupt", at=number,
             object=self.findings.context(), value=self.cpu.sp,
         )  # fmt: skip
+
+
+def called_names(*, watch: bool) -> dict[str, str]:
+    """The names that generated code has for the methods of `Runtime`, with these; `watch`: accesses are watched."""
+    methods = [name for name, value in vars(Runtime).items() if callable(value) and not name.startswith("_")]
+    return {f"_c_{name}": f"watched_{name}" if watch and f"watched_{name}" in methods else name for name in methods}

@@ -27,7 +27,7 @@ from emulator.c28x.compiled_program import Compiled, CompiledFunction
 from emulator.c28x.ctypes import VOID, ArrayType, CType, FloatType, IntType, StructType
 from emulator.c28x.emit.names import escaped, local_name, object_name
 from emulator.c28x.emit.written import FIRST_NUMBER
-from emulator.c28x.runtime import Runtime
+from emulator.c28x.runtime import called_names
 from emulator.c28x.sites import first_of_file
 
 #: The class with the functions of a file.
@@ -64,10 +64,6 @@ _TYPES: Final = {
     "_c_clock": "Clock", "_c_position": "Position", "_c_runtime": "Runtime", "_cpu": "Cpu", "_c_poll_limit": "int",
     "_c_loop_limit": "int", "_c_unmodelled_wait": "int",
 }  # fmt: skip
-#: Names of the language -> the methods of `Runtime` that the linker binds to them.
-_METHODS: Final = {f"_c_{name}": name for name, value in vars(Runtime).items() if callable(value) and name[0] != "_"}
-#: The same where accesses are watched.
-_WATCHED: Final = {**_METHODS, "_c_load": "watched_load", "_c_store": "watched_store"}
 _ACCESSES: Final = {
     "cleared": "Cell", "read": "Callable[[], int]", "write": "Callable[[int, int], None]",
     "modify": "Callable[[int, int, int], None]", "steady": "bool",
@@ -161,7 +157,7 @@ def typed_text(part: ProgramPart) -> str:
     names = _Names(
         {each.path: name for each, name in named},
         part.elements,
-        _WATCHED if part.watch else _METHODS,
+        called_names(watch=part.watch),
     )
     written = []
     first = part.first

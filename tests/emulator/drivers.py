@@ -5,8 +5,8 @@ from __future__ import annotations
 from random import Random
 from typing import Any
 
-from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.findings import Finding
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime

@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 import firmware_model
 import firmware_model.corrections
 from emulator.c28x.compile import compile_program
-from emulator.c28x.compiled_program import Compiled, CompileOptions
+from emulator.c28x.compiled_program import Compiled
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
 from emulator.c28x.readers.python.preprocessor import fixed_ids, preprocess
 from emulator.c28x.symbols import NotAlike

@@ -26,6 +26,7 @@ from emulator.c28x.ctypes import (
 from emulator.c28x.emit.lines import Begin, Charge, EmittedLine, Exit, Item, LineEntry, printed
 from emulator.c28x.emit.names import FunctionNames, escaped, local_name, object_name
 from emulator.c28x.emit.written import FIRST_NUMBER, EmittedFunction
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.passes.costs import CALL, TURN, Costs
 from emulator.c28x.passes.fields import or_terms
 from emulator.c28x.passes.guards import (
@@ -121,25 +122,20 @@ class _Breakable:
 class PythonWriter:
     """Writes one function.
 
-    `costs` has put the cycles on its statements, `factor` scales them.  `idle` is the result of `idle_calls`.  The
-    other arguments come from `CompileOptions`.
+    `costs` has put the cycles on its statements, `factor` scales them.  `idle` is the result of `idle_calls`.
     """
 
     def __init__(
-        self, function: Function, names: FunctionNames, *, costs: Costs, factor: float, watch: bool, residue: bool,
-        keep_locals: bool, coverage: bool, steps: bool, follow: bool, charge_by_call: bool, idle: IdleCalls,
+        self, function: Function, names: FunctionNames, options: CompileOptions, *, costs: Costs, factor: float,
+        idle: IdleCalls,
     ) -> None:  # fmt: skip
         self.function = function
         self.names = names
+        self.options = options
         self.costs = costs
         self.factor = factor
-        self.watch = watch
-        self.residue = residue
-        self.keep_locals = keep_locals
-        self.coverage = coverage
-        self.steps = steps
-        self.follow = follow
-        self.charge_by_call = charge_by_call
+        #: A function leaves its locals behind when it returns.
+        self.spills = options.residue or options.keep_locals
         self.items: list[Item] = []
         self.depth = 0
         self.where = function.where
@@ -160,7 +156,7 @@ class PythonWriter:
         self.jump_flags: dict[str, str] = {}
         #: The loops with turns that time may skip, and what ends the idleness of a turn.  Nobody stops there.
         self.idle_loops, self.busy, self.busy_calls = (
-            idle_turns(function, idle) if watch and not steps else ({}, {}, set[int]())
+            idle_turns(function, idle) if options.watch and not options.steps else ({}, {}, set[int]())
         )
         #: Identity of a loop -> the variable with the beginning of its turn, and the text of its time limit.
         self.turn_of: dict[int, str] = {}
@@ -183,9 +179,8 @@ class PythonWriter:
             else:
                 # The function ends without the value that it must return: the caller gets what the register held.
                 self.leave(f"_c_uninit({self.number(f.owing)})")
-        lines = printed(
-            self.items, places=bool(self.places), clock=self.uses_clock, charge_by_call=self.charge_by_call
-        )
+        by_call = self.options.charge_by_call
+        lines = printed(self.items, places=bool(self.places), clock=self.uses_clock, charge_by_call=by_call)
         text = "\n".join(line for line, _ in lines)
         numbers = tuple(number for _, number in lines)
         return EmittedFunction(text, numbers, tuple(self.places), self.names, tuple(self.counted))
@@ -219,15 +214,15 @@ class PythonWriter:
     def begin(self, what: Function | Stmt, where: Where) -> None:
         """Write the start of a statement, or of the function: count it, and stop there, if the options ask for it."""
         texts = []
-        if self.coverage:
+        if self.options.coverage:
             counter = self.counters.setdefault(id(what), len(self.counted))
             if counter == len(self.counted):
                 self.counted.append(where)
             texts.append(f"{self.names.counters}[{counter}] += 1")
-        if self.steps and isinstance(what, Stmt):
+        if self.options.steps and isinstance(what, Stmt):
             self.stored_place = self.statement_at(where)
             texts += [f"_p.at = {self.stored_place}", "if _p.hold: _p.hold(locals())"]
-        if self.follow and isinstance(what, Stmt):
+        if self.options.follow and isinstance(what, Stmt):
             self.stored_place = self.statement_at(where)
             followed = self.names.constant("t", what, ("followed", id(what)))
             texts += [f"_p.at = {self.stored_place}", f"_p.follow({followed}, locals())"]
@@ -279,7 +274,7 @@ class PythonWriter:
             if variable.in_memory:
                 count = variable.ctype.leaves
                 self.put(f"{name} = [None] * {count}" if count > 1 else f"{name} = [None]")
-            elif variable.unwritten or self.residue or self.keep_locals or self.steps or self.follow:
+            elif variable.unwritten or self.spills or self.options.steps or self.options.follow:
                 # A look at the locals, at a return or at any statement, must find all of them.
                 self.put(f"{name} = None")
         for variable in f.live:
@@ -291,11 +286,10 @@ class PythonWriter:
         """Return `value` and release the frame."""
         self.flush()
         f = self.function
-        spills = self.residue or self.keep_locals
-        if value is not None and (f.frame_words or spills):
+        if value is not None and (f.frame_words or self.spills):
             self.put(f"_v = {value}")
             value = "_v"
-        if spills:
+        if self.spills:
             spilled = [v for v in f.locals if v.kind != "temporary"]
             what = self.names.constant("t", (f.path, spilled), "spilled")
             named = "".join(f"{local_name(v)}, " for v in spilled)
@@ -313,7 +307,7 @@ class PythonWriter:
         start = len(self.items)
         for s in body:
             self.where = s.where
-            self.passing = not self.watch and passing(s)
+            self.passing = not self.options.watch and passing(s)
             for loop in self.busy.get(id(s), ()):
                 if loop in self.turn_of:
                     self.put(f"{self.turn_of[loop]} = -1")
@@ -738,7 +732,7 @@ class PythonWriter:
         if isinstance(target, RegisterRef | RegisterAt):
             called, in_place = self.register_store(target, s.value)
             # Nobody sees a store in place: only the call must store its place.
-            self.passing = bool(in_place) and not self.watch
+            self.passing = bool(in_place) and not self.options.watch
             self.flush()
             if in_place:
                 self.put(in_place)
@@ -820,7 +814,7 @@ class PythonWriter:
         target, source = self.address(s.target), self.address(s.source)
         self.cost += s.cycles
         self.flush()
-        self.put(f"_c_copy({target}, {source}, {s.target.ctype.words}, {self.number(s.guard)})")
+        self.put(f"_c_copy_struct({target}, {source}, {s.target.ctype.words}, {self.number(s.guard)})")
 
     def declare(self, s: Declare) -> None:
         variable = s.variable
@@ -1165,7 +1159,7 @@ class PythonWriter:
 
         Who follows the statements replays them, and needs no watcher.
         """
-        told = self.watch and not self.follow
+        told = self.options.watch and not self.options.follow
         return told and (variable.kind == "global" or (variable.in_memory and variable.escapes))
 
     def touch(self, variable: Variable, words: str, *, write: bool) -> str:
@@ -1223,7 +1217,7 @@ class PythonWriter:
             return text
         number = self.number(lvalue.fresh)
         where = "" if words == "0" else f", {words}"
-        if self.residue and root.frame_offset:
+        if self.options.residue and root.frame_offset:
             where = f", {words}, {self.location(root, words)}"
         if text.isidentifier():
             if renewed(root):

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import FunctionType
 from typing import Final
 
 from emulator.c28x.emit.names import FunctionNames
 from emulator.c28x.sites import Place, Site
 from emulator.c28x.tree import Where
-from emulator.clock import Clock
 
-#: Whether time is charged by a call: that is fastest with a compiled clock, in-line attribute access without one.
-CHARGE_BY_CALL: Final = not isinstance(Clock.charge, FunctionType)
 #: Places in a function's text are numbered from here, so that the linker can tell them from all other numbers: 64-bit
 #: arithmetic does not reach them, nor does constant folding in Python (128 bits).
 FIRST_NUMBER: Final = 1 << 130

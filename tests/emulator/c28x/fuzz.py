@@ -28,9 +28,9 @@ from pathlib import Path
 from types import FrameType, TracebackType
 from typing import Any, Final
 
-from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Memory
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.tree import Function

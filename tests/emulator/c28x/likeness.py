@@ -25,7 +25,7 @@ def parts(compiled: Compiled) -> dict[str, Any]:
     named = [f for each in compiled.functions for f in each.written.names.functions.values() if not f.extern]
     return {
         "functions": [
-            (each.path, each.file, each.written.text, each.written.lines, _text(each.written.places),
+            (each.path, each.written.text, each.written.lines, _text(each.written.places),
              _text(each.written.names.constants), each.written.names.strings, each.written.names.registers,
              sorted(each.written.names.functions), each.function.where, _text(each.function.body),
              [*map(_variable, (*each.function.parameters, *each.function.locals))])

@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from emulator.c28x.compile import compile_program
-from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.link import Linked
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
 from emulator.c28x.runtime import Runtime
 

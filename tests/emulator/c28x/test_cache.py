@@ -12,8 +12,9 @@ import pytest
 
 from emulator.c28x import cache
 from emulator.c28x.compile import compile_program
-from emulator.c28x.compiled_program import Compiled, CompileOptions
+from emulator.c28x.compiled_program import Compiled
 from emulator.c28x.ctypes import PointerType, StructType
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
 
 SOURCE = "from emulator.c28x.language import *\n\n\ndef Twice(x: int16) -> int16:\n    return 2 * x\n"

@@ -11,7 +11,7 @@ from emulator.c28x.compiled_program import CompiledFunction
 from emulator.c28x.ctypes import VOID, FunctionType
 from emulator.c28x.emit.names import FunctionNames
 from emulator.c28x.emit.written import EmittedFunction
-from emulator.c28x.tree import Function
+from emulator.c28x.tree import Function, Where
 
 #: 20 lines with a loop, branches, a long run of code in one line and an inner function.
 TEXT = "\n".join([
@@ -49,9 +49,9 @@ def lines(code: CodeType) -> list[int | None]:
 
 @given(numbers=st.lists(st.integers(1, 1 << 20), min_size=20, max_size=20))
 def test_each_unit_of_code_has_the_number_of_its_line(numbers: list[int]) -> None:
-    function = Function("f", "drv", FunctionType("f", VOID, ()), [], 1, "drv.c")
+    function = Function("f", "drv", FunctionType("f", VOID, ()), [], 1, "drv.c", where=Where("drv.py", 1))
     written = EmittedFunction(TEXT, tuple(numbers), (), FunctionNames("f", lambda block, name: False))
-    made = CompiledFunction(function, "drv.py", written).code()
+    made = CompiledFunction(function, written).code
     plain = compile(TEXT, "drv.py", "exec", dont_inherit=True)
     assert lines(made) == [None if line is None else numbers[line - 1] for line in lines(plain)]
     space: dict[str, object] = {}

@@ -11,8 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from emulator.c28x.compile import compile_program
-from emulator.c28x.compiled_program import Compiled, CompileOptions
+from emulator.c28x.compiled_program import Compiled
 from emulator.c28x.link import Linked
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Findings
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.c28x.memory import Memory
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.memory import Memory, Pointer
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
 from emulator.sysbios.core import KernelError

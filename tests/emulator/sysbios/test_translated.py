@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.memory import Memory
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
 from emulator.c28x.runtime import Runtime
 from tests.emulator.c28x.linking import link

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.findings import Finding, Findings
 from emulator.c28x.link import Linked
 from emulator.c28x.memory import Memory
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime

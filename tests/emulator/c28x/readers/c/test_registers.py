@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.link import Linked
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import EndlessPoll

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from emulator.c28x.compiled_program import CompileOptions
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Memory
+from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
 from emulator.c28x.rts_functions import Rts
 from emulator.c28x.runtime import Runtime
