@@ -356,6 +356,21 @@ def assigned(s: Stmt) -> Variable | None:
     return None
 
 
+def gives(s: Stmt) -> tuple[LValue, Expr] | None:
+    """The object that a statement itself gives a value, in an assignment or a declaration, and the value."""
+    match s:
+        case Assign(target=LValue() as target, value=value):
+            return target, value
+        case Declare(variable=variable, value=Expr() as value):
+            return LValue(variable.ctype, variable), value
+    return None
+
+
+def given_values(body: Iterable[Stmt]) -> Iterator[tuple[LValue, Expr]]:
+    """What `gives` finds in statements."""
+    return (given for s in statements(body) if (given := gives(s)) is not None)
+
+
 def assigned_variables(body: list[Stmt]) -> set[Variable]:
     """The variables that statements assign."""
     return {variable for s in statements(body) if (variable := assigned(s)) is not None}
@@ -394,13 +409,15 @@ def once(query: Callable[[Function], Answer]) -> Callable[[Function], Answer]:
     return ask
 
 
-def compared(functions: Iterable[Function]) -> set[Variable]:
+def of_all(query: Callable[[Function], set[Answer]]) -> Callable[[Iterable[Function]], set[Answer]]:
+    """Ask a query `once` for each of some functions, and take what it finds in any of them."""
+    ask = once(query)
+    return lambda functions: set[Answer]().union(*map(ask, functions))
+
+
+@of_all
+def compared(function: Function) -> set[Variable]:
     """The variables that occur in a comparison or a subscript."""
-    return set[Variable]().union(*map(_compared, functions))
-
-
-@once
-def _compared(function: Function) -> set[Variable]:
     nodes = [p for p in within(function.body) if isinstance(p, Compare | Index)]
     return variables(part for p in nodes for part in parts(p))
 
@@ -438,13 +455,9 @@ def fixed_words(lvalue: LValue) -> int | None:
     return words
 
 
-def limited(functions: Iterable[Function]) -> set[NamedScalar]:
+@of_all
+def limited(function: Function) -> set[NamedScalar]:
     """The unsigned scalars that the source limits: a larger value is replaced by the limit."""
-    return set[NamedScalar]().union(*map(_limited, functions))
-
-
-@once
-def _limited(function: Function) -> set[NamedScalar]:
     found: set[NamedScalar] = set()
     for larger, limit, chosen in _choices(function.body):
         match _as_it_is(larger):
@@ -475,13 +488,9 @@ def _sides(test: Compare, chosen: list[Expr], *, holds: bool) -> Iterator[tuple[
         yield (test.left, test.right, chosen) if left_larger else (test.right, test.left, chosen)
 
 
-def made_float(functions: Iterable[Function]) -> set[NamedScalar]:
+@of_all
+def made_float(function: Function) -> set[NamedScalar]:
     """The unsigned scalars of 16 bits whose value some expression converts to a float."""
-    return set[NamedScalar]().union(*map(_made_float, functions))
-
-
-@once
-def _made_float(function: Function) -> set[NamedScalar]:
     found: set[NamedScalar] = set()
     for p in within(function.body):
         match p:
@@ -491,13 +500,9 @@ def _made_float(function: Function) -> set[NamedScalar]:
     return found
 
 
-def limited_scalars(functions: Iterable[Function]) -> set[NamedScalar]:
+@of_all
+def limited_scalars(function: Function) -> set[NamedScalar]:
     """The scalars that some expression compares by order with a constant."""
-    return set[NamedScalar]().union(*map(_limited_scalars, functions))
-
-
-@once
-def _limited_scalars(function: Function) -> set[NamedScalar]:
     found: set[NamedScalar] = set()
     for p in within(function.body):
         if isinstance(p, Compare) and p.op not in ("==", "!="):

@@ -8,6 +8,8 @@ knows where the firmware is.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -433,10 +435,7 @@ class PythonWriter:
             word = "elif"
             self.branch(body)
         if none:
-            self.put("else:")
-            self.depth += 1
-            self.put(none)
-            self.depth -= 1
+            self.put(f"else: {none}")
 
     def switch_at_large(self, s: Switch) -> None:
         """Write a switch with inner `break`s or with fall-through, as a loop that is entered at a case."""
@@ -454,54 +453,45 @@ class PythonWriter:
         self.put(f"{entered} = {chosen}")
         if s.guard is not None:
             self.put(f"if {entered} == {default}: _c_no_case(_w, {self.number(s.guard)})")
-        around = _Breakable(None, f"_g{self.fresh}", f"_b{self.fresh}", label=s.label)
-        self.around.append(around)
-        flag = len(self.items)
-        self.put("while True:")
-        self.depth += 1
-        stored_place = self.stored_place
-        for i, (_, body) in enumerate(s.cases):
-            self.put(f"if {entered} <= {i}:")
-            self.branch(body)
-            if not leaves(body) and not (body and isinstance(body[-1], FallThrough)):
-                self.depth += 1
-                self.put("break")
-                self.depth -= 1
-            self.stored_place = 0
-        self.put("break")
-        self.depth -= 1
-        self.around.pop()
-        self.stored_place = stored_place if not s.cases else 0
-        self.left(around, flag, s.where)
+        with self.left_at_large(s):
+            self.depth += 1
+            for i, (_, body) in enumerate(s.cases):
+                self.put(f"if {entered} <= {i}:")
+                self.branch(body)
+                if not leaves(body) and not (body and isinstance(body[-1], FallThrough)):
+                    self.put("    break")
+                self.stored_place = 0
+            self.put("break")
+            self.depth -= 1
 
     def block_before_label(self, s: Switch) -> None:
         """Write the statements before a label, as a loop of one turn."""
         self.flush()
         self.fresh += 1
+        (_, body), = s.cases
+        with self.left_at_large(s):
+            self.branch(body)
+            if not leaves(body):
+                self.put("    break")
+
+    @contextmanager
+    def left_at_large(self, s: Switch) -> Iterator[None]:
+        """Write a switch as a loop, and behind it what else has ended in it; its body is written meanwhile."""
         around = _Breakable(None, f"_g{self.fresh}", f"_b{self.fresh}", label=s.label)
         self.around.append(around)
-        flag = len(self.items)
+        start = len(self.items)
         self.put("while True:")
-        (_, body), = s.cases
-        self.branch(body)
-        if not leaves(body):
-            self.depth += 1
-            self.put("break")
-            self.depth -= 1
+        yield
         self.around.pop()
         self.stored_place = 0
-        self.left(around, flag, s.where)
-
-    def left(self, around: _Breakable, start: int, where: Where) -> None:
-        """Write what follows a switch that is written as a loop, from item `start` on: what else has ended in it."""
         if around.label in self.jump_flags:
             name = self.jump_flags[around.label]
-            self.items.insert(start, EmittedLine(self.depth, where.line, f"{name} = False"))
+            self.items.insert(start, EmittedLine(self.depth, s.where.line, f"{name} = False"))
         for name in sorted(around.used):
-            self.items.insert(start, EmittedLine(self.depth, where.line, f"{name} = False"))
+            self.items.insert(start, EmittedLine(self.depth, s.where.line, f"{name} = False"))
             self.put(f"if {name}:")
             self.depth += 1
-            self.continue_turn(where) if name == around.carries_on else self.break_loop()
+            self.continue_turn(s.where) if name == around.carries_on else self.break_loop()
             self.depth -= 1
         self.jump_on(around)
 
@@ -801,14 +791,7 @@ class PythonWriter:
             self.put(f"{notification}{data}[{access.leaf}] = _v")
             return
         self.put(f"if {access.tests}: {notification}{data}[{access.leaf}] = _v")
-        assert target.outside is not None
-        number = self.number(target.outside)
-        if target.outside.kind == "index":
-            base = self.location(root, str(target.words))
-            self.put(f"else: _c_oob_store({number}, {access.names[0]}, {target.indices[0].words}, {base}, _v)")
-        else:
-            names = "".join(f"{name}, " for name in access.names)
-            self.put(f"else: _c_oob_deep_store({number}, {data}, ({names}), {self.location(root, '0')}, _v)")
+        self.put(f"else: {self.outside('store', target, root, access, ', _v')}")
 
     def copy_struct(self, s: CopyStruct) -> None:
         target, source = self.address(s.target), self.address(s.source)
@@ -862,26 +845,19 @@ class PythonWriter:
 
     def leaving(self, guard: Guard, text: str, e: Expr) -> str:
         """The text of a value, with the check that its use asks for."""
-        number = self.number(guard)
-        if guard.kind == "quantity":
-            return f"(_t if 0 <= (_t := {text}) <= {guard.site.bound} else _c_quantity(_t, {number}))"
-        if guard.kind == "signed-word":
-            return f"(_t if (_t := {text}) <= {guard.site.bound} else _c_signed_word(_t, {number}))"
-        if guard.kind == "gone-back":
-            return f"(_t if (_t := {text}) <= {guard.site.bound} else _c_gone_back(_t, {number}))"
-        if guard.kind == "fraction":
-            return f"_c_fraction({text}, {number})"
-        if guard.kind == "word-of-24":
-            return f"_c_word_of_24({text}, {number})"
-        if guard.kind == "error-side":
-            helper = "_c_error_side_float" if isinstance(guard.site.ctype, FloatType) else "_c_error_side"
-            assert isinstance(e, Binary)
-            return f"{helper}({text}, {self.value(e.right)}, {number})"
-        if guard.kind == "shifted-sign":
-            return f"(_t if 0 <= (_t := {text}) else _c_shifted_sign(_t, {number}))"
-        if guard.kind == "sign-lost":
-            return f"(_t if 0 <= (_t := {text}) else _c_sign_lost(_t, {number}))"
-        return f"_c_float_out({text}, {number})"
+        number, helper = self.number(guard), _helper(guard)
+        match guard.kind:
+            case "quantity":
+                return f"(_t if 0 <= (_t := {text}) <= {guard.site.bound} else {helper}(_t, {number}))"
+            case "signed-word" | "gone-back":
+                return f"(_t if (_t := {text}) <= {guard.site.bound} else {helper}(_t, {number}))"
+            case "shifted-sign" | "sign-lost":
+                return f"(_t if 0 <= (_t := {text}) else {helper}(_t, {number}))"
+            case "error-side":
+                assert isinstance(e, Binary)
+                kind = "_float" if isinstance(guard.site.ctype, FloatType) else ""
+                return f"{helper}{kind}({text}, {self.value(e.right)}, {number})"
+        return f"{helper}({text}, {number})"
 
     def plain(self, e: Expr) -> str:
         """The text of `e`, without the checks that its use asks for."""
@@ -1062,7 +1038,7 @@ class PythonWriter:
         if e.sign is not None:
             text = f"(_t if (_t := {text}) <= 127 else _c_octet(_t, {self.number(e.sign)}))"
         if e.guard is not None and e.guard.kind in ("parsed", "pulse"):
-            text = f"_c_{e.guard.kind}({text}, {self.number(e.guard)})"
+            text = f"{_helper(e.guard)}({text}, {self.number(e.guard)})"
         match target, source:
             case FloatType(), IntType(bits=bits):
                 exact = bits <= 16 or isinstance(target, Double64)
@@ -1071,8 +1047,7 @@ class PythonWriter:
                 return f"_c_f32({text})"
             case IntType(), FloatType():
                 assert e.guard is not None
-                helper = "_c_float_argument" if e.guard.kind == "float-argument" else "_c_float_to_int"
-                return f"{helper}({text}, {self.number(e.guard)})"
+                return f"{_helper(e.guard)}({text}, {self.number(e.guard)})"
             case IntType(), IntType():
                 return self.convert_int(text, e, target)
             case IntType(), PointerType(target=behind) if behind != VOID:
@@ -1094,10 +1069,8 @@ class PythonWriter:
         if e.guard is not None and e.guard.kind == "past":
             return f"(_t if (_t := {self.masked(text, target)}) >= 0 else _c_past(_t, {self.number(e.guard)}))"
         if e.guard is not None and e.guard.kind not in ("parsed", "pulse"):
-            octet = e.guard.kind == "octet"
-            low, high = octet_range(target) if octet else (target.low, target.high)
-            helper = "_c_octet" if octet else "_c_narrowed"
-            return f"(_t if {low} <= (_t := {text}) <= {high} else {helper}(_t, {self.number(e.guard)}))"
+            low, high = octet_range(target) if e.guard.kind == "octet" else (target.low, target.high)
+            return f"(_t if {low} <= (_t := {text}) <= {high} else {_helper(e.guard)}(_t, {self.number(e.guard)}))"
         low, high = bounds_of(e.operand)
         if e.operand.unwrapped and isinstance(e.operand.ctype, IntType):
             low, high = mathematical_bounds(e.operand, e.operand.ctype) if e.operand.guard is None else (low, high)
@@ -1186,15 +1159,16 @@ class PythonWriter:
             text = f"({self.touch(root, access.watched_word or access.words, write=False)} or {text})"
         if not access.tests:
             return text
-        assert lvalue.outside is not None
+        return f"({text} if {access.tests} else {self.outside('load', lvalue, root, access)})"
+
+    def outside(self, way: str, lvalue: LValue, root: Variable, access: _ElementAccess, stored: str = "") -> str:
+        """The call that reads or writes an element when a subscript is outside."""
         number = self.number(lvalue.outside)
-        if lvalue.outside.kind == "index":
+        if lvalue.outside is not None and lvalue.outside.kind == "index":
             base = self.location(root, str(lvalue.words))
-            outside = f"_c_oob_load({number}, {access.names[0]}, {lvalue.indices[0].words}, {base})"
-        else:
-            names = "".join(f"{name}, " for name in access.names)
-            outside = f"_c_oob_deep_load({number}, {data}, ({names}), {self.location(root, '0')})"
-        return f"({text} if {access.tests} else {outside})"
+            return f"_c_oob_{way}({number}, {access.names[0]}, {lvalue.indices[0].words}, {base}{stored})"
+        names = "".join(f"{name}, " for name in access.names)
+        return f"_c_oob_deep_{way}({number}, {self.data(root)}, ({names}), {self.location(root, '0')}{stored})"
 
     def load_pointed(self, lvalue: LValue) -> str:
         """The text of a read through a pointer, or of a bit-field."""
@@ -1256,10 +1230,7 @@ class PythonWriter:
 
     def offset_words(self, lvalue: LValue) -> str:
         """The text of the distance of an lvalue from its root, in words."""
-        terms = [f"{self.member_index(i)} * {i.words}" for i in lvalue.indices]
-        if lvalue.words or not terms:
-            terms.append(str(lvalue.words))
-        return " + ".join(terms)
+        return _words([self.member_index(i) for i in lvalue.indices], lvalue)
 
     def member_index(self, index: Index) -> str:
         """A subscript behind a pointer, checked against the length of the array member if that is known."""
@@ -1352,7 +1323,12 @@ def _leaf(subscripts: list[str], lvalue: LValue) -> str:
 def _words(subscripts: list[str], lvalue: LValue) -> str:
     """The text of the word of the object that subscripts designate."""
     terms = [t if i.words == 1 else f"{t} * {i.words}" for t, i in zip(subscripts, lvalue.indices, strict=True)]
-    return " + ".join([*terms, str(lvalue.words)] if lvalue.words else terms)
+    return " + ".join([*terms, str(lvalue.words)] if lvalue.words or not terms else terms)
+
+
+def _helper(guard: Guard) -> str:
+    """The name of the function that makes a check, if it is called after its kind."""
+    return f"_c_{guard.kind.replace('-', '_')}"
 
 
 def _labels(values: list[int]) -> str:

@@ -45,7 +45,7 @@ from emulator.c28x.tree import (
     Unary,
     Variable,
 )
-from emulator.c28x.tree_queries import all_blocks, bare, once, own_nodes, parts, source_text, statements, within
+from emulator.c28x.tree_queries import all_blocks, bare, gives, once, own_nodes, parts, source_text, statements, within
 
 _WORD: Final = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 #: Words that say that a value is the wanted one; `set` and `point` count together.
@@ -164,12 +164,8 @@ def _integral(function: Function, error: _Error) -> str:
 
 def _target(s: Stmt) -> LValue | None:
     """The number that a statement assigns to or declares."""
-    match s:
-        case Assign(target=LValue(ctype=FloatType() | IntType()) as target):
-            return target
-        case Declare(variable=Variable(ctype=FloatType() | IntType()) as variable, value=Expr()):
-            return LValue(variable.ctype, variable)
-    return None
+    given = gives(s)
+    return given[0] if given is not None and isinstance(given[0].ctype, FloatType | IntType) else None
 
 
 def _values(s: Stmt) -> Iterator[Expr]:
@@ -264,16 +260,13 @@ def _turned(functions: list[Function], error: _Error) -> bool:
                         given = zip(p.function.parameters, p.arguments, strict=False)
                         passed = [v for v, a in given if any(depends(x) or direct(x) for x in parts(a))]
                         keys |= {(v, 0) for v in passed}
-                match s:
-                    case Assign() if id(s) in constant:
-                        pass
-                    case Assign(target=LValue() as target, value=value) if any(depends(x) for x in parts(value)):
-                        key = key_of(target)
-                        keys |= {key} if key is not None else set()
-                    case Declare(variable=variable, value=Expr() as value) if any(depends(x) for x in parts(value)):
-                        keys.add((variable, 0))
-                    case Return(value=Expr() as value) if any(depends(x) for x in parts(value)):
-                        returning.add(function.path)
+                taken = getattr(s, "value", None)
+                if id(s) in constant or not isinstance(taken, Expr) or not any(depends(x) for x in parts(taken)):
+                    continue
+                if isinstance(s, Return):
+                    returning.add(function.path)
+                elif (found := gives(s)) is not None and (key := key_of(found[0])) is not None:
+                    keys.add(key)
         if (len(keys), len(returning)) == before:
             break
     for function in functions:

@@ -7,26 +7,22 @@ flags (an object that some statement ORs into), registers, two terms at the same
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Set
+from collections.abc import Set
 from typing import Any, Final
 
 from emulator.c28x.ctypes import IntType
 from emulator.c28x.passes.intervals import bounds_of
 from emulator.c28x.tree import Assign, Binary, Call, Const, Convert, Expr, Function, Load, LValue
-from emulator.c28x.tree_queries import NamedScalar, bare, children, named_scalar, once, source_text, statements
+from emulator.c28x.tree_queries import NamedScalar, bare, children, named_scalar, of_all, source_text, statements
 
 #: CHOICE: a word of two bitmaps that may meet (a picture, keys) shifts by less.  With three fields any shift counts.
 _FIELD: Final = 4
 _COMPUTED: Final = ("+", "-", "*", "/", "%", ">>")
 
 
-def flag_scalars(functions: Iterable[Function]) -> set[NamedScalar]:
+@of_all
+def flag_scalars(function: Function) -> set[NamedScalar]:
     """The scalars into which some statement ORs something: flags."""
-    return set[NamedScalar]().union(*map(_flag_scalars, functions))
-
-
-@once
-def _flag_scalars(function: Function) -> set[NamedScalar]:
     found: set[NamedScalar] = set()
     for s in statements(function.body):
         match s:

@@ -23,9 +23,7 @@ from emulator.c28x.tree import (
     Assign,
     Call,
     Const,
-    Declare,
     Evaluate,
-    Expr,
     Field,
     Function,
     Load,
@@ -36,7 +34,7 @@ from emulator.c28x.tree import (
     Stmt,
     Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import bare, statements
+from emulator.c28x.tree_queries import bare, given_values, statements
 
 #: So many others must be alike, and have so many steps; so many may be missing.
 _ALIKE: Final = 2
@@ -79,14 +77,10 @@ def _pointers_to_blocks(function: Function) -> dict[Variable, str]:
     """The locals that always point to one register block: `volatile struct EPWM_REGS *p = &EPwm1Regs;`."""
     found: dict[Variable, str] = {}
     others: set[Variable] = set()
-    for s in statements(function.body):
-        match s:
-            case Declare(variable=variable, value=Expr() as value):
-                pass
-            case Assign(target=LValue(root=Variable(in_memory=False) as variable, indices=[]), value=value):
-                pass
-            case _:
-                continue
+    for target, value in given_values(function.body):
+        variable = target.root
+        if not isinstance(variable, Variable) or variable.kind == "global" or target.indices:
+            continue
         inner = bare(value)
         block = inner.block if isinstance(inner, RegisterAddress) and not inner.register else ""
         if block and found.get(variable, block) == block:

@@ -37,7 +37,6 @@ from emulator.c28x.tree import (
     Compare,
     Const,
     Convert,
-    Declare,
     Expr,
     For,
     Function,
@@ -50,7 +49,9 @@ from emulator.c28x.tree_queries import (
     NamedScalar,
     addressed,
     bare,
+    given_values,
     named_scalar,
+    of_all,
     once,
     parts,
     source_text,
@@ -90,19 +91,13 @@ def _widened(functions: list[Function]) -> dict[int, SignedWord]:
     asked = dict(found for function in functions for found in _asked(function))
     if not asked:
         return {}
-    taken = set[Variable]().union(*map(_addressed, functions))
     given: dict[NamedScalar, list[Expr]] = {}
-    lost: set[NamedScalar] = {(variable, 0) for variable in taken}
+    lost: set[NamedScalar] = {(variable, 0) for variable in _addressed(functions)}
     for function in functions:
-        for s in statements(function.body):
-            match s:
-                case Assign(target=LValue() as target, value=value) if (named := named_scalar(target)) in asked:
-                    assert named is not None
-                    given.setdefault(named, []).append(value)
-                case Declare(variable=variable, value=Expr() as value) if (variable, 0) in asked:
-                    given.setdefault((variable, 0), []).append(value)
-                case For(counter=variable):
-                    lost.add((variable, 0))
+        lost |= {(s.counter, 0) for s in statements(function.body) if isinstance(s, For)}
+        for target, value in given_values(function.body):
+            if (named := named_scalar(target)) is not None and named in asked:
+                given.setdefault(named, []).append(value)
     found: dict[int, SignedWord] = {}
     for named, values in given.items():
         words = [_word(value) or _returned(value) for value in values if not isinstance(bare(value), Const)]
@@ -118,7 +113,7 @@ def _widened(functions: list[Function]) -> dict[int, SignedWord]:
     return found
 
 
-@once
+@of_all
 def _addressed(function: Function) -> set[Variable]:
     return addressed(within(function.body))
 
@@ -173,12 +168,9 @@ def _results(call: Call) -> list[Expr]:
     """The words without a sign that the function of a call returns; none if it returns anything else."""
     body = call.function.body
     given: dict[Variable, list[Expr]] = {}
-    for s in statements(body):
-        match s:
-            case Assign(target=LValue(root=Variable(kind="local") as variable), value=value):
-                given.setdefault(variable, []).append(value)
-            case Declare(variable=variable, value=Expr() as value):
-                given.setdefault(variable, []).append(value)
+    for target, value in given_values(body):
+        if isinstance(target.root, Variable) and target.root.kind != "parameter":
+            given.setdefault(target.root, []).append(value)
     words: list[Expr | None] = []
     for s in statements(body):
         match s:
@@ -278,12 +270,9 @@ def _words_of_24_bits(function: Function) -> dict[int, SignedWord] | None:
             case Binary(op="<<", left=Load(ctype=IntType(bits=32)), right=Const(value=8)):
                 return None  # the sign comes to bit 31, and back by a shift to the right
     composed: dict[Variable, set[int]] = {}
-    for s in statements(function.body):
-        match s:
-            case Assign(target=LValue(root=Variable() as variable, indices=[]), value=value):
-                composed.setdefault(variable, set()).update(_shifts(value))
-            case Declare(variable=variable, value=Expr() as value):
-                composed.setdefault(variable, set()).update(_shifts(value))
+    for target, value in given_values(function.body):
+        if isinstance(target.root, Variable) and not target.indices:
+            composed.setdefault(target.root, set()).update(_shifts(value))
     for p in nodes:
         match p:
             case Convert(ctype=IntType(signed=True, bits=32), operand=Expr(ctype=IntType(bits=32)) as whole):

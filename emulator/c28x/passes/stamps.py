@@ -32,7 +32,6 @@ from emulator.c28x.tree import (
     Conditional,
     Const,
     Convert,
-    Declare,
     Expr,
     Function,
     FunctionRef,
@@ -51,6 +50,7 @@ from emulator.c28x.tree_queries import (
     assigned,
     bare,
     different,
+    gives,
     once,
     own_nodes,
     parts,
@@ -187,14 +187,10 @@ class Stamps:
         cut: dict[Key, tuple[Function, Stmt, Expr]] = {}
         for function in self.functions if self.kinds else ():
             for s in statements(function.body):
-                value: Any = None
-                key: Key | None = None
-                match s:
-                    case Assign(target=LValue() as target, value=value):
-                        key = key_of(target)
-                    case Declare(variable=variable, value=Expr() as value):
-                        key = (variable, 0)
-                stamp = _cut(value)
+                given = gives(s)
+                if given is None:
+                    continue
+                key, stamp = key_of(given[0]), _cut(given[1])
                 if key is not None and stamp is not None and self.kind(stamp) == STAMP:
                     cut.setdefault(key, (function, s, stamp))
         for p in (p for function in self.functions if cut for p in within(function.body)):
@@ -308,15 +304,11 @@ def _collected(function: Function) -> tuple[list[tuple[Key, Expr]], list[tuple[K
     given: list[tuple[Key, Expr]] = []
     same: list[tuple[Key, Key]] = []
     for s in statements(function.body):
-        match s:
-            case Assign(target=LValue() as target, value=value):
-                key = key_of(target)
-                if key is not None and not _counts(s):
-                    given.append((key, value))
-            case Declare(variable=variable, value=Expr() as value):
-                given.append(((variable, 0), value))
-            case Return(value=Expr() as value):
-                given.append((("result", function.path), value))
+        if isinstance(s, Return) and s.value is not None:
+            given.append((("result", function.path), s.value))
+        elif (found := gives(s)) is not None and not (isinstance(s, Assign) and _counts(s)):
+            key = key_of(found[0])
+            given += [(key, found[1])] if key is not None else []
         for p in own_nodes(s):
             if isinstance(p, Call):
                 _collect_passed(p, given, same)

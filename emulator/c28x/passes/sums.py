@@ -26,7 +26,17 @@ from emulator.c28x.tree import (
     Stmt,
     Unary,
 )  # fmt: skip
-from emulator.c28x.tree_queries import NamedScalar, bare, blocks, named_scalar, once, own_nodes, statements, within
+from emulator.c28x.tree_queries import (
+    NamedScalar,
+    bare,
+    blocks,
+    given_values,
+    named_scalar,
+    once,
+    own_nodes,
+    statements,
+    within,
+)
 
 #: The quotient that takes a word's octets apart.
 _OCTET: Final = 256
@@ -53,20 +63,12 @@ def _uses(function: Function) -> tuple[set[NamedScalar], set[NamedScalar], list[
     """The scalars that a function takes for numbers, and for bits; its copies of one scalar to another."""
     numbers: set[NamedScalar] = set()
     bits: set[NamedScalar] = set()
-    copies: list[tuple[NamedScalar, NamedScalar]] = []
     for p in within(function.body):
         _use(p, numbers, bits)
-    for s in statements(function.body):
-        match s:
-            case Assign(target=LValue() as target, value=value):
-                to = named_scalar(target)
-            case Declare(variable=variable, value=Expr() as value):
-                to = (variable, 0)
-            case _:
-                continue
-        read = _scalar(value)
-        if to is not None and read is not None:
-            copies.append((to, read))
+    copies = [
+        (to, read) for target, value in given_values(function.body)
+        if (to := named_scalar(target)) is not None and (read := _scalar(value)) is not None
+    ]  # fmt: skip
     return numbers, bits, copies
 
 

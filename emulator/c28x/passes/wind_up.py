@@ -52,7 +52,7 @@ from emulator.c28x.tree import (
     Stmt,
     Variable,
 )
-from emulator.c28x.tree_queries import assigned, bare, blocks, own_nodes, parts, statements
+from emulator.c28x.tree_queries import assigned, bare, blocks, given_values, own_nodes, parts, statements, within
 
 #: Functions of the libraries that limit a value, their first argument or any.
 _LIMITERS: Final = frozenset({
@@ -120,14 +120,7 @@ def open_regulators(functions: Iterable[Function]) -> list[OpenRegulator]:
 def _sums(function: Function) -> Iterator[IntegralSum]:
     """The statements of a function that add to an object which outlasts it, also in a local that is stored there."""
     stored = _stored_locals(function)
-    for s in statements(function.body):
-        match s:
-            case Assign(target=LValue() as target, value=value):
-                pass
-            case Declare(variable=variable, value=Expr() as value):
-                target = LValue(variable.ctype, variable)
-            case _:
-                continue
+    for target, value in given_values(function.body):
         held, summed = key_of(target), bare(value)
         target = stored.get(held or (), target)
         key, ctype = key_of(target), target.ctype
@@ -213,18 +206,11 @@ def _regulator(added: IntegralSum, sides: frozenset[str]) -> OpenRegulator | Non
 
 def _outputs(function: Function) -> Iterator[tuple[Expr, list[Expr]]]:
     """The sums that a function limits, each with the limited values."""
-    given: list[tuple[LValue | Variable, Expr]] = []
-    for s in statements(function.body):
-        match s:
-            case Assign(target=LValue() as object, value=value):
-                given.append((object, value))
-            case Declare(variable=variable, value=Expr() as value):
-                given.append((variable, value))
-        for p in own_nodes(s):
-            operand = limited_operand(p)
-            if operand is not None and _summed(operand):
-                yield operand, [p]
-    for target, value in given:
+    for p in within(function.body):
+        operand = limited_operand(p)
+        if operand is not None and _summed(operand):
+            yield operand, [p]
+    for target, value in given_values(function.body):
         if _summed(bare(value)):
             limited = [e for s in statements(function.body) for e in _limited(s, target)]
             if limited:
@@ -358,12 +344,9 @@ def _differs(added: IntegralSum, common: set[Key]) -> bool:
     """Whether what is added is an error: a difference, or a parameter."""
     if _subtracts(added.addend):
         return True
-    for s in statements(added.function.body):
-        match s:
-            case Assign(target=LValue() as target, value=value) if key_of(target) in common and _subtracts(value):
-                return True
-            case Declare(variable=variable, value=Expr() as value) if (variable, 0) in common and _subtracts(value):
-                return True
+    for target, value in given_values(added.function.body):
+        if key_of(target) in common and _subtracts(value):
+            return True
     return any((parameter, 0) in common for parameter in added.function.parameters)
 
 
