@@ -35,7 +35,7 @@ from emulator.c28x.objects import (
 )
 from emulator.c28x.options import CHARGE_BY_CALL, CompileOptions
 from emulator.c28x.program import type_named
-from emulator.c28x.rts_functions import Rts
+from emulator.c28x.rts_functions import library
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.symbols import EnumType, Module
 from emulator.c28x.tree import Function, Variable
@@ -249,14 +249,9 @@ def bind(
     `externs` replaces externs or firmware functions by name.  A program that was compiled with `watch` is watched.
     `built` is that of `Linked`.
     """
-    rts = Rts(runtime)
-    implemented: dict[str, Callable[..., Any]] = {
-        name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")
-    }
-    implemented.update(system.externs())
     linked = Linked(
-        program, runtime, registers=system.register, externs=implemented, replaced=externs or {}, coverage=coverage,
-        built=built,
+        program, runtime, registers=system.register, externs=library(runtime) | dict(system.externs()),
+        replaced=externs or {}, coverage=coverage, built=built,
     )  # fmt: skip
     system.kernel.core.double = runtime.double
     if program.options.watch:

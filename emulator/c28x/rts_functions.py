@@ -8,12 +8,15 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from fractions import Fraction
-from typing import Final
+from typing import Any, Final
 
 from emulator.c28x.arithmetic import TINY, bits_float, f32, float_bits
 from emulator.c28x.memory import Pointer
+from emulator.c28x.rts_math import Mathematics
 from emulator.c28x.rts_printf import Printing
+from emulator.c28x.runtime import Runtime
 
 _NUMBER: Final = re.compile(r"[ \t\n\v\f\r]*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)", re.ASCII)
 _SPECIAL: Final = re.compile(r"[ \t\n\v\f\r]*([+-]?)(nan|inf(?:inity)?)", re.IGNORECASE)
@@ -79,6 +82,16 @@ class Rts(Printing):
             self._runtime.findings.report("overflow", message, object=name, value=x)
             return x
         return x if x >= 0 else -x
+
+
+def library(runtime: Runtime) -> dict[str, Callable[..., Any]]:
+    """The functions of the library by name; those of `long double` in `math.h` have an `l` behind it."""
+    wide = Mathematics(runtime, wide=True)
+    return _named(Rts(runtime)) | {f"{name}l": function for name, function in _named(wide).items()}
+
+
+def _named(functions: Mathematics) -> dict[str, Callable[..., Any]]:
+    return {name: getattr(functions, name) for name in dir(functions) if not name.startswith("_")}
 
 
 def round_decimal(text: str) -> float:

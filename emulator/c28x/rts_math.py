@@ -18,20 +18,21 @@ _SOFTWARE: Final = 10
 
 
 class Mathematics:
-    """Functions of real numbers."""
+    """Functions of real numbers; `wide`: of `long double`, not of `float`."""
 
-    def __init__(self, runtime: Runtime) -> None:
+    def __init__(self, runtime: Runtime, *, wide: bool = False) -> None:
         self._runtime = runtime
+        self._wide = wide
 
     def _charge(self, cycles: int) -> None:
         self._runtime.clock.charge(cycles)
 
-    def _value(self, cycles: int, function: Callable[..., float], *arguments: float, wide: bool = False) -> float:
-        """The value of `function`, rounded to 32 bits unless it is `wide`.
+    def _value(self, cycles: int, function: Callable[..., float], *arguments: float) -> float:
+        """The value of `function`, which takes so many cycles in 32 bits.
 
         It is NaN where the function is undefined, and infinity on overflow and at poles.
         """
-        self._charge(cycles)
+        self._charge(_SOFTWARE * cycles if self._wide else cycles)
         try:
             result = function(*arguments)
         except ValueError:
@@ -40,7 +41,7 @@ class Mathematics:
             result = math.inf
         except ZeroDivisionError:
             result = math.inf
-        if not wide:
+        if not self._wide:
             result = f32(result)
         if not math.isfinite(result) and all(math.isfinite(a) for a in arguments):
             name = function.__name__
@@ -106,72 +107,6 @@ class Mathematics:
 
     def fabs(self, x: float) -> float:
         """The absolute value."""
-        self._charge(4)
-        return abs(x)
-
-    # In 64 bits
-
-    def _wide(self, cycles: int, function: Callable[..., float], *arguments: float) -> float:
-        return self._value(_SOFTWARE * cycles, function, *arguments, wide=True)
-
-    def sinl(self, x: float) -> float:
-        """`sin` of a `long double`."""
-        return self._wide(80, math.sin, x)
-
-    def cosl(self, x: float) -> float:
-        """`cos` of a `long double`."""
-        return self._wide(80, math.cos, x)
-
-    def tanl(self, x: float) -> float:
-        """`tan` of a `long double`."""
-        return self._wide(120, math.tan, x)
-
-    def asinl(self, x: float) -> float:
-        """`asin` of a `long double`."""
-        return self._wide(140, math.asin, x)
-
-    def acosl(self, x: float) -> float:
-        """`acos` of a `long double`."""
-        return self._wide(140, math.acos, x)
-
-    def atanl(self, x: float) -> float:
-        """`atan` of a `long double`."""
-        return self._wide(100, math.atan, x)
-
-    def atan2l(self, y: float, x: float) -> float:
-        """`atan2` of `long double`s."""
-        return self._wide(120, math.atan2, y, x)
-
-    def expl(self, x: float) -> float:
-        """`exp` of a `long double`."""
-        return self._wide(120, math.exp, x)
-
-    def logl(self, x: float) -> float:
-        """`log` of a `long double`."""
-        return self._wide(120, math.log, x)
-
-    def powl(self, x: float, y: float) -> float:
-        """`pow` of `long double`s."""
-        return self._wide(250, math.pow, x, y)
-
-    def sqrtl(self, x: float) -> float:
-        """`sqrt` of a `long double`."""
-        return self._wide(40, math.sqrt, x)
-
-    def floorl(self, x: float) -> float:
-        """`floor` of a `long double`."""
-        return self._wide(20, _whole_below, x)
-
-    def ceill(self, x: float) -> float:
-        """`ceil` of a `long double`."""
-        return self._wide(20, _whole_above, x)
-
-    def fmodl(self, x: float, y: float) -> float:
-        """`fmod` of `long double`s."""
-        return self._wide(150, math.fmod, x, y)
-
-    def fabsl(self, x: float) -> float:
-        """`fabs` of a `long double`."""
         self._charge(4)
         return abs(x)
 

@@ -131,6 +131,12 @@ class RuntimeSite:
         self.initial: dict[str, Any] = {}
         self.planted: dict[int, Any] = {}
 
+    @property
+    def integer(self) -> IntType:
+        """Its type, where that is an integer's."""
+        assert isinstance(self.ctype, IntType)
+        return self.ctype
+
 
 class RegulatorState:
     """What was seen last of a regulator: the place of its sum, the integral's share of the output, the output."""
@@ -914,8 +920,7 @@ class Runtime:
     def overflow(self, value: int, number: int) -> int:
         """A signed result that does not fit its type: report it, and wrap it as the hardware does (OVM = 0)."""
         site = self.sites[number]
-        ctype = site.ctype
-        assert isinstance(ctype, IntType)
+        ctype = site.integer
         wrapped = ctype.wrap(value)
         if site.check.kind == "shift" and not site.check.widened and 0 <= value <= 2 * ctype.high + 1:
             return wrapped  # a bit was shifted into the sign bit, as in every mask for bit 15; no bit is lost
@@ -939,8 +944,7 @@ class Runtime:
         A difference of two variables that wraps to a small number gives no finding: elapsed counts are computed so.
         """
         site = self.sites[number]
-        ctype = site.ctype
-        assert isinstance(ctype, IntType)
+        ctype = site.integer
         result = ctype.wrap(value)
         if site.check.difference and value < -(ctype.high // 2 + 1):
             return result
@@ -962,8 +966,7 @@ class Runtime:
     def stamps(self, a: int, op: str, b: int, number: int) -> bool:
         """Compare two stamps of a free-running counter directly; report it once the counter has wrapped."""
         site = self.sites[number]
-        ctype = site.ctype
-        assert isinstance(ctype, IntType)
+        ctype = site.integer
         half = ctype.high // 2 + 1
         outcome = COMPARE[op](a, b)
         if site.check.kind == "equal, left":
@@ -990,8 +993,7 @@ class Runtime:
     def extended(self, left: int, right: int, op: str, number: int) -> bool:
         """Compare a 32-bit number with one that is cut to an `int` first; report it if that makes it negative."""
         site = self.sites[number]
-        ctype = site.ctype
-        assert isinstance(ctype, IntType)
+        ctype = site.integer
         whole, other = (left, right) if site.check.kind == "left" else (right, left)
         cut = ctype.wrap(whole)
         outcome = bool(COMPARE[op](cut, other))
@@ -1003,8 +1005,7 @@ class Runtime:
     def past(self, value: int, number: int) -> int:
         """The signed time since a stamp is below 0: more than half of the counter's range has passed."""
         site = self.sites[number]
-        ctype = site.ctype
-        assert isinstance(ctype, IntType)
+        ctype = site.integer
         if value < ctype.low // 8:  # a smaller difference may be a stamp that an interrupt has just renewed
             message = f"{site.name} is {value % (2 * ctype.high + 2)} counts, which a signed {ctype} takes for {value}"
             self.hit(site, "stamp-compare", message, value)
@@ -1013,8 +1014,7 @@ class Runtime:
     def narrowed(self, value: int, number: int) -> int:
         """A `long` that is converted to an `int` without a cast and does not fit."""
         site = self.sites[number]
-        ctype = site.ctype
-        assert isinstance(ctype, IntType)
+        ctype = site.integer
         kept = ctype.wrap(value)
         message = f"{site.name} is {value}, which does not fit a {ctype.bits}-bit {ctype}: it becomes {kept}"
         self.hit(site, "narrowed", message, value)
@@ -1023,8 +1023,7 @@ class Runtime:
     def fields(self, value: int, terms: list[int], number: int) -> int:
         """An OR of shifted fields, of which two have a bit in common."""
         site = self.sites[number]
-        ctype = site.ctype
-        assert isinstance(ctype, IntType)
+        ctype = site.integer
         mask = (1 << ctype.bits) - 1
         for lower, upper in site.check.dimensions:
             common = terms[lower] & terms[upper] & mask
@@ -1112,8 +1111,7 @@ class Runtime:
         site = self.sites[number]
         if site.check.kind == "small" and value < SMALL:
             return value
-        ctype = site.ctype
-        assert isinstance(ctype, IntType)
+        ctype = site.integer
         taken = value & (1 << ctype.bits) - 1
         message = f"{site.name} is {value}: taken as unsigned it is {taken}, which {site.check.widened}"
         self.hit(site, "sign-lost", message, value)
@@ -1138,8 +1136,7 @@ class Runtime:
     def shifted_sign(self, value: int, number: int) -> int:
         """A signed shift register whose highest bit is set, where it is shifted to the right."""
         site = self.sites[number]
-        ctype = site.ctype
-        assert isinstance(ctype, IntType)
+        ctype = site.integer
         bits = f"{value & 2 * ctype.high + 1:#x}"
         message = f"{site.name} holds the bits {bits}, as an {ctype} {value}: {site.check.widened}"
         self.hit(site, "sign-extended", message, value)
@@ -1226,8 +1223,7 @@ class Runtime:
     def octet(self, value: int, number: int) -> int:
         """A value that does not fit an octet is converted to a character, which has 16 bits here."""
         site = self.sites[number]
-        ctype = site.ctype
-        assert isinstance(ctype, IntType)
+        ctype = site.integer
         kept = ctype.wrap(value)
         octet = value & 0xFF
         if site.check.kind == "sign" or ctype.name == "signed char":
@@ -1268,8 +1264,7 @@ class Runtime:
     def float_to_int(self, value: float, number: int) -> int:
         """Truncate toward zero.  Outside of the range of the type, report it; the policy decides the result."""
         site = self.sites[number]
-        ctype = site.ctype
-        assert isinstance(ctype, IntType)
+        ctype = site.integer
         low, high = ctype.low, ctype.high
         if low - 1.0 < value < high + 1.0 or value == low:  # `low - 1.0` is `low` for 64 bits
             return int(value)
@@ -1313,8 +1308,7 @@ class Runtime:
     def divide_ints(self, a: int, b: int, number: int) -> int:
         """Integer division.  By zero it does not trap (CHOICE: all ones, the result of the SUBCU loop)."""
         site = self.sites[number]
-        ctype = site.ctype
-        assert isinstance(ctype, IntType)
+        ctype = site.integer
         if b == 0:
             self.hit(site, "division-by-zero", f"{site.name}: {a} is divided by zero", a)
             return ctype.wrap(-1)
@@ -1324,8 +1318,7 @@ class Runtime:
     def modulo_ints(self, a: int, b: int, number: int) -> int:
         """Remainder.  By zero it is the dividend (CHOICE)."""
         site = self.sites[number]
-        ctype = site.ctype
-        assert isinstance(ctype, IntType)
+        ctype = site.integer
         if b == 0:
             self.hit(site, "division-by-zero", f"{site.name}: {a} modulo zero", a)
             return a
@@ -1338,8 +1331,7 @@ class Runtime:
         they take the lowest bits of the count, T(3:0) or T(4:0) (SPRU430 table 2-11).
         """
         site = self.sites[number]
-        ctype = site.ctype
-        assert isinstance(ctype, IntType)
+        ctype = site.integer
         if not 0 <= count < ctype.bits:
             self.hit(site, "shift-range", f"{site.name} shifts a {ctype.bits}-bit value by {count}", count)
             return 0

@@ -8,22 +8,15 @@ from emulator.c28x.memory import Object
 
 
 class Watcher:
-    """Is told of each access to a file-scope object, or to a local whose address was taken, right before it happens."""
+    """Is told of each access to a file-scope object, or to a local whose address was taken, right before it happens.
+
+    This one lets every access pass: where the statements of the image are followed instead.
+    """
 
     __slots__ = ()
 
     def touch(self, obj: Object, word: int, write: bool) -> None:
         """The running function reads or writes the scalar at word `word` of an object."""
-        raise NotImplementedError
-
-
-class NoWatcher(Watcher):
-    """Lets every access pass: of an image that is linked with `watch`, but whose statements are followed instead."""
-
-    __slots__ = ()
-
-    def touch(self, obj: Object, word: int, write: bool) -> None:
-        """Nobody is told."""
 
 
 class CallingWatcher(Watcher):

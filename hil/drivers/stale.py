@@ -44,7 +44,7 @@ from emulator.c28x.tree import (
     Switch,
 )
 from emulator.c28x.tree_queries import register_text, source_text, statements
-from emulator.c28x.watcher import NoWatcher
+from emulator.c28x.watcher import Watcher
 from emulator.clock import CYCLES_PER_MS
 from emulator.pin_functions import PIN_FUNCTIONS
 from emulator.registers.cell import Cell
@@ -135,7 +135,7 @@ class AgeWatch:
         self._told: set[tuple[Place, str]] = set()
         #: When the sources were cut off.
         self._cut = 0
-        image.linked.watch_with(NoWatcher())
+        image.linked.watch_with(Watcher())
         self._follower = ValueFollower(image, functions, self._reading, self._began)
         board.kernel.mailboxes.taken.connect(self._taken)
         board.vectors.began.connect(self._interrupted)

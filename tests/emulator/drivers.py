@@ -8,7 +8,7 @@ from typing import Any
 from emulator.c28x.findings import Finding
 from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
-from emulator.c28x.rts_functions import Rts
+from emulator.c28x.rts_functions import library
 from emulator.c28x.runtime import Runtime
 from emulator.chip import Chip
 from emulator.clock import CYCLES_PER_MS
@@ -56,8 +56,7 @@ class Driver:
         runtime = Runtime(board.clock, board.cpu, board.findings, board.memory)
         program = Program()
         program.add("drv", "drv.py", HEADER + source)
-        rts = Rts(runtime)
-        externs = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
+        externs = library(runtime)
         externs |= board.externs()
         self.linked = link(
             program, runtime, CompileOptions(watch=False), registers=board.register, externs=externs, replaced={}
@@ -100,8 +99,7 @@ class CChip:
     def __init__(self, text: str) -> None:
         self.chip = chip = Chip(rng=Random(0))
         runtime = Runtime(chip.clock, chip.cpu, chip.findings, chip.memory, register_at=chip.register_at)
-        rts = Rts(runtime)
-        externs: dict[str, Any] = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
+        externs: dict[str, Any] = library(runtime)
         program = Program()
         program.add("drv", "drv.c", C_HEADER + text)
         self.linked = link(

@@ -15,7 +15,7 @@ from emulator.c28x.compiled_program import Compiled
 from emulator.c28x.link import Linked
 from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
-from emulator.c28x.rts_functions import Rts
+from emulator.c28x.rts_functions import library
 from emulator.c28x.runtime import Runtime
 from emulator.chip import Chip
 from emulator.device_functions import DeviceFunctions
@@ -123,8 +123,7 @@ def run(name: str, gaps: list[tuple[int, str]], *, skips: bool) -> tuple[Any, in
     """What a function leaves while the inputs change after each of `gaps`; the cycles that were executed."""
     chip = Chip(rng=Random(0))
     runtime = Runtime(chip.clock, chip.cpu, chip.findings, chip.memory, register_at=chip.register_at)
-    rts = Rts(runtime)
-    externs: dict[str, Any] = {each: getattr(rts, each) for each in dir(rts) if not each.startswith("_")}
+    externs: dict[str, Any] = library(runtime)
     linked = Linked(
         compiled(), runtime, registers=chip.register, externs=externs | DeviceFunctions(chip).externs, replaced={}
     )

@@ -10,7 +10,7 @@ from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
 from emulator.c28x.memory import Memory
 from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
-from emulator.c28x.rts_functions import Rts
+from emulator.c28x.rts_functions import library
 from emulator.c28x.runtime import Runtime
 from emulator.clock import Clock
 from emulator.cpu import Cpu
@@ -38,8 +38,7 @@ class Workshop:
         self.runtime = Runtime(self.clock, self.cpu, self.findings, self.memory, **policies)
         program = Program()
         program.add("drv", "drv.py", header + source)
-        rts = Rts(self.runtime)
-        implemented = {n: getattr(rts, n) for n in dir(rts) if not n.startswith("_")} | (externs or {})
+        implemented = library(self.runtime) | (externs or {})
         options = CompileOptions(
             residue=self.runtime.fill == "stack", keep_locals=keep_locals, watch=watch, static=static,
             ieee=policies.get("divide", "ieee") == "ieee", coverage=coverage is not None, steps=steps,

@@ -6,7 +6,7 @@ from typing import Any
 
 from emulator.c28x.memory import Memory, Pointer
 from emulator.c28x.options import CompileOptions
-from emulator.c28x.rts_functions import Rts
+from emulator.c28x.rts_functions import library
 from emulator.c28x.runtime import Runtime
 from emulator.sysbios.core import KernelError
 from emulator.sysbios.watch.kernel_watch import KernelWatch
@@ -88,8 +88,7 @@ class CProgram:
         self.bench = b = Bench(cost_scale=1.0, memory=memory, **switches)
         self.findings = b.findings
         runtime = Runtime(b.clock, b.cpu, b.findings, memory)
-        rts = Rts(runtime)
-        externs = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")} | dict(b.kernel.externs)
+        externs = library(runtime) | dict(b.kernel.externs)
         self.lines = (HEADERS + text).splitlines()
         self.linked = link(
             read({NAME: HEADERS + text}), runtime, CompileOptions(watch=watch), registers=lambda block, name: None,

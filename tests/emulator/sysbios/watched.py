@@ -10,7 +10,7 @@ from emulator.c28x.link import Linked
 from emulator.c28x.memory import Memory
 from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
-from emulator.c28x.rts_functions import Rts
+from emulator.c28x.rts_functions import library
 from emulator.c28x.runtime import Runtime
 from emulator.chip import delay_us
 from emulator.rules.kernel import RULES
@@ -165,8 +165,7 @@ def _link(
 ) -> Linked:  # fmt: skip
     program = Program()
     program.add("drv", "drv.py", HEADER + source)
-    rts = Rts(runtime)
-    implemented = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")} | dict(externs)
+    implemented = library(runtime) | dict(externs)
     return link(program, runtime, CompileOptions(watch=watch), registers=registers, externs=implemented, replaced={})
 
 

@@ -9,7 +9,7 @@ import pytest
 from emulator.c28x.link import Linked
 from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
-from emulator.c28x.rts_functions import Rts
+from emulator.c28x.rts_functions import library
 from emulator.c28x.runtime import EndlessPoll
 from emulator.c28x.symbols import SourceError
 from emulator.image import runtime_of
@@ -35,8 +35,7 @@ class Robot:
     def __init__(self, text: str) -> None:
         self.board = board = System()
         runtime = runtime_of(board)
-        rts = Rts(runtime)
-        externs: dict[str, Any] = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
+        externs: dict[str, Any] = library(runtime)
         program = Program()
         program.add("drv", "drv.c", text)
         self.linked: Linked = link(

@@ -14,7 +14,7 @@ from emulator.c28x.findings import Findings
 from emulator.c28x.memory import Memory
 from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
-from emulator.c28x.rts_functions import Rts
+from emulator.c28x.rts_functions import library
 from emulator.c28x.runtime import Runtime
 from emulator.c28x.symbols import SourceError
 from emulator.clock import Clock
@@ -40,8 +40,7 @@ class CWorkshop:
         self.cpu = Cpu(self.clock, self.findings)
         self.memory = Memory()
         self.runtime = Runtime(self.clock, self.cpu, self.findings, self.memory, **policies)
-        rts = Rts(self.runtime)
-        implemented = {name: getattr(rts, name) for name in dir(rts) if not name.startswith("_")}
+        implemented = library(self.runtime)
         files = {NAME: files} if isinstance(files, str) else files
         options = CompileOptions(
             residue=self.runtime.fill == "stack", watch=watch, static=static,
