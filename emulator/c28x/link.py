@@ -9,7 +9,7 @@ from __future__ import annotations
 import builtins
 from collections.abc import Callable, Mapping, Sequence
 from inspect import unwrap
-from itertools import zip_longest
+from itertools import takewhile, zip_longest
 from math import isinf
 from numbers import Integral, Real
 from types import CodeType
@@ -90,8 +90,8 @@ class Linked:
         self.externs = intrinsics(cast(InterruptMask, runtime.cpu)) | dict(externs)
         self._iqmath = IQmath(runtime)
         self.replaced = dict(replaced)
-        #: Whether `replace` has redirected calls of functions of the program.
-        self._redirected = False
+        #: Whether calls of functions of the program go elsewhere.
+        self._redirected = any(each.function.name in replaced for each in compiled.functions)
         #: The counters of an image that counts statements (`CompileOptions.coverage`).
         self.coverage = coverage or Coverage()
         self.objects: dict[str, Object] = {}
@@ -154,8 +154,7 @@ class Linked:
 
         Not if functions of the program are replaced: what stands for them does not say whether it changes anything.
         """
-        redirected = any(each.function.name in self.replaced for each in self.compiled.functions)
-        self.runtime.skips_turns = not redirected and not self._redirected
+        self.runtime.skips_turns = not self._redirected
 
     # Objects
 
@@ -177,13 +176,8 @@ class Linked:
 
     def _modules(self, built: Callable[[str], Any]) -> list[Any]:
         """The module of each part; none if one is not compiled."""
-        modules = []
-        for part in self.parts:
-            module = built(part.identity)
-            if module is None:
-                return []
-            modules.append(module)
-        return modules
+        modules = [*takewhile(bool, (built(part.identity) for part in self.parts))]
+        return modules if len(modules) == len(self.parts) else []
 
     def _some_register(self, part: ProgramPart) -> Any:
         """Any register that the functions of a part use, or None if they use none."""

@@ -234,30 +234,19 @@ class Cell:
                 write(bits, lanes)
 
             return modify_clear
-        if self.on_write is None and not self.eallow and not self.unmodelled_mask:
-            writable = self.rw_mask
-            if not self.w1c_mask and not self.w1s_mask and writable == self.read_mask and self.bits == 16:
+        plain = self.on_write is None and not self.unmodelled_mask and self.rw_mask == shown and self.bits == 16
+        if plain and not (self.eallow and self.write_only):
+            gate = self.gate = self.block.cpu if self.eallow else OPEN
 
-                def modify_plain(keep: int, bits: int, lanes: int) -> None:
-                    register.value = (register.value & keep | bits) & writable
-
-                self.gate = OPEN
-                return modify_plain
-        if self.write_only:
-            return self._modify
-        if self.eallow and self.on_write is None and not self.unmodelled_mask and self.bits == 16 and (
-            self.rw_mask == shown
-        ):
-            cpu, inner = self.block.cpu, self.rw_mask
-
-            def modify_protected(keep: int, bits: int, lanes: int) -> None:
-                if cpu.eallow:
-                    register.value = (register.value & keep | bits) & inner
+            def modify_in_place(keep: int, bits: int, lanes: int) -> None:
+                if gate.eallow:
+                    register.value = (register.value & keep | bits) & shown
                 else:
                     write(register.value & keep | bits, lanes)
 
-            self.gate = cpu
-            return modify_protected
+            return modify_in_place
+        if self.write_only:
+            return self._modify
 
         def modify_stored(keep: int, bits: int, lanes: int) -> None:
             write(register.value & keep | bits, lanes)
