@@ -41,7 +41,18 @@ from emulator.c28x.tree import (
     Variable,
     Where,
 )
-from emulator.c28x.tree_queries import bare, blocks, last_loop, own_nodes, parts, statements, within
+from emulator.c28x.tree_queries import (
+    bare,
+    below,
+    blocks,
+    called,
+    last_loop,
+    own_nodes,
+    parts,
+    reached,
+    statements,
+    within,
+)
 from emulator.chip import ECAP_INPUT, XINT_INPUT
 from emulator.object_values import ObjectValues
 from emulator.peripherals.dma import CHANNELS, CHINTE, CONTINUOUS, ONESHOT, PERINTE, RUN
@@ -181,17 +192,14 @@ class RegisterWrites:
             for module in modules for variable in module.variables for value in variable.initial or ()
             for part in parts(value) if isinstance(part, FunctionRef)
         }  # fmt: skip
-        waiting = [f.path for f in own.values() if f.name == "main" or f.interrupt or f.path in named]
-        seen: set[str] = set()
-        while waiting:
-            path = waiting.pop()
-            if path in seen or path not in own:
-                continue
-            seen.add(path)
-            waiting += own[path].calls
-            for part in within(own[path].body):
-                if isinstance(part, FunctionRef):
-                    waiting.append(part.function.path)
+        first = [f.path for f in own.values() if f.name == "main" or f.interrupt or f.path in named]
+
+        def leads(path: str) -> set[str]:
+            if path not in own:
+                return set()
+            return own[path].calls.union(p.function.path for p in within(own[path].body) if isinstance(p, FunctionRef))
+
+        seen = set(reached(first, leads))
         return [f for f in own.values() if f.path in seen]
 
     def _behind_start_up(self, modules: list[Module], own: dict[str, Function]) -> set[Place]:
@@ -205,16 +213,10 @@ class RegisterWrites:
         values = (value for module in modules for variable in module.variables for value in variable.initial or ())
         nodes = [part for value in values for part in parts(value)]
         nodes += [part for f in own.values() for part in within(f.body)]
-        waiting = [f.path for f in own.values() if f.interrupt]
-        waiting += [part.function.path for part in nodes if isinstance(part, FunctionRef)]
-        waiting += [part.function.path for _, body in bodies for part in within(body) if isinstance(part, Call)]
-        seen = {main.path}
-        while waiting:
-            path = waiting.pop()
-            if path not in seen and path in own:
-                seen.add(path)
-                waiting += own[path].calls
-                bodies.append((own[path], own[path].body))
+        first = [f.path for f in own.values() if f.interrupt]
+        first += [part.function.path for part in nodes if isinstance(part, FunctionRef)]
+        first += [path for _, body in bodies for path in called(within(body))]
+        bodies += [(f, f.body) for f in below(first, own) if f is not main]
         return {place for f, body in bodies for s in statements(body) for place in _places(f, s)}
 
     def _of_start_up(self, own: dict[str, Function]) -> set[Place]:

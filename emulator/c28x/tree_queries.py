@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Set
 from dataclasses import fields
 from itertools import chain
 from typing import Any, Final, TypeVar, get_args, get_type_hints
@@ -301,16 +301,30 @@ def all_blocks(body: list[Stmt]) -> Iterator[list[Stmt]]:
             yield from all_blocks(inner)
 
 
+GraphNode = TypeVar("GraphNode", bound=Hashable)
+
+
+def reached(first: Iterable[GraphNode], leads: Callable[[GraphNode], Iterable[GraphNode]]) -> list[GraphNode]:
+    """Some nodes of a graph, and all to which they lead, directly or not."""
+    found: dict[GraphNode, None] = {}
+    waiting = list(first)
+    while waiting:
+        node = waiting.pop()
+        if node not in found:
+            found[node] = None
+            waiting += leads(node)
+    return list(found)
+
+
 def below(paths: Iterable[str], own: Mapping[str, Function]) -> list[Function]:
     """Functions by their paths, and all of `own` that they call, directly or not."""
-    found: dict[str, Function] = {}
-    waiting = list(paths)
-    while waiting:
-        path = waiting.pop()
-        if path in own and path not in found:
-            found[path] = own[path]
-            waiting += own[path].calls
-    return list(found.values())
+    found = reached(paths, lambda path: own[path].calls if path in own else ())
+    return [own[path] for path in found if path in own]
+
+
+def called(nodes: Iterable[Any]) -> list[str]:
+    """The paths of the functions that are called by their names among `nodes`."""
+    return [p.function.path for p in nodes if isinstance(p, Call)]
 
 
 def different(values: Iterable[Any]) -> list[Any]:

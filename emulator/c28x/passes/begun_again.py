@@ -16,8 +16,8 @@ meant: the conditions stand at each use.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
-from typing import Any, Final, TypeVar
+from collections.abc import Iterable, Iterator
+from typing import Any, Final
 
 from emulator.c28x.ctypes import ArrayType, IntType
 from emulator.c28x.passes.declared import line_of
@@ -49,17 +49,18 @@ from emulator.c28x.tree_queries import (
     addressed,
     assigned,
     bare,
+    below,
     blocks,
+    called,
     last_loop,
     own_nodes,
     parts,
+    reached,
     roots,
     runs_function,
     statements,
     within,
 )
-
-_Node = TypeVar("_Node", int, str)
 
 #: Names and comments of flags that are meant to stay.
 _LATCHED: Final = re.compile(r"latch|trip|fault|fail|lock|sticky|perman|for good|until reset", re.IGNORECASE)
@@ -163,7 +164,8 @@ class _Program:
                 for count, branch in _passed(s):
                     to = self._leads(branch, state) if count in self.counts else set()
                     numbers = {value for kind, value in to if kind == "constant"}
-                    if numbers - own and ANYTHING not in to and own & _reached(graph, numbers):
+                    later = set(reached(numbers, lambda number: graph.get(number, set())))
+                    if numbers - own and ANYTHING not in to and own & later:
                         message = (
                             f"nothing begins {count.declaration.name} again: once it has passed this limit, each later "
                             "stay in this state ends at once"
@@ -176,7 +178,7 @@ class _Program:
     def _graph(self, function: Function, switch: Switch, state: Variable) -> dict[int, set[int]] | None:
         """The states, each with those that its case and the statements beside the switch lead to; None: not known."""
         inside = [s for _, body in switch.cases for s in statements(body)]
-        by_cases = _reached({f.path: f.calls for f in self.functions}, _called(inside))
+        by_cases = self._below(inside)
         beside = [s for f in self._elsewhere(function, by_cases) for s in self._again(f)]
         left_out = set(map(id, inside))
         always = self.states.of_statements((s for s in beside if id(s) not in left_out), state, by_cases)
@@ -198,9 +200,13 @@ class _Program:
     def _elsewhere(self, function: Function, by_cases: set[str]) -> list[Function]:
         """The functions that run again and again, but those that the cases of a switch in `function` call."""
         begin = [f.path for f in self.functions if f.interrupt]
-        begin += [path for f in self.functions if f.name == "main" for path in _called(self._again(f))]
-        repeated = _reached({f.path: f.calls for f in self.functions}, begin) - by_cases
+        begin += self._below(s for f in self.functions if f.name == "main" for s in self._again(f))
+        repeated = {f.path for f in below(begin, self.own)} - by_cases
         return [f for f in self.functions if f.path in repeated or f.name == "main" or f is function]
+
+    def _below(self, each: Iterable[Stmt]) -> set[str]:
+        """The paths of the functions that statements themselves call, directly or not."""
+        return {f.path for f in below((path for s in each for path in called(own_nodes(s))), self.own)}
 
     @staticmethod
     def _again(function: Function) -> list[Stmt]:
@@ -225,8 +231,7 @@ class _Program:
                 continue
             if any(step_of(other, count) is not None for other in block):
                 continue  # a text that grows, and is ended anew behind each character
-            called = _reached({f.path: f.calls for f in self.functions}, _called(statements(block)))
-            behind = [each for path in called if path in self.own for each in self.own[path].body]
+            behind = [each for path in self._below(statements(block)) for each in self.own[path].body]
             if any(assigned(other) is count for other in [*statements(block), *statements(behind)]):
                 continue
             used = any(text in _roots_of(p) for later in block[number + 1 :] for p in within([later]) if _passes(p))
@@ -355,22 +360,6 @@ def _passed(s: If) -> Iterator[tuple[Variable, list[Stmt]]]:
             yield count, s.then
         elif falls and test is s.test:
             yield count, s.otherwise
-
-
-def _reached(graph: Mapping[_Node, Collection[_Node]], first: Iterable[_Node]) -> set[_Node]:
-    """What can be reached from some nodes, with these: states, or the functions that are called."""
-    found: set[_Node] = set()
-    waiting = list(first)
-    while waiting:
-        node = waiting.pop()
-        if node not in found:
-            found.add(node)
-            waiting += graph.get(node, ())
-    return found
-
-
-def _called(body: Iterable[Stmt]) -> list[str]:
-    return [p.function.path for s in body for p in own_nodes(s) if isinstance(p, Call)]
 
 
 def _roots_of(e: Any) -> set[Variable]:

@@ -43,13 +43,16 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
     bare,
+    below,
     blocks,
+    called,
     last_loop,
     own_nodes,
     parts,
     register_text,
     source_text,
     statements,
+    within,
 )
 
 #: So many other entrances must agree.
@@ -125,18 +128,9 @@ class _EntranceCheck:
         begin = [f.path for f in self._functions if f.interrupt]
         if loop is None:
             return set(self._functions) - {main}
-        again = list(statements(loop.body))
         for function in self._functions:
-            nodes = (p for s in statements(function.body) for p in own_nodes(s))
-            begin += [p.function.path for p in nodes if isinstance(p, FunctionRef)]
-        begin += [p.function.path for s in again for p in own_nodes(s) if isinstance(p, Call)]
-        found, waiting = {main}, begin
-        while waiting:
-            function_or_none = self._own.get(waiting.pop())
-            if function_or_none is not None and function_or_none not in found:
-                found.add(function_or_none)
-                waiting += function_or_none.calls
-        return found
+            begin += [p.function.path for p in within(function.body) if isinstance(p, FunctionRef)]
+        return {main, *below([*begin, *called(within(loop.body))], self._own)}
 
     def _look(
         self, function: Function, s: Stmt, around: tuple[list[Stmt], ...], entrances: list[_Entrance]

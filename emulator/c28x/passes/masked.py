@@ -34,7 +34,18 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import assigned, bare, last_loop, own_nodes, parts, roots, statements, variables, within
+from emulator.c28x.tree_queries import (
+    assigned,
+    bare,
+    last_loop,
+    own_nodes,
+    parts,
+    reached,
+    roots,
+    statements,
+    variables,
+    within,
+)
 
 #: A function that gives a key -> the functions that switch on again.
 KEYS: Final = {
@@ -69,9 +80,9 @@ def check_masked(function: Function, report: StaticReport) -> None:
     for name in KEYS.keys() & called:
         if not called & KEYS[name] and last_loop(function) is None:
             _check_key(function, name, report)
-    reached = {name for call in _calls(within(function.body)) for name in _reached(call.function, set())}
+    inside = _reached(*(call.function for call in _calls(within(function.body))))
     for kind in SWITCHES if not function.interrupt else ():
-        if not (kind.off & reached and kind.on & reached):
+        if not (kind.off & inside and kind.on & inside):
             continue
         walk = _Walk(kind)
         walk.block(function.body, None)
@@ -110,12 +121,9 @@ def _calls(nodes: Iterable[object]) -> Iterator[Call]:
     return (p for p in nodes if isinstance(p, Call))
 
 
-def _reached(function: Function, seen: set[str]) -> set[str]:
-    """The name of a function, and those of the functions that it calls, directly or not."""
-    if function.path in seen:
-        return set()
-    seen.add(function.path)
-    return {function.name}.union(*(_reached(call.function, seen) for call in _calls(within(function.body))))
+def _reached(*functions: Function) -> set[str]:
+    """The names of functions, and of those that they call, directly or not."""
+    return {f.name for f in reached(functions, lambda f: (call.function for call in _calls(within(f.body))))}
 
 
 def _returned(function: Function) -> bool:
@@ -196,7 +204,7 @@ class _Walk:
 
     def _switches_on(self, function: Function) -> bool:
         """Whether a function, or one that it calls, switches on."""
-        return not self._kind.on.isdisjoint(_reached(function, set()))
+        return not self._kind.on.isdisjoint(_reached(function))
 
     def _switches_off(self, function: Function) -> bool:
         """Whether a function only switches off, without a loop, and gives its caller nothing."""
@@ -204,8 +212,8 @@ class _Walk:
             return True
         if _returned(function) or any(isinstance(s, While | For) for s in statements(function.body)):
             return False
-        reached = _reached(function, set())
-        return not self._kind.off.isdisjoint(reached) and self._kind.on.isdisjoint(reached)
+        inside = _reached(function)
+        return not self._kind.off.isdisjoint(inside) and self._kind.on.isdisjoint(inside)
 
     def _gives_key(self, s: Return, off: Stmt) -> bool:
         """Whether the caller gets the key of what is off, by the result, a pointer or an object at file scope."""

@@ -42,13 +42,16 @@ from emulator.c28x.tree import (
 from emulator.c28x.tree_queries import (
     NamedScalar,
     bare,
+    below,
     blocks,
+    called,
     calls,
     last_loop,
     named_scalar,
     own_nodes,
     parts,
     statements,
+    within,
 )
 
 #: Names of members that say that the others hold.
@@ -137,16 +140,10 @@ class _Marks:
     def _again(self) -> tuple[set[str], set[int]]:
         """The functions that run again and again, and the identities of the statements of `main` that do."""
         loops = [loop for f in self._functions if f.name == "main" and (loop := last_loop(f)) is not None]
-        inner = [s for loop in loops for s in statements(loop.body)]
-        found: set[str] = set()
-        waiting = [f.path for f in self._functions if f.interrupt]
-        waiting += [p.function.path for s in inner for p in own_nodes(s) if isinstance(p, Call)]
-        while waiting:
-            path = waiting.pop()
-            if path in self._by_path and path not in found:
-                found.add(path)
-                waiting += self._by_path[path].calls
-        return found, {id(s) for s in inner}
+        inner = [s for loop in loops for s in loop.body]
+        begin = [f.path for f in self._functions if f.interrupt]
+        found = below([*begin, *called(within(inner))], self._by_path)
+        return {f.path for f in found}, {id(s) for s in statements(inner)}
 
     @staticmethod
     def _beside_data(mark: NamedScalar, s: Assign, block: list[Stmt], tests: list[Expr]) -> bool:

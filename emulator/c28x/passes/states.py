@@ -29,7 +29,6 @@ from emulator.c28x.tree import (
     Assign,
     Binary,
     Break,
-    Call,
     CallPointer,
     Compare,
     Const,
@@ -55,7 +54,9 @@ from emulator.c28x.tree_queries import (
     TURNED,
     addressed,
     bare,
+    below,
     blocks,
+    called,
     own_nodes,
     parts,
     roots,
@@ -197,23 +198,15 @@ class States:
                             leads |= dict.fromkeys(labels or (), to)
                     case While(body=body) | For(body=body):
                         again |= {id(inner) for inner in statements(body)}
-                        repeated += [
-                            p.function.path for inner in statements(body) for p in own_nodes(inner)
-                            if isinstance(p, Call)
-                        ]  # fmt: skip
+                        repeated += called(within(body))
             for state, _, body in _states(f):
                 if state is subject:
                     in_states |= {id(inner) for inner in statements(body)}
-        reached: set[str] = set()
-        while repeated:
-            path = repeated.pop()
-            if path in self.functions and path not in reached:
-                reached.add(path)
-                repeated += self.functions[path].calls
+        repeating = set(below(repeated, self.functions))
         return any(
             w.value != label and id(w.statement) not in in_states
             and not (w.value is not None and leads.get(w.value) == {label})  # that state leads straight back
-            and (w.function.path in reached or id(w.statement) in again)
+            and (w.function in repeating or id(w.statement) in again)
             for w in self.writes.get(subject, [])
         )  # fmt: skip
 
@@ -317,18 +310,11 @@ class States:
 
     def _calls(self, e: Any, *objects: Variable) -> None:
         """Raises _Unclear if a function that an expression calls may write one of the objects."""
-        waiting = [p.function.path for p in parts(e) if isinstance(p, Call)]
         if any(isinstance(p, CallPointer) for p in parts(e)):
             raise _Unclear
-        seen: set[str] = set()
-        while waiting:
-            path = waiting.pop()
-            if path in seen or path not in self.functions:
-                continue
-            seen.add(path)
-            if any(w.function.path == path for v in objects for w in self.writes.get(v, [])):
-                raise _Unclear
-            waiting += self.functions[path].calls
+        inside = below(called(parts(e)), self.functions)
+        if any(w.function in inside for v in objects for w in self.writes.get(v, [])):
+            raise _Unclear
 
     # Equality
 

@@ -47,6 +47,7 @@ from emulator.c28x.tree_queries import (
     blocks,
     own_nodes,
     parts,
+    reached,
     statements,
     variables,
 )
@@ -95,12 +96,7 @@ class WriterAnalysis:
 
     def below(self, path: str) -> set[str]:
         """A function and all functions that it calls, directly or indirectly."""
-        found, waiting = {path}, [path]
-        while waiting:
-            new = self.called.get(waiting.pop(), set()) - found
-            found |= new
-            waiting += new
-        return found
+        return set(reached([path], lambda caller: self.called.get(caller, ())))
 
     def writer(self, variable: Variable, waiting: Function) -> tuple[Function, Stmt] | None:
         """The first function that another thread runs and that writes `variable`; None: there is none."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 from emulator.c28x.link import Linked
+from emulator.c28x.tree_queries import reached
 from emulator.sysbios.kernel import Kernel
 from emulator.sysbios.scheduler import TERMINATED, Task
 from emulator.sysbios.semaphore import Semaphore
@@ -48,15 +49,16 @@ class Posters:
             path = self._linked.path_of(function)
             if path not in self._posted:
                 return None
-            reached = _reached(self._mentioned, path)
-            if any(self._posted[name] & objects for name in reached):
+            inside = self._posted.keys() & reached([path], lambda name: self._mentioned.get(name, set()))
+            if any(self._posted[name] & objects for name in inside):
                 if not isinstance(what, Task):
                     return None
                 found.add(what)
-                left -= reached
+                left -= inside
         for path in self._posted:
             if path.endswith(".main"):  # `main` does not return.  A function whose address it passes is a thread's.
-                left -= _reached(self._called, path)
+                inside = self._posted.keys() & reached([path], lambda name: self._called.get(name, set()))
+                left -= inside
         return found if found and not left else None
 
     def _threads(self) -> Iterator[tuple[Any, Any]]:
@@ -75,15 +77,3 @@ class Posters:
             for value in obj.data:
                 if isinstance(value, Swi):
                     yield value, value.function
-
-
-def _reached(edges: Mapping[str, set[str]], path: str) -> set[str]:
-    """A function, and all functions that `edges` lead to from it."""
-    reached: set[str] = set()
-    waiting = [path]
-    while waiting:
-        here = waiting.pop()
-        if here in edges and here not in reached:
-            reached.add(here)
-            waiting += edges[here]
-    return reached

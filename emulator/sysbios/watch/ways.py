@@ -26,7 +26,7 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )
-from emulator.c28x.tree_queries import assigned, below, blocks, own_nodes, parts, roots, statements
+from emulator.c28x.tree_queries import assigned, below, blocks, called, own_nodes, parts, reached, roots, statements
 
 
 def interrupt_routines(own: dict[str, Function]) -> Iterator[tuple[Function, list[Function]]]:
@@ -61,18 +61,12 @@ def reached_freely(
 ) -> list[Ways]:
     """As `free_ways`, but with all functions that some path of such calls leads to, whoever else calls them."""
     ways = {way.function.path: way for way in _all_ways(functions, telling, told)}
-    called = {path for way in ways.values() for path in way.function.calls if path != way.function.path}
-    waiting = [path for path in ways if path not in called]
-    reached: dict[str, Ways] = {}
-    while waiting:
-        path = waiting.pop()
-        if path in ways and path not in reached:
-            way = reached[path] = ways[path]
-            for statement in way.undecided:
-                waiting += [
-                    part.function.path for part in own_nodes(statement) if isinstance(part, Call)
-                ]
-    return list(reached.values())
+    inner = {path for way in ways.values() for path in way.function.calls if path != way.function.path}
+
+    def freely_called(path: str) -> list[str]:
+        return [name for s in ways[path].undecided for name in called(own_nodes(s)) if name in ways]
+
+    return [ways[path] for path in reached((path for path in ways if path not in inner), freely_called)]
 
 
 def _all_ways(
@@ -123,9 +117,7 @@ class Ways:
             if free:
                 self.undecided.append(statement)
             else:
-                self.decided |= {
-                    part.function.path for part in own_nodes(statement) if isinstance(part, Call)
-                }
+                self.decided.update(called(own_nodes(statement)))
                 root = assigned(statement)
                 if root is not None and root.kind == "global":
                     self.passed_on.add(root.declaration.path)
