@@ -34,7 +34,7 @@ def table(counts: Counter[tuple[str, str]]) -> list[str]:
 def in_forms(pool: ProcessPoolExecutor, forms: Sequence[str], names: Sequence[str], *, right: bool) -> None:
     """Print what is found in the original form and lost in others; with `right`, the false alarms in them."""
     if right:
-        of_c = [driver for driver in drivers() if driver.in_c]
+        of_c = [driver for driver in drivers() if driver.in_c and (not names or driver.name in names)]
         for driver, alarms in zip(of_c, pool.map(false_alarms, of_c, [forms] * len(of_c)), strict=True):
             for form, told in alarms.items():
                 print(f"{form}: {driver.name}: {told or 'silent'}", flush=True)
@@ -58,7 +58,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m tests.corpus", description=__doc__)
     parser.add_argument("names", nargs="*", metavar="CLASS|DRIVER|ID", help="only these")
     parser.add_argument("-j", "--jobs", type=int, default=1, help="so many at a time")
-    parser.add_argument("--right", action="store_true", help="the right drivers instead: every line is a false alarm")
+    parser.add_argument("--right", action="store_true", help="the right drivers instead: a line is a false alarm")
     parser.add_argument("--form", choices=[*FORMS, "all"], help="in this form (forms.py): what is lost in it")
     asked = parser.parse_args(arguments)
     with ProcessPoolExecutor(asked.jobs) as pool:
