@@ -151,7 +151,8 @@ def _audit_forked(
         if len(names) > 2:
             Rig(one, static=len(names) > _MANY)
         if len(names) > _MANY:
-            Rig({ALL}, static=True)
+            for all_or_none in ({ALL}, ()):
+                Rig(all_or_none, static=True)
             for modules in ALONE.values():
                 Rig(one, modules=modules)
             with robot(one, boot=False):  # its program is watched
