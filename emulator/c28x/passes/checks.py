@@ -22,6 +22,7 @@ from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.fraction_texts import check_fraction_texts
 from emulator.c28x.passes.future_stamps import unreachable_exits
 from emulator.c28x.passes.given import GivenValues
+from emulator.c28x.passes.held import with_held_values
 from emulator.c28x.passes.interrupted import sides_of
 from emulator.c28x.passes.likes import check_likes
 from emulator.c28x.passes.lost_writes import check_lost_writes
@@ -97,7 +98,7 @@ def check(
                 check_names(function, unit, report, used, by_address=function.path in entered)
         for variable in module.variables:
             file_scope(variable, initialisers[variable], report)
-    whole = with_members(with_targets(modules))
+    whole = with_members(with_targets(with_held_values(modules)))
     of_whole = {other: reports[module] for module, other in zip(modules, whole, strict=True)}
     stamps_of_whole = Stamps(whole, entries)
     stamps_of_whole.suspicions()
@@ -110,6 +111,10 @@ def check(
             f"never true, for {why}",
             object=state.declaration.path, declaration=state.declaration,
         )  # fmt: skip
+    for module, report in of_whole.items():
+        for function in module.functions:
+            check_decided(function, report)
+            check_begun_anew(function, report)
     check_begun_again(whole, of_whole)
     check_open_integrals(of_whole)
     check_one_sided(whole, of_whole)
@@ -178,8 +183,6 @@ def _of_function(function: Function) -> list[StaticFinding]:
     check_stores(function, report)
     check_copies(function, report)
     check_admitted(function, report)
-    check_decided(function, report)
     check_masked(function, report)
-    check_begun_anew(function, report)
     NullTests(function, report).run()
     return found

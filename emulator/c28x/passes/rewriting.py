@@ -34,19 +34,24 @@ class Rewriting(ABC):
     def module(self, module: Module, objects: list[Variable]) -> Module:
         """A module with these objects, and functions that are written anew."""
         written = copy(module)
-        written.functions = list(map(self._function, module.functions))
+        written.functions = list(map(self.function, module.functions))
         written.variables = objects
         return written
 
-    def _function(self, function: Function) -> Function:
+    def kept(self, node: Any) -> bool:
+        """Whether a part of a list stays in it."""
+        return True
+
+    def function(self, function: Function) -> Function:
+        """A function that is written anew."""
         if self.about.isdisjoint(_mentioned(function)):
             return function
         return replace(function, body=self._node(function.body))
 
     def _node(self, node: Any) -> Any:
         if isinstance(node, list | tuple):  # a tuple: a case of a switch
-            new = [self._node(part) for part in node]
-            return node if all(map(is_, new, node)) else type(node)(new)
+            new = [self._node(part) for part in node if self.kept(part)]
+            return node if len(new) == len(node) and all(map(is_, new, node)) else type(node)(new)
         if type(node) not in _FIELDS:
             return node
         written = self.instead(node)

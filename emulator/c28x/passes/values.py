@@ -44,9 +44,11 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
     TURNED,
+    NamedScalar,
     bare,
     calls,
     different,
+    named_scalar,
     once,
     own_nodes,
     parts,
@@ -141,7 +143,7 @@ class ValueChecks(ConstantChecks):
 
     def __init__(
         self, function: Function, report: StaticReport, shared: Container[str] = (),
-        flag_words: Container[Variable] = (), masks: Container[Where] = (),
+        flag_words: Container[NamedScalar] = (), masks: Container[Where] = (),
         results: Mapping[str, Interval] | None = None,
     ) -> None:  # fmt: skip
         """`shared`: the names of the file's objects.  `flag_words`: those in which a bit above bit 0 is a flag.
@@ -441,8 +443,8 @@ class ValueChecks(ConstantChecks):
             inner = part.source if isinstance(part, Const) and part.source is not None else part
             if isinstance(inner, Not):
                 match bare(inner.operand), bare(other):
-                    case Const(value=1) as mask, Load(lvalue=LValue(root=Variable() as word)):
-                        return mask if word in self.flag_words else None
+                    case Const(value=1) as mask, Load(lvalue=lvalue):
+                        return mask if named_scalar(lvalue) in self.flag_words else None
                     case Const(value=value) as mask, _ if value not in (0, 1):
                         return mask
                 return None
@@ -545,19 +547,19 @@ def _truth_of_mask(e: Expr, other: Expr) -> Expr | None:
     return None
 
 
-def flag_words(functions: Iterable[Function]) -> set[Variable]:
+def flag_words(functions: Iterable[Function]) -> set[NamedScalar]:
     """The integers in which a statement sets a single bit above bit 0: `flags |= 4`."""
-    found: set[Variable] = set()
+    found: set[NamedScalar] = set()
     for function in functions:
         for s in statements(function.body):
             match s:
-                case Assign(target=LValue(root=Variable(ctype=IntType()) as root), value=value):
+                case Assign(target=LValue(ctype=IntType()) as target, value=value) if (word := named_scalar(target)):
                     match bare(value):
                         case Binary(op="|", left=left, right=right):
                             match bare(left), bare(right):
-                                case Load(lvalue=LValue(root=same)), Const(value=int(bit)) if same is root:
+                                case Load(lvalue=lvalue), Const(value=int(bit)) if lvalue == target:
                                     if bit > 1 and not bit & bit - 1:
-                                        found.add(root)
+                                        found.add(word)
     return found
 
 

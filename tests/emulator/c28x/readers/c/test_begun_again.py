@@ -58,6 +58,7 @@ def gate(
     gate(),
     gate(late="if (stay >= 500 || Button > 1) gate = STUCK;"),
     gate(late="if (500 < stay) Go(STUCK);"),
+    gate(late="{ int over = stay > 500; if (over) Block(); }"),
     gate(late="if (stay < 500) Shown = 0; else Go(Button ? SHUT : STUCK);"),
     # Another routine ends the last state.
     gate(stuck="", turn="if (Button > 2) Go(SHUT);"),
@@ -69,6 +70,7 @@ def test_a_time_in_a_state_that_is_never_begun_again_is_told(text: str) -> None:
 
 @pytest.mark.parametrize("text", [
     gate(enter="stay = 0;"),
+    gate(enter="stay = 0;", late="{ int over = stay > 500; if (over) Block(); }"),
     gate(turn="if (gate == SHUT) stay = 0;"),
     # A last state: the fault is latched.
     gate(stuck=""),
@@ -127,6 +129,8 @@ def text(again: str = LENGTH + MARK, *, test: str = REFUSE, end: str = END, turn
     # Only a line that is too long sets it back.
     (text(MARK, test="Obey(order);").replace("else tooLong = 1;", "else length = 0;"), END),
     (text(LENGTH), REFUSE),
+    (text(LENGTH, test="int bad = tooLong || length == 0; if (bad) Bad++; else Obey(order);"),
+     "int bad = tooLong || length == 0; if (bad) Bad++; else Obey(order);"),
     (text(LENGTH, test="if (!tooLong && length > 0) Obey(order);"), "if (!tooLong && length > 0) Obey(order);"),
     (text(LENGTH, test="if (tooLong == 1) Bad++; else Obey(order);"), "if (tooLong == 1) Bad++; else Obey(order);"),
     (text(LENGTH, test="if (tooLong == 0) Obey(order);"), "if (tooLong == 0) Obey(order);"),
