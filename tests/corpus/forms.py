@@ -112,7 +112,7 @@ def temporary(source: Source) -> None:
                             source.before(part, f"{{ {declaration} = {source.of(value)}; ")
                             source.replace(value, name)
                             source.after(part, " }")
-                    case c_ast.If(cond=cond):
+                    case c_ast.If(cond=cond) if not isinstance(cond, c_ast.Assignment):  # `(x = 1)` says: on purpose
                         name = source.fresh("held")
                         source.before(part, f"{{ int {name} = {_truth(source, cond)}; ")
                         source.replace(cond, name)
@@ -188,6 +188,8 @@ class _Computed:
 
     def made(self, value: Any, typed: Callable[[str], str | None], text: str, space: str = "") -> bool:
         """Whether a function for an expression was made; `typed` declares its name with the type of its result."""
+        if isinstance(value, c_ast.Assignment):  # `(x = 1)` says that it is on purpose
+            return False
         given = self.parameters(value)
         told = isinstance(value, c_ast.ID) and value.name not in self.declared and text != self.source.of(value)
         if given is None or not (_computes(value) or told):
