@@ -178,6 +178,10 @@ class Member:
     volatile: bool = False
 
 
+#: Only in the name of a structure or union that has no tag.
+UNNAMED: Final = "(line"
+
+
 @dataclass(frozen=True)
 class StructType(CType):
     """Members in order, 32-bit members on even words, size rounded to the alignment.
@@ -202,6 +206,11 @@ class StructType(CType):
     def leaves(self) -> int:
         """The scalars of all members; the words if the type is word-backed."""
         return self.words if self.word_backed else sum(m.ctype.leaves for m in self.members)
+
+    @property
+    def has_name(self) -> bool:
+        """Whether it has a tag or a typedef.  Without one, only the objects of one declaration have this type."""
+        return UNNAMED not in self.name
 
     @cached_property
     def word_backed(self) -> bool:

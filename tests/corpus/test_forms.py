@@ -330,6 +330,12 @@ def test_a_right_driver_is_told_nothing_in_any_form(driver: Driver) -> None:
     assert false_alarms(driver, list(FORMS)) == dict.fromkeys(FORMS, "")
 
 
+@pytest.mark.parametrize("name", ["barrier", "capture_chain"])
+def test_a_common_prefix_makes_no_related_parts(name: str) -> None:
+    (driver,) = (driver for driver in OF_C if driver.name == name)
+    assert false_alarms(driver, ["member"]) == {"member": ""}
+
+
 @pytest.mark.slow
 def test_what_is_found_is_found_in_each_form() -> None:
     forms = [*FORMS][:: 1 if ALL else 4]

@@ -59,7 +59,7 @@ class SharedObject:
 
     __slots__ = (
         "apart", "beside", "cells", "conflicting", "findings", "hands_over", "joint", "known", "object", "pairs",
-        "per_element", "rank", "run", "under", "users", "written", "wrote",
+        "per_element", "rank", "record", "run", "under", "users", "written", "wrote",
     )  # fmt: skip
 
     def __init__(self, obj: Object, flags: bool = False) -> None:
@@ -68,6 +68,9 @@ class SharedObject:
         self.cells: dict[int, SharedCell] = {}
         #: Words per element of an array of structures, each of which is judged alone; 0 for all other objects.
         self.per_element = _stride(ctype)
+        #: Whether words belong together of which only one thread writes several.  The members of a structure whose type
+        #: has no name are objects with a common prefix: nobody can copy them or pass them on as a whole.
+        self.record = not isinstance(ctype, StructType) or ctype.has_name
         self.conflicting: dict[int, set[int]] = {}
         #: Without the kernel: words that one run of a routine wrote together; the latest run, and the words it wrote.
         self.joint: set[int] = set()
@@ -384,7 +387,8 @@ class Races:
             return
         element = offset // shared.per_element if shared.per_element else 0
         conflicting = shared.conflicting.setdefault(element, set())
-        conflicting.add(offset)
+        if shared.record or (other.write and access.write):
+            conflicting.add(offset)
         lower, higher = sorted((other, access), key=lambda each: each.thread.level)
         low, high = lower.thread, higher.thread
         cut = cell.cut(low, higher)
@@ -502,7 +506,7 @@ class Races:
     @staticmethod
     def _several(shared: SharedObject, offset: int) -> bool:
         """Whether several threads use, and some write, another scalar of the same structure too."""
-        if not shared.hands_over and not shared.per_element:
+        if not shared.record or not (shared.hands_over or shared.per_element):
             return False
         stride = shared.per_element or shared.object.words
         first = offset // stride * stride

@@ -17,6 +17,7 @@ from emulator.c28x.ctypes import (
     LONG,
     UINT,
     ULONG,
+    UNNAMED,
     VOID,
     ArrayType,
     BlockType,
@@ -259,7 +260,7 @@ class CTypeReader:
             elif known is not None and self.b.depth == 0:
                 raise SourceError.at(node.coord, f"{word} {node.name} is defined twice")
             else:
-                known = kind(f"{word} {node.name or f'(line {node.coord.line}:{node.coord.column})'}")
+                known = kind(f"{word} {node.name or f'{UNNAMED} {node.coord.line}:{node.coord.column})'}")
                 if node.name:
                     self.tags[node.name] = known
         self.defined[node] = known
@@ -403,7 +404,7 @@ class CTypeReader:
     def type_name(self, ctype: CType, name: str) -> CType:
         """The type for a typedef: a structure without a name takes that of the typedef."""
         if isinstance(ctype, StructType) and (
-            "(line" in ctype.name or ctype.name in (f"struct {name}", f"union {name}")
+            not ctype.has_name or ctype.name in (f"struct {name}", f"union {name}")
         ):
             object.__setattr__(ctype, "name", name)
         return ctype
