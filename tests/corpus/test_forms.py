@@ -19,6 +19,8 @@ OF_C = [driver for driver in drivers() if driver.in_c]
 #: A run of the tests takes only what is quick; `HIL_CORPUS=all` takes all drivers and damages, which lasts hours.
 ALL = os.environ.get("HIL_CORPUS") == "all"
 #: Share of what is found as written that is found in each form: a detector that depends less on the form raises it.
+#: CHOICE: samples of all forms (README.md) gave 370 of 396, which is 0.93; a sample differs from the whole by a few
+#: percent.
 FLOOR = 0.9
 QUICK = [driver for driver in OF_C if driver.name == "settings"]
 DAMAGES = ("set-greatest-never-set",)
@@ -330,10 +332,13 @@ def test_a_right_driver_is_told_nothing_in_any_form(driver: Driver) -> None:
     assert false_alarms(driver, list(FORMS)) == dict.fromkeys(FORMS, "")
 
 
-@pytest.mark.parametrize("name", ["barrier", "capture_chain"])
-def test_a_common_prefix_makes_no_related_parts(name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "form"),
+    [("barrier", "member"), ("capture_chain", "member"), ("press", "handle"), ("watch_station", "handle")],
+)
+def test_the_state_of_a_module_has_no_related_parts(name: str, form: str) -> None:
     (driver,) = (driver for driver in OF_C if driver.name == name)
-    assert false_alarms(driver, ["member"]) == {"member": ""}
+    assert false_alarms(driver, [form]) == {form: ""}
 
 
 @pytest.mark.slow

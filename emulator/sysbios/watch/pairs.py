@@ -14,6 +14,7 @@ The source shows them even where a run does not: a carry from minutes to hours i
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import combinations
 from typing import Any, Final, NamedTuple
 
 from emulator.c28x.ctypes import ArrayType, CType, IntType, PointerType, StructType, scalars
@@ -22,7 +23,6 @@ from emulator.c28x.tree import (
     AddressOf,
     Assign,
     Binary,
-    Call,
     Compare,
     Const,
     CopyStruct,
@@ -46,9 +46,14 @@ from emulator.c28x.tree_queries import (
     bare,
     below,
     blocks,
+    called,
+    given_values,
     leaves,
+    named_scalar,
+    once,
     own_nodes,
     parts,
+    reached,
     statements,
     within,
 )
@@ -81,8 +86,8 @@ def pairs(modules: Iterable[Module]) -> dict[str, list[Pair]]:
     own = {function.path: function for module in modules for function in module.functions}
     written: dict[Word, set[str]] = {}
     inside: set[str] = set()
-    for routine, reached in interrupt_routines(own):
-        for function in reached:
+    for routine, functions in interrupt_routines(own):
+        for function in functions:
             inside.add(function.path)
             for word in _writes(function):
                 written.setdefault(word, set()).add(routine.name)
@@ -108,18 +113,18 @@ def _add_copied(own: dict[str, Function], found: dict[str, list[Pair]]) -> None:
     loop that copies again) is left out, unless the test is about other routines only.
     """
     routines = list(interrupt_routines(own))
-    inside = {function.path for _, reached in routines for function in reached}
+    inside = {function.path for _, functions in routines for function in functions}
     others = [function for function in own.values() if function.path not in inside]
-    writes = [{path for function in reached for path in written_objects(function.body)} for _, reached in routines]
-    for number, (routine, reached) in enumerate(routines):
+    writes = [{path for function in functions for path in written_objects(function.body)} for _, functions in routines]
+    for number, (routine, functions) in enumerate(routines):
         together: dict[str, list[frozenset[int]]] = {}
-        for function in reached:
+        for function in functions:
             for block in all_blocks(function.body):
                 for path, words in _set_together(block).items():
                     together.setdefault(path, []).append(words)
         if not together:
             continue
-        telling = {path for function in reached for path in _read_addresses(function)} | writes[number]
+        telling = {path for function in functions for path in _read_addresses(function)} | writes[number]
         for (_, asking), written in zip(routines, writes, strict=True):
             if any(path in writes[number] for function in asking for path in _mentioned(function)):
                 telling |= written  # what it has found out about this routine
@@ -251,10 +256,10 @@ def continued(modules: Iterable[Module]) -> dict[str, set[tuple[str, str]]]:
     own = {function.path: function for module in modules for function in module.functions}
     stepped: dict[str, dict[str, set[str]]] = {}
     inside: set[str] = set()
-    for routine, reached in interrupt_routines(own):
-        inside |= {function.path for function in reached}
-        used = {path for function in reached for path in decided_by(function)}
-        steps = {path for function in reached for path in _steps(function)}
+    for routine, functions in interrupt_routines(own):
+        inside |= {function.path for function in functions}
+        used = {path for function in functions for path in decided_by(function)}
+        steps = {path for function in functions for path in _steps(function)}
         for path in used & steps:
             stepped.setdefault(path, {})[routine.name] = used - {path}
     found: dict[str, set[tuple[str, str]]] = {}
@@ -265,6 +270,39 @@ def continued(modules: Iterable[Module]) -> dict[str, set[tuple[str, str]]]:
                 if sets & others:
                     found.setdefault(path, set()).add((routine_name, function.name))
     return found
+
+
+def divided(modules: Iterable[Module]) -> set[StructType]:
+    """The structures of which each of two threads writes a member that the other one never writes.
+
+    A thread here is an interrupt routine, or a function that no other one calls by its name.
+    """
+    own = {function.path: function for module in modules for function in module.functions}
+    calls = {path: _calls_of(function) for path, function in own.items()}
+    inner = set[str]().union(*calls.values())
+    found: dict[StructType, list[set[int]]] = {}
+    for function in own.values():
+        if function.path in inner and not function.interrupt:
+            continue
+        written: dict[StructType, set[int]] = {}
+        for path in reached([function.path], lambda path: calls.get(path, ())):
+            for holder, words in _members_set(own[path]) if path in own else ():
+                written.setdefault(holder, set()).add(words)
+        for holder, members in written.items():
+            found.setdefault(holder, []).append(members)
+    return {holder for holder, sets in found.items() if any(a - b and b - a for a, b in combinations(sets, 2))}
+
+
+@once
+def _calls_of(function: Function) -> set[str]:
+    return set(called(within(function.body)))
+
+
+@once
+def _members_set(function: Function) -> set[tuple[StructType, int]]:
+    """The members of structures that a function itself sets, by the structure and the offset in words."""
+    scalars_set = (named_scalar(target) for target, _ in given_values(function.body))
+    return {(each[0], each[1]) for each in scalars_set if each is not None and isinstance(each[0], StructType)}
 
 
 def arrays_of_flags(modules: Iterable[Module]) -> set[str]:
@@ -291,8 +329,8 @@ def turned_by_both(modules: Iterable[Module]) -> dict[str, set[str]]:
     own = {function.path: function for module in modules for function in module.functions}
     by_routine: dict[str, set[str]] = {}
     inside: set[str] = set()
-    for routine, reached in interrupt_routines(own):
-        for function in reached:
+    for routine, functions in interrupt_routines(own):
+        for function in functions:
             inside.add(function.path)
             for path in _turns(function):
                 by_routine.setdefault(path, set()).add(routine.name)
@@ -306,8 +344,8 @@ def handed_over(modules: Iterable[Module]) -> dict[str, set[HandOver]]:
     own = {function.path: function for module in modules for function in module.functions}
     awaited: dict[tuple[str, bool], dict[str, set[str]]] = {}
     inside: set[str] = set()
-    for routine, reached in interrupt_routines(own):
-        for function in reached:
+    for routine, functions in interrupt_routines(own):
+        for function in functions:
             inside.add(function.path)
             for flag, raised, body in _branches(function.body):
                 if (flag, not raised) in {_flag(statement) for statement in statements(body)}:
@@ -321,8 +359,8 @@ def handed_over(modules: Iterable[Module]) -> dict[str, set[HandOver]]:
                 if key is None or key not in awaited:
                     continue
                 behind = block[number + 1 :]
-                for called in {part.function.path for part in within(behind) if isinstance(part, Call)}:
-                    behind = [*behind, *(statement for other in below([called], own) for statement in other.body)]
+                for inner in below(called(within(behind)), own):
+                    behind = [*behind, *inner.body]
                 late = (written_objects if key[1] else _read)(behind)
                 for routine_name, used in awaited[key].items():
                     for path in used & late:

@@ -40,6 +40,7 @@ from emulator.sysbios.watch.pairs import (
     Pair,
     arrays_of_flags,
     continued,
+    divided,
     handed_over,
     pairs,
     turned_by_both,
@@ -62,15 +63,14 @@ class SharedObject:
         "per_element", "rank", "record", "run", "under", "users", "written", "wrote",
     )  # fmt: skip
 
-    def __init__(self, obj: Object, flags: bool = False) -> None:
+    def __init__(self, obj: Object, flags: bool = False, record: bool = True) -> None:
         ctype = obj.declaration.ctype
         self.object = obj
         self.cells: dict[int, SharedCell] = {}
         #: Words per element of an array of structures, each of which is judged alone; 0 for all other objects.
         self.per_element = _stride(ctype)
-        #: Whether words belong together of which only one thread writes several.  The members of a structure whose type
-        #: has no name are objects with a common prefix: nobody can copy them or pass them on as a whole.
-        self.record = not isinstance(ctype, StructType) or ctype.has_name
+        #: Whether words belong together of which only one thread writes several.
+        self.record = record
         self.conflicting: dict[int, set[int]] = {}
         #: Without the kernel: words that one run of a routine wrote together; the latest run, and the words it wrote.
         self.joint: set[int] = set()
@@ -143,6 +143,8 @@ class Races:
         self._of_path: dict[str, SharedObject] = {}
         #: Arrays of flags, from the source; None: not read yet.
         self._flags: set[str] | None = None
+        #: Structures in which threads have members of their own, from the source; None: not read yet.
+        self._divided: set[StructType] | None = None
         #: Indices of ring buffers, from the source; None: not read yet.
         self._indices: dict[Word, bool] | None = None
         self._threads = threads
@@ -357,7 +359,7 @@ class Races:
             if self._flags is None:
                 self._flags = arrays_of_flags(self._modules)
             flags = obj.declaration.path in self._flags
-        shared = SharedObject(obj, flags)
+        shared = SharedObject(obj, flags, self._is_record(obj.declaration.ctype))
         if self._threads.routines:
             if self._pairs is None:  # Read late, because most images do not need it.
                 self._pairs, self._continued = pairs(self._modules), continued(self._modules)
@@ -375,6 +377,18 @@ class Races:
             self._locals = {item: kept for item, kept in self._locals.items() if item in live}
         self._locals[obj] = shared
         return shared
+
+    def _is_record(self, ctype: CType) -> bool:
+        """Whether the members of a structure are parts of one thing; words of other objects are.
+
+        If its type has no name, they are objects with a common prefix: nobody can copy them or pass them on as a whole.
+        So they are if two threads keep members of their own in it: the state of a module.
+        """
+        if not isinstance(ctype, StructType):
+            return True
+        if self._divided is None:
+            self._divided = divided(self._modules)
+        return ctype.has_name and ctype not in self._divided
 
     # Conflicts
 

@@ -17,6 +17,7 @@ volatile struct { Uint16 head; Uint16 tail; Uint16 words[8]; } Ring;
 volatile Uint32 Millis; volatile struct TIME Now; struct TIME Seen; Uint16 Words[8], Sum; Uint32 Copy;
 Uint16 Halves[2][4], Half; volatile Uint16 Full[2] = {1, 1}; Uint16 * volatile Fill = Halves[0];
 volatile struct { Uint16 running; int16 way; int32 togo, place, ramp; } Motor;
+volatile struct ARM { Uint16 angle, speed, wanted, late; } Arm;
 """
 
 #: A routine that works while a flag is up, in the same structure.
@@ -24,6 +25,8 @@ STEPPED = "Motor.place += Motor.way; Motor.ramp++; if (--Motor.togo <= 0) Motor.
 STEP = f"if (Motor.running) {{ {STEPPED} }}"
 RETURN = f"if (!Motor.running) {{ PieCtrlRegs.PIEACK.all = PIEACK_GROUP1; return; }} {STEPPED}"
 START = "Motor.way = Sum & 8 ? 1 : -1; Motor.togo = 30; Motor.ramp = 0; Motor.running = 1;"
+#: A routine that sets some members of a structure with a name.
+MOVE = "Arm.speed = Arm.wanted + 1; Arm.angle += Arm.speed;"
 
 MAIN = """
 void main(void)
@@ -125,6 +128,9 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
          "if (Ready) { Ready = 0; Sum = Count + Waiting; }", [("race", "Count")]),
         ("if (Ready) { Seen = Now; Ready = 0; }", "if (!Ready) { Ready = 1; Now.hours++; Now.minutes++; }",
          [("race", "Now")]),
+        # Only the routine sets members; `main` sets others, but computes with two at once.
+        (MOVE, "if (Arm.speed > 1) Sum++; if (Arm.angle > 90) Sum += 2;", [("race", "Arm")]),
+        (MOVE, "Arm.wanted = Sum & 3; Sum = Arm.angle * Arm.speed;", [("race", "Arm")]),
         # A structure that is copied as a whole; its words are set together.
         ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; }", "Seen = Now;", [("race", "Now")]),
         ("if (++Count == 9999) { Now.minutes = Count; Now.hours++; }",
@@ -272,6 +278,9 @@ def test_what_an_interrupt_can_come_into_is_told(
             "Now.minutes++; Now.hours++; Count++;",
             "Uint16 n; do { n = Count; Sum = Now.hours; Sum += Now.minutes; } while (n != Count);",
         ),
+        # A module's state: `main` and the routine each have members of their own.
+        (MOVE, "Arm.wanted = Sum & 3; if (Arm.speed > 1) Sum++; if (Arm.angle > 90) Arm.late++;"),
+        (MOVE, "struct ARM *p = (struct ARM *)&Arm; if (p->speed > 1) p->late++; if (p->angle > 90) p->late += 2;"),
         # A ring in one structure, two words an interrupt.
         (
             "Uint16 i; for (i = 0; i < 2; i++) { Ring.words[Ring.head] = i; Ring.head = (Ring.head + 1) & 7; }",
