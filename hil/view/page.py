@@ -1,4 +1,4 @@
-"""The page: its layout, its keys, and its update 20 times a second."""
+"""The page: its layout, its keys, and its updates, up to 20 a second."""
 
 from __future__ import annotations
 
@@ -27,6 +27,9 @@ from hil.view.style import CSS, HEAD
 from hil.view.time_panel import STEPS, TimeBar, TimePanel
 
 UPDATE_S: Final = 0.05
+#: A browser that does not say that it has drawn an update gets the next one after so long: a page out of sight draws
+#: nothing.
+UNDRAWN_S: Final = 1.0
 #: A pace that is reached to this share is kept.
 PACE_KEPT: Final = 0.95
 #: So many updates more without the pace than with it, and it is said: a second.
@@ -84,6 +87,41 @@ class Page:
             action()
 
 
+class Updates:
+    """Calls `update` 20 times a second, but not before the browser has drawn what the call before has changed.
+
+    A browser that is too slow for 20 updates a second shows fewer.  It would queue them otherwise, show old ones, and
+    have its user wait behind them.
+    """
+
+    #: What a browser says after its next paint.
+    _SAY: Final = 'requestAnimationFrame(() => setTimeout(() => emitEvent("hil-drawn")))'
+
+    def __init__(self, update: Callable[[], None]) -> None:
+        self._update = update
+        self._outbox = ui.context.client.outbox
+        self._drawn = True
+        #: Turns that came before the browser had drawn.
+        self._late_turns = 0
+        ui.on("hil-drawn", self._on_drawn)
+        ui.timer(UPDATE_S, self._turn)
+
+    def _on_drawn(self) -> None:
+        self._drawn = True
+        if self._late_turns:
+            self._turn()
+
+    def _turn(self) -> None:
+        if not self._drawn and self._late_turns < UNDRAWN_S / UPDATE_S:
+            self._late_turns += 1
+            return
+        self._late_turns = 0
+        self._update()
+        self._drawn = not (self._outbox.updates or self._outbox.messages)
+        if not self._drawn:
+            ui.run_javascript(self._SAY)
+
+
 async def machine_page(engine: Engine) -> None:
     """The page of an emulated board; of a robot, with what its stage has."""
     stage = panels_of(engine.kind.view, engine)
@@ -106,7 +144,7 @@ async def machine_page(engine: Engine) -> None:
     ui.page_title(f"{engine.kind.__name__} - c2000-hil")
     shown = BoardPage(page, engine, stage)
     shown.update()
-    ui.timer(UPDATE_S, shown.update)
+    Updates(shown.update)
     if stage is not None:
         client.on_disconnect(stage.leave)
 

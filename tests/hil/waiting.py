@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 #: A test that waits longer has failed; nothing is asserted about times below it.
-TIMEOUT_S = 60.0
+TIMEOUT_S = 120.0
 #: Between two looks.  What is waited for sends no event to a test.
 SAMPLE_S = 0.02
 

@@ -8,7 +8,7 @@ from hil.robot.view.arena import FrameMap
 from hil.robot.view.console_panel import ConsolePanel
 from hil.robot.view.orders import KEYS, mission_and_stop
 from hil.view.line import RobotLine
-from hil.view.page import UPDATE_S, Page, hidden_heading
+from hil.view.page import Page, Updates, hidden_heading
 
 
 def console_page(line: RobotLine) -> None:
@@ -31,5 +31,5 @@ def console_page(line: RobotLine) -> None:
         console.update()
         frames.update()
 
-    ui.timer(UPDATE_S, update)
+    Updates(update)
     ui.context.client.on_disconnect(console.leave_tele)

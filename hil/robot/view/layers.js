@@ -24,8 +24,10 @@ export default {
     element.addEventListener("pointercancel", this.cancel);
     this.fit();
   },
+  // A page's update renders every component.  To apply is to have the browser lay out the page at once, so only a new
+  // layer is a reason.
   updated() {
-    this.apply();
+    if (this.$el.children.length !== this.layers) this.apply();
   },
   watch: {
     extent() {
@@ -75,6 +77,7 @@ export default {
       const width = clientWidth / this.scale;
       const height = clientHeight / this.scale;
       const box = [this.x - width / 2, this.y - height / 2, width, height];
+      this.layers = this.$el.children.length;
       for (const layer of this.$el.children) layer.setAttribute("viewBox", box.join(" "));
       this.$el.style.setProperty("--unit", 1 / this.scale);
       this.seen = box;

@@ -17,6 +17,7 @@ from hil.instruments.trace_file import RecordedTrace
 from hil.page.page import html
 from hil.page.replay import Replay
 from tests.hil.page.test_replay import NAMES
+from tests.hil.waiting import TIMEOUT_S
 
 Open = Callable[..., Any]
 SIZES = {"desk": (1440, 900), "laptop": (1024, 768), "phone": (390, 844)}
@@ -44,7 +45,7 @@ def open_page(browser: Any) -> Iterator[Open]:
         width, height = SIZES[size]
         page = browser.new_page(viewport={"width": width, "height": height}, color_scheme=scheme)
         pages.append(page)
-        page.set_default_timeout(30_000)
+        page.set_default_timeout(TIMEOUT_S * 1e3)
         page.on("pageerror", lambda error: troubles.append(f"page error: {error}"))
         page.on("console", lambda message: troubles.append(message.text) if message.type in ("error", "warning") else 0)
         page.on("dialog", lambda dialog: troubles.append(f"dialog {dialog.message}"))
@@ -368,6 +369,7 @@ def test_data_that_were_damaged_are_told(open_page: Open, file: Path, tmp_path: 
     damaged = tmp_path / "damaged.html"
     damaged.write_text(re.sub(r'(id="run">.{100}).{40}', r"\1", text), encoding="utf-8")
     page = browser.new_page()
+    page.set_default_timeout(TIMEOUT_S * 1e3)
     page.goto(damaged.as_uri())
     page.get_by_text("The data of this page cannot be read").wait_for()
     page.close()

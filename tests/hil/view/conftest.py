@@ -70,7 +70,7 @@ def browser() -> Iterator[Any]:
 def page(browser: Any, view: View) -> Iterator[Any]:
     """The page of the robot, ready; whatever it asks of another computer, or complains about, fails the test."""
     page = browser.new_page(viewport={"width": 1500, "height": 950})
-    page.set_default_timeout(30_000)
+    page.set_default_timeout(TIMEOUT_S * 1e3)
     troubles: list[str] = []
     page.on("pageerror", lambda error: troubles.append(f"page error: {error}"))
 
@@ -90,7 +90,7 @@ def page(browser: Any, view: View) -> Iterator[Any]:
         ),
     )
     page.goto(view.address)
-    page.locator("g.robot").first.wait_for(state="attached", timeout=90_000)
+    page.locator("g.robot").first.wait_for(state="attached")
     yield page
     page.close()
     assert troubles == []

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from tests.hil.view.conftest import CHROMIUM, View, add_signal
+from tests.hil.waiting import TIMEOUT_S
 
 #: A signal's name, how the tree calls it, and what is typed to find it, if that is something else.
 SIGNALS: Final = (
@@ -28,7 +29,7 @@ def go_to(page: Any, moment_s: str) -> None:
     page.get_by_role("tab", name="Time").click()
     page.get_by_label("time, s").fill(moment_s)
     page.get_by_role("button", name="Go to this time").click()
-    page.locator(".tile .value").filter(has_text=re.compile(rf"^{moment_s} s$")).wait_for(timeout=60_000)
+    page.locator(".tile .value").filter(has_text=re.compile(rf"^{moment_s} s$")).wait_for()
 
 
 def mission(page: Any, target: Path) -> None:
@@ -57,7 +58,7 @@ def scope(page: Any, target: Path) -> None:
     page.get_by_role("tab", name="Scope").click()
     page.mouse.move(0, 0)
     # The lanes end at that moment, and so does the chart, which is sent with them.
-    page.locator(".lanes .time", has_text=f"{MOMENT_S}000 s").wait_for(timeout=60_000)
+    page.locator(".lanes .time", has_text=f"{MOMENT_S}000 s").wait_for()
     page.get_by_role("tooltip").wait_for(state="hidden")
     page.locator(".side").first.screenshot(path=str(target), animations="disabled")
 
@@ -73,9 +74,9 @@ def main() -> None:
         with sync_playwright() as driver:
             browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
             page = browser.new_page(viewport={"width": size[0], "height": size[1]})
-            page.set_default_timeout(30_000)
+            page.set_default_timeout(TIMEOUT_S * 1e3)
             page.goto(view.address)
-            page.locator("g.robot").first.wait_for(state="attached", timeout=90_000)
+            page.locator("g.robot").first.wait_for(state="attached")
             draw(page, target)
             browser.close()
     finally:

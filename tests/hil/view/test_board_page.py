@@ -11,6 +11,7 @@ import pytest
 
 from tests.hil.own_board import project
 from tests.hil.view.conftest import View, add_signal, needs_view, sees
+from tests.hil.waiting import TIMEOUT_S
 
 pytest.importorskip("pycparser")
 
@@ -38,12 +39,12 @@ def view(tmp_path_factory: pytest.TempPathFactory) -> Iterator[View]:
 def page(browser: Any, view: View) -> Iterator[Any]:
     """The page of the board, ready; whatever it complains about fails the test."""
     page = browser.new_page(viewport={"width": 1500, "height": 950})
-    page.set_default_timeout(30_000)
+    page.set_default_timeout(TIMEOUT_S * 1e3)
     troubles: list[str] = []
     page.on("pageerror", lambda error: troubles.append(f"page error: {error}"))
     page.on("console", lambda message: troubles.append(message.text) if message.type == "error" else None)
     page.goto(view.address)
-    page.locator(".tile", has_text="Station").wait_for(timeout=90_000)
+    page.locator(".tile", has_text="Station").wait_for()
     yield page
     page.close()
     assert troubles == []

@@ -11,6 +11,7 @@ from typing import Any
 from hil.recording.trajectory import parse_trajectory
 from hil.view.lanes import LEFT
 from tests.hil.view.conftest import View, add_signal, sees
+from tests.hil.waiting import TIMEOUT_S
 
 Shot = Callable[[Any, str], None]
 TIME = r"time: ([\d.]+) s"
@@ -110,6 +111,22 @@ def test_every_layer_of_the_arena_fits_the_others(page: Any) -> None:
     places = {tuple(round(value) for value in layers.nth(n).bounding_box().values()) for n in range(layers.count())}
     assert layers.count() > 5
     assert len(places) == 1
+
+
+def test_a_page_that_does_not_draw_is_not_sent_more_and_more(page: Any) -> None:
+    page.evaluate("window.updates = 0, window.socket.on('update', () => window.updates++)")
+
+    def in_4_s() -> int:
+        before = page.evaluate("window.updates")
+        page.wait_for_timeout(4000)
+        return int(page.evaluate("window.updates")) - before
+
+    drawing = in_4_s()
+    page.evaluate("window.requestAnimationFrame = () => 0")  # what a page out of sight does
+    page.wait_for_timeout(1500)
+    undrawn = in_4_s()
+    assert 1 <= undrawn <= 6, (drawing, undrawn)  # one a second
+    assert drawing > 2 * undrawn, (drawing, undrawn)
 
 
 def test_the_head_stays_one_line_in_a_narrow_window(page: Any) -> None:
@@ -450,6 +467,7 @@ def test_one_page_too_many_is_told_so_and_asks_again(browser: Any, shot: Shot) -
     for _ in range(MAX_PAGES):  # pages that are asked for and may be loading still
         urllib.request.urlopen(view.address).close()
     page = browser.new_page(viewport={"width": 390, "height": 844})
+    page.set_default_timeout(TIMEOUT_S * 1e3)
     answer = page.goto(view.address)
     assert answer.status == 503
     assert page.title() == "one page too many - c2000-hil"

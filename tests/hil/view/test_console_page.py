@@ -106,8 +106,9 @@ def test_a_robot_on_a_port_is_driven_from_the_page(
     browser: Any, robot: SerialRobot, served: ConsoleView, shot: Shot
 ) -> None:
     page = browser.new_page(viewport={"width": 1500, "height": 950})
+    page.set_default_timeout(TIMEOUT_S * 1e3)
     page.goto(served.address)
-    page.get_by_text("<-  #ODO").first.wait_for(timeout=60_000)
+    page.get_by_text("<-  #ODO").first.wait_for()
     page.locator("path.cloud").first.wait_for(state="attached")
     page.get_by_role("button", name="MISSION").click()
     page.get_by_text("->  #MISN").first.wait_for()
@@ -136,8 +137,9 @@ def test_a_page_that_is_closed_while_driving_stops_the_robot(
     browser: Any, robot: SerialRobot, served: ConsoleView
 ) -> None:
     page = browser.new_page()
+    page.set_default_timeout(TIMEOUT_S * 1e3)
     page.goto(served.address)
-    page.get_by_text("<-  #ODO").first.wait_for(timeout=60_000)
+    page.get_by_text("<-  #ODO").first.wait_for()
     page.keyboard.press("t")
     page.get_by_text("->  #SETR0.0,").first.wait_for()
     hold(page, "ArrowUp", lambda: page.get_by_text("->  #SETR0.01,").count() > 0, "the arrow does nothing")

@@ -15,6 +15,7 @@ import pytest
 
 from tests.hil.view.conftest import Shot, View, sees
 from tests.hil.view.test_browser import button, centre, contrast, hold, log, status, tab, wait
+from tests.hil.waiting import TIMEOUT_S
 
 PANELS: Final = ("Console", "Time", "Findings", "Registers", "Scope", "Faults", "Board")
 SIZES: Final = ((1440, 900), (1024, 768), (390, 844), (844, 390), (1920, 1080))
@@ -30,9 +31,9 @@ def phone(browser: Any, view: View) -> Iterator[Any]:
     """The page on a phone that is touched."""
     context = browser.new_context(viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True)
     page = context.new_page()
-    page.set_default_timeout(30_000)
+    page.set_default_timeout(TIMEOUT_S * 1e3)
     page.goto(view.address)
-    page.locator("g.robot").first.wait_for(state="attached", timeout=90_000)
+    page.locator("g.robot").first.wait_for(state="attached")
     yield page
     context.close()
 
@@ -79,6 +80,7 @@ def test_a_page_that_is_loaded_again_has_the_same_panels(page: Any) -> None:
 
 def test_the_light_is_the_systems_until_another_is_chosen(browser: Any, view: View) -> None:
     dark = browser.new_page(color_scheme="dark")
+    dark.set_default_timeout(TIMEOUT_S * 1e3)
     # Before a script has run, a dark page is dark.
     dark.route(re.compile(r"/_nicegui/"), lambda route: route.abort())
     dark.goto(view.address)
@@ -167,6 +169,7 @@ def test_on_a_phone_a_thumb_drives_and_stop_is_in_reach(phone: Any, shot: Shot) 
 @pytest.mark.parametrize("how", ["is closed", "gives no sign of life"])
 def test_a_page_that_leaves_while_driving_stops_the_robot(page: Any, browser: Any, view: View, how: str) -> None:
     other = browser.new_page()
+    other.set_default_timeout(TIMEOUT_S * 1e3)
     other.goto(view.address)
     other.locator(".chip").wait_for()
     other.keyboard.press("t")
