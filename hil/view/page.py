@@ -17,6 +17,7 @@ from hil.view.engine import Engine
 from hil.view.faults_panel import FaultsPanel
 from hil.view.findings_panel import FindingsPanel
 from hil.view.line_panel import LinePanel
+from hil.view.live import LiveHtml
 from hil.view.rated_finding import by_kind, counted, rated
 from hil.view.registers_panel import RegistersPanel
 from hil.view.scope import ScopePanel
@@ -99,7 +100,6 @@ class Updates:
 
     def __init__(self, update: Callable[[], None]) -> None:
         self._update = update
-        self._outbox = ui.context.client.outbox
         self._drawn = True
         #: Turns that came before the browser had drawn.
         self._late_turns = 0
@@ -116,10 +116,9 @@ class Updates:
             self._late_turns += 1
             return
         self._late_turns = 0
+        self._drawn = False
         self._update()
-        self._drawn = not (self._outbox.updates or self._outbox.messages)
-        if not self._drawn:
-            ui.run_javascript(self._SAY)
+        ui.run_javascript(self._SAY)
 
 
 async def machine_page(engine: Engine) -> None:
@@ -308,7 +307,7 @@ class _Head:
         #: Of the last updates, how many more found the pace unkept than kept.
         self._late_updates = 0
         self._mode = ui.label().classes("chip").props("role=status").mark("mode")
-        self._tiles: dict[str, ui.label] = {}
+        self._tiles: dict[str, LiveHtml] = {}
         with ui.element("div").classes("tiles").mark("status"):
             self._tile("time")
             for title in self._titles(engine.snapshot):
@@ -328,21 +327,21 @@ class _Head:
     def _tile(self, title: str) -> ui.element:
         with ui.element("div").classes("tile") as box:
             ui.label(title).classes("title")
-            self._tiles[title] = ui.label().classes("value").mark(f"tile-{title}")
+            self._tiles[title] = LiveHtml().classes("value").mark(f"tile-{title}")
         return box
 
     def update(self, now: Snapshot) -> None:
         """Update the panel, 20 times a second."""
-        self._set_tile("time", f"{now.time_s:.3f} s")
+        self._tiles["time"].content = f"{now.time_s:.3f} s"
         for title, value in self._status(now):
-            self._set_tile(title, value)
+            self._tiles[title].content = escape(value)
         kept = now.mode is not Mode.RUNNING or now.pace is None or now.reached >= PACE_KEPT * now.pace
         # It comes and goes slowly: what stands beside it shall not jump at each hiccup.
         self._late_updates = max(self._late_updates - 1, 0) if kept else min(self._late_updates + 1, MAX_LATE_UPDATES)
         if self._late_updates in (0, MAX_LATE_UPDATES) and self._pace.visible is not bool(self._late_updates):
             self._pace.visible = bool(self._late_updates)
         if self._pace.visible:
-            self._set_tile("pace", f"{now.reached:.2f}, {now.lag_ms:.0f} ms late")
+            self._tiles["pace"].content = f"{now.reached:.2f}, {now.lag_ms:.0f} ms late"
         findings = self._engine.findings
         if len(findings) != self._counted:
             self._counted = len(findings)
@@ -351,8 +350,3 @@ class _Head:
             self._mode.text = now.mode.value
             css = _CHIP.get(now.mode, "wait")
             self._mode.classes(add=css, remove=" ".join({"run", "wait", "bad"} - {css}))
-
-    def _set_tile(self, title: str, value: str) -> None:
-        label = self._tiles[title]
-        if label.text != value:
-            label.text = value

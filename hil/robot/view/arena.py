@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import atan2, hypot, pi
-from typing import Any, Final
+from typing import Final
 
 from nicegui import ui
 
@@ -188,7 +188,7 @@ class ArenaPanel:
             self._changes = now.changes
             self._posts.content = draw.obstacles(view, scene.obstacles)
         seen = self._window.seen
-        _set(self._beams, draw.beams(view, scene.beams, seen.unit))
+        self._beams.content = draw.beams(view, scene.beams, seen.unit)
         pose = Pose(scene.status.x_m, scene.status.y_m, scene.status.heading_rad)
         shown = draw.robot(view, pose, "robot", bumper=scene.bumper, unit=seen.unit)
         if scene.believed is not None:
@@ -217,7 +217,7 @@ class ArenaPanel:
     # The window
 
     def _draw_grid(self, seen: draw.VisibleArea) -> None:
-        _set(self._grid, draw.grid(self._view, seen))
+        self._grid.content = draw.grid(self._view, seen)
 
     def _fit(self) -> None:
         self._follow_no_more()
@@ -350,10 +350,10 @@ class FrameMap:
             pose = Pose(last.x_mm / 1e3, last.y_mm / 1e3, float(last.theta_rad))
             seen = self._window.seen
             shown = draw.robot(self._view, pose, "ghost", unit=seen.unit)
-            _set(self._robot, shown + draw.out_of_sight(self._view, pose, seen, "robot"))
+            self._robot.content = shown + draw.out_of_sight(self._view, pose, seen, "robot")
 
     def _draw_grid(self, seen: draw.VisibleArea) -> None:
-        _set(self._grid, draw.grid(self._view, seen))
+        self._grid.content = draw.grid(self._view, seen)
 
     def _fit(self, points: Sequence[Point]) -> None:
         """Extend the map so that it contains all points."""
@@ -366,7 +366,7 @@ class FrameMap:
         self._window.show(self._held)
 
     def _draw_loaded(self) -> None:
-        _set(self._old, loaded(self._view, self._loaded, Pose(0.0, 0.0, 0.0)))
+        self._old.content = loaded(self._view, self._loaded, Pose(0.0, 0.0, 0.0))
 
 
 def tool(text: str, meaning: str, do: Callable[[], None]) -> ui.button:
@@ -382,9 +382,3 @@ def legend() -> None:
     with ui.row().classes("gap-x-4 gap-y-0 soft legend"):
         for colour, text in draw.LEGEND:
             ui.html(f'<span class="key" style="border-color:var({colour})"></span>{text}', sanitize=False)
-
-
-def _set(layer: Any, content: str) -> None:
-    """Send a layer only if its content has changed."""
-    if layer.content != content:
-        layer.content = content

@@ -6,10 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import isfinite
 
-from nicegui import events, ui
+from nicegui import events
 from nicegui.element import Element
 
 from hil.robot.view.arena_drawing import HEIGHT, NUMBERS_PX, TOOLS_PX, WIDTH, Point, VisibleArea
+from hil.view.live import LiveHtml
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,10 +51,10 @@ class Window(Element, component="layers.js"):
         if on_shifted is not None:
             self.on("shifted", lambda _: on_shifted())
 
-    def layer(self) -> ui.html:
+    def layer(self) -> LiveHtml:
         """Add a layer above all others."""
         with self:
-            return ui.html(tag="svg", sanitize=False).classes("layer").props("aria-hidden=true")
+            return LiveHtml(tag="svg").classes("layer").props("aria-hidden=true")
 
     def show(self, extent: tuple[float, float, float, float]) -> None:
         """Set the extent of the picture.  All of it is visible, unless the user has zoomed or shifted."""
