@@ -9,6 +9,8 @@ from pathlib import Path
 from emulator.c28x.coverage import Coverage
 from emulator.c28x.findings import Finding
 from emulator.c28x.float_division import DEFAULT_FLOAT_DIVISION
+from emulator.c28x.passes.held import with_held_values
+from emulator.c28x.passes.small_functions import with_small_functions
 from hil.board import Board
 from hil.drivers.call_checker import CallChecker, CheckedFunction, Key, key_of
 from hil.drivers.following import wrong_steps
@@ -109,7 +111,7 @@ def source_findings(build: Build) -> list[Finding]:
         *mixed_units(build.modules, image.board.kernel.clocks.tick_period_us), *unused_limits(build.files),
     ):  # fmt: skip
         image.board.findings.report_at(mixed.place, mixed.rule, mixed.message, object=mixed.object, how="static")
-    for step in wrong_steps(build.modules):
+    for step in wrong_steps(with_held_values(with_small_functions(build.modules))):
         image.board.findings.report_at(step.place, "step-away", step.message, object=step.object, how="static")
     found = [f for f in image.findings if f.place is None or f.place.file not in build.others]
     image.close()

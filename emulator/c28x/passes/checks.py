@@ -43,6 +43,7 @@ from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.ring_back import check_ring_back
 from emulator.c28x.passes.search_end import check_searches
 from emulator.c28x.passes.sent_buffers import check_sent_buffers
+from emulator.c28x.passes.small_functions import with_small_functions
 from emulator.c28x.passes.spans import check_spans
 from emulator.c28x.passes.stamps import Stamps
 from emulator.c28x.passes.state_tables import check_state_tables
@@ -98,7 +99,9 @@ def check(
                 check_names(function, unit, report, used, by_address=function.path in entered)
         for variable in module.variables:
             file_scope(variable, initialisers[variable], report)
-    whole = with_members(with_targets(with_held_values(modules)))
+    shown = with_small_functions(modules, frozenset(entered))
+    shown_reports = {other: reports[module] for module, other in zip(modules, shown, strict=True)}
+    whole = with_members(with_targets(with_held_values(shown)))
     of_whole = {other: reports[module] for module, other in zip(modules, whole, strict=True)}
     stamps_of_whole = Stamps(whole, entries)
     stamps_of_whole.suspicions()
@@ -140,12 +143,12 @@ def check(
     check_quotients(reports, given)
     check_stated(reports, given)
     check_fraction_texts(reports, given)
-    check_spans(modules, reports)
+    check_spans(shown, shown_reports)
     check_drained(whole, of_whole)
     check_unlimited_lines(whole, of_whole)
     check_undone(modules, reports)
     check_unread_inputs(modules, reports)
-    check_entrances(modules, reports)
+    check_entrances(shown, shown_reports)
     owners = {function: report for module, report in reports.items() for function in module.functions}
     for function, s, stamp, against in stamps.cuts():
         name = source_text(stamp)

@@ -29,14 +29,16 @@ from emulator.c28x.tree import (
     If,
     Load,
     Logic,
+    LValue,
     Stmt,
     Unary,
+    Variable,
 )
 from emulator.c28x.tree_queries import OPPOSITE, TURNED, calls, source_text, statements
 
 
 class _Linear(NamedTuple):
-    """A sum of objects, each by its source text with a factor, and of a constant."""
+    """A sum of objects, each by its name with a factor, and of a constant."""
 
     terms: frozenset[tuple[str, float]]
     constant: float
@@ -131,7 +133,7 @@ def _linear(e: Expr) -> _Linear | None:
         case Const(value=value):
             return _Linear(frozenset(), value)
         case Load(lvalue=lvalue) if lvalue.text and isinstance(e.ctype, IntType | FloatType):
-            return _Linear(frozenset({(lvalue.text, 1)}), 0)
+            return _Linear(frozenset({(_name(lvalue), 1)}), 0)
         case Convert(ctype=FloatType(), operand=operand):
             return _linear(operand)
         case Convert(ctype=IntType() as to, operand=Expr(ctype=IntType() as of) as operand):
@@ -148,6 +150,11 @@ def _linear(e: Expr) -> _Linear | None:
                 terms[text] = terms.get(text, 0) + sign * factor
             return _Linear(frozenset(terms.items()), a.constant + sign * b.constant)
     return None
+
+
+def _name(lvalue: LValue) -> str:
+    """The source text of an object, with the place of what it begins with: another function may use the same name."""
+    return f"{lvalue.root.declaration.path} {lvalue.text}" if isinstance(lvalue.root, Variable) else lvalue.text
 
 
 def _wraps(e: Expr) -> bool:

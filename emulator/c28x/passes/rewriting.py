@@ -55,7 +55,7 @@ class Rewriting(ABC):
         if type(node) not in _FIELDS:
             return node
         written = self.instead(node)
-        for name in _FIELDS[type(written)]:
+        for name in _FIELDS.get(type(written), ()):
             old = getattr(written, name)
             part = self._node(old)
             if part is not old:
