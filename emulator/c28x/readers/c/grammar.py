@@ -6,9 +6,7 @@ Here, everything that can grow faster than the file has a limit.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable
-from dataclasses import dataclass
-from functools import lru_cache
+from collections.abc import Collection
 from typing import Any, Final, NoReturn
 
 from pycparser import c_ast
@@ -39,8 +37,6 @@ _SAID: Final = {
     "Expected identifier": "expected a name",
     "At end of input": "expected more",
 }
-#: How many beginnings of files a process keeps: the files of a project mostly begin with the same headers.
-_BEGINNINGS: Final = 16
 #: The kinds of lexemes that can come before the type of a declaration.
 _BEFORE_A_TYPE: Final = frozenset((
     "SEMI", "LBRACE", "RBRACE", "LPAREN", "COMMA", "COLON", "STATIC", "EXTERN", "TYPEDEF", "REGISTER", "AUTO", "CONST",
@@ -62,30 +58,6 @@ class _Lexer:
     def token(self) -> Lexeme | None:
         """Return nothing: the grammar gets its lexemes itself."""
         return None
-
-
-@dataclass(frozen=True, slots=True)
-class _Beginning:
-    """What our headers at the beginning of a file declare.  Who reads a tree does not change its nodes."""
-
-    declarations: tuple[Any, ...]
-    #: Name -> whether it is a type.
-    names: dict[str, bool]
-    #: How many lexemes were read again.
-    again: int
-
-
-@lru_cache(maxsize=_BEGINNINGS)
-def _beginning(lexemes: tuple[Hashable, ...]) -> list[_Beginning]:
-    """A list for the beginning that has these lexemes: empty until a file with it has been read."""
-    return []
-
-
-def _identity(lexeme: Lexeme) -> Hashable:
-    """What is equal only for lexemes that a tree cannot tell apart: their places are the same too."""
-    token = lexeme.token
-    used = token.use
-    return lexeme.type, lexeme.value, token.source, token.at, used and (used.source, used.at)
 
 
 class Parenthesised(c_ast.Assignment):  # type: ignore[misc]
@@ -140,28 +112,6 @@ class Grammar(CParser):  # type: ignore[misc]
         if (lexeme := self._peek()) is not None:
             raise self._expected("an operator or the end", lexeme)
         return tree
-
-    def _parse_translation_unit(self) -> list[c_ast.Node]:
-        """All declarations.  Those of our headers at the beginning are read once for all files that begin with them."""
-        read_at = ((each.token.use or each.token).source for each in self._lexemes)
-        ours = next((n for n, source in enumerate(read_at) if not source.kept), len(self._lexemes))
-        known = _beginning(tuple(map(_identity, self._lexemes[:ours]))) if ours and not self._typedefs else None
-        found: list[c_ast.Node] = []
-        if known:
-            found += known[0].declarations
-            self._scope_stack[-1] = dict(known[0].names)
-            self._visible = dict(known[0].names)
-            self._again -= known[0].again
-            self._index = ours
-        else:
-            again = self._again
-            while self._index < ours:
-                found += self._parse_external_declaration()
-            if known is not None and self._index == ours:
-                known.append(_Beginning(tuple(found), dict(self._visible), again - self._again))
-        while self._peek() is not None:
-            found += self._parse_external_declaration()
-        return found
 
     # ---- the stream: that of pycparser takes twice as long as all the rest
 

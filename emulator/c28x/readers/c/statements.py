@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator
-from copy import copy
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final, Protocol
@@ -345,10 +344,11 @@ class CStatementReader:
                     self.statements(node.init.decls)
                     self.general(node)
                 else:
-                    declaration = copy(node.init.decls[0])
+                    declaration = node.init.decls[0]
                     start = declaration.init
                     declaration.init = None
                     self.declarations.local(declaration)
+                    declaration.init = start
                     self.range(node, declaration.name, start, *counted)
             b.out.extend(statements)
             return

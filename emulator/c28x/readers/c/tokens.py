@@ -104,11 +104,6 @@ class SourceText:
             self._removed.append(removed)
         self.text = "".join([*pieces, text[last:]]) if pieces else text
 
-    @property
-    def kept(self) -> bool:
-        """Whether its tokens are stored: it is one object for all files that include it."""
-        return self._kept is not None
-
     def where(self, at: int, macro: Where | None = None) -> Where:
         """The place on disk of offset `at` of `text`."""
         joint = bisect_right(self._joints, at)

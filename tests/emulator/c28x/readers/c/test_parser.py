@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from emulator.c28x.readers.c.parser import ParserLimits, parse, parse_expression
 from emulator.c28x.readers.c.preprocessor import preprocess_text
-from emulator.c28x.readers.c.source import CSettings
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Where
 
@@ -315,58 +314,3 @@ def test_no_soup_of_tokens_is_anything_but_read_or_refused(words: list[str], ins
     except SourceError as error:
         found = error
     assert found is None or (found.line == 1 and found.column >= 1)
-
-
-# ---- files that begin with the same headers of ours
-
-DEVICE = '#include "F28x_Project.h"\n'
-BEGIN_ALIKE = {
-    "nothing more": DEVICE,
-    "uses of types": DEVICE + "Uint16 x; void f(void) { x = (Uint16)3; GpioDataRegs.GPASET.all = x; }",
-    "a type's name for an object": DEVICE + "void f(void) { int Uint16 = 3; int x = (Uint16) * 2; }",
-    "other headers behind": DEVICE + "#include <stdio.h>\n#include <string.h>\nint x;",
-    "a timer's structure": DEVICE + "struct CPUTIMER_VARS *t; void f(void) { ConfigCpuTimer(t, 200, 10); }",
-    "a macro before": "#define GpioDataRegs Others\n" + DEVICE + "int x;",
-    "a macro for a type before": "#define Uint16 Word\n" + DEVICE + "Word x;",
-    "another file with its lines": "\n\n\n" + DEVICE + "int x;",
-    "a declaration around": "extern\n" + DEVICE + "int x;",
-}
-
-
-def told_of(text: str, *defines: str) -> list[Any]:
-    """Each node of the tree with its place and all that it says."""
-    found = parse(preprocess_text(text, "t.c", CSettings(defines=defines).options()).tokens)
-    return [(type(node), node.coord, [getattr(node, name) for name in node.attr_names]) for node in nodes(found)]
-
-
-@pytest.mark.parametrize("text", BEGIN_ALIKE.values(), ids=BEGIN_ALIKE)
-def test_a_file_is_read_as_if_no_file_had_begun_alike(text: str) -> None:
-    grammar = pytest.importorskip("emulator.c28x.readers.c.grammar")
-    grammar._beginning.cache_clear()
-    alone = told_of(text)
-    for other in BEGIN_ALIKE.values():
-        told_of(other)
-    told_of(text, "GpioDataRegs=Others", "Uint32=Long")
-    assert told_of(text) == alone
-
-
-def test_what_comes_behind_the_headers_is_refused_as_in_the_first_file() -> None:
-    grammar = pytest.importorskip("emulator.c28x.readers.c.grammar")
-    for wrong in ("int Uint16;", "}", "int x = ;", "Uint17 x;", "void f(void) {"):
-        grammar._beginning.cache_clear()
-        said = []
-        for _ in range(2):
-            with pytest.raises(SourceError) as error:
-                told_of(DEVICE + wrong)
-            said.append(str(error.value))
-        assert said[0] == said[1]
-        assert said[0].startswith("t.c:2:")
-
-
-def test_declarations_of_headers_are_read_once() -> None:
-    first, second = (
-        parse(preprocess_text(DEVICE + text, "t.c", CSettings().options()).tokens).ext for text in ("int x;", "int y;")
-    )
-    assert len(first) == len(second) > 300
-    assert all(one is other for one, other in zip(first[:-1], second[:-1], strict=True))
-    assert (first[-1].name, second[-1].name) == ("x", "y")
