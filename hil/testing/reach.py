@@ -140,8 +140,8 @@ class Reach:
         """Whether one of the routines, or the DMA, may change an object."""
         if variable in self.pointed_at and (any(r.by_pointer for r in routines) or self._dma_listens()):
             return True
-        writers = self.threads.writers.get(variable, {}).keys() if variable.kind == "global" else set()
-        return any(routine.paths & writers for routine in routines)
+        writers = self.threads.writing(variable)
+        return any(not routine.paths.isdisjoint(writers) for routine in routines)
 
     def may_change(self, routines: list[_Routine], register: RegisterRef) -> bool:
         """Whether one of the routines, or an event of the chip, may change the value of a register."""

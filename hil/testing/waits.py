@@ -212,7 +212,7 @@ class PollingLoop:
             return
         name = variable.declaration.path
         inside = {function.path for function in self._inside}
-        writers = [path for path in self._threads.writers.get(variable, {}) if path not in inside]
+        writers = [path for path in self._threads.writing(variable) if path not in inside]
         if not writers:
             yield f"it waits for {name}, which nothing in the firmware writes"
         for path in writers:

@@ -1,13 +1,14 @@
-"""The trees of a program in which a call of a small function is what the function does.
+"""The trees of a program in which a call of a small function is the value that it returns.
 
     static Uint16 Get_Level(void) { return level; }
-    static void Set_Level(Uint16 value) { level = value; }
-    if (Get_Level() > FULL) Set_Level(0);                       if (level > FULL) level = 0;
+    if (Get_Level() > FULL) ...                                 if (level > FULL) ...
 
-Checks look for a value where it is used, and for a change where it happens.  A small function has one statement: it
-returns an expression, or it gives a parameter to an object.  The trees have that instead of the call, with the place of
-the call: there the value matters.  A function that nothing calls any more is left out, or its parameter would be a
-value that nobody knows.
+Checks look for a value where it is used.  A small function has one statement: it returns an expression.  The trees have
+that instead of the call, with the place of the call: there the value matters.  A function that nothing calls any more
+is left out, or its parameter would be a value that nobody knows.
+
+A function that gives a parameter to an object stays a call: a number that is passed goes out, and checks of counts are
+silent about it.
 
 A call stays as it is if the way would show: what an argument does would be done twice, or perhaps not at all, or after
 something else.  A function that returns a constant is a name for it: it may be a choice of the build.
@@ -27,10 +28,8 @@ from emulator.c28x.passes.rewriting import Rewriting
 from emulator.c28x.passes.values import depends, volatile
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
-    Assign,
     Call,
     Conditional,
-    Evaluate,
     Expr,
     Function,
     Load,
@@ -40,14 +39,14 @@ from emulator.c28x.tree import (
     Variable,
     Where,
 )  # fmt: skip
-from emulator.c28x.tree_queries import INNER, bare, called, calls, once, own_nodes, parts, reached, source_text, within
+from emulator.c28x.tree_queries import INNER, called, calls, once, own_nodes, parts, reached, source_text, within
 
 #: CHOICE: the largest number of nodes in a small function.
 _MOST: Final = 40
 
 
 def with_small_functions(modules: Iterable[Module], entered: frozenset[str] = frozenset()) -> list[Module]:
-    """The modules of a program, with what small functions do in the place of their calls.
+    """The modules of a program, with what small functions return in the place of their calls.
 
     `entered` are the functions that are also called in other ways than by their names.
     """
@@ -74,10 +73,6 @@ def _is_small(function: Function) -> bool:
     match function.body:
         case [Return(value=Expr() as value)] if depends(value):
             pass
-        case [Assign(target=LValue(root=Variable(kind="global")), value=value)]:
-            given = bare(value)
-            if not isinstance(given, Load) or given.lvalue.root not in function.parameters:
-                return False
         case _:
             return False
     return (
@@ -92,7 +87,7 @@ def _called(function: Function) -> set[str]:
 
 
 def _can_stand(function: Function, call: Call) -> bool:
-    """Whether what a small function does can stand where it is called."""
+    """Whether what a small function returns can stand where it is called."""
     nodes = own_nodes(function.body[0])
     mentions = Counter(p.root for p in nodes if isinstance(p, LValue) and isinstance(p.root, Variable))
     perhaps = any(isinstance(p, Logic | Conditional) for p in nodes)
@@ -111,14 +106,14 @@ def _is_local(lvalue: LValue) -> bool:
 
 
 class _CallView(Rewriting):
-    """Writes functions anew, with what small functions do in the place of their calls."""
+    """Writes functions anew, with what small functions return in the place of their calls."""
 
     def __init__(self, small: dict[str, Function]) -> None:
         super().__init__(())
         self._small = small
 
     def function(self, function: Function) -> Function:
-        """A function with what those do that it calls."""
+        """A function with what those return that it calls."""
         inner = _called(function) & self._small.keys()
         if not inner:
             return function
@@ -129,14 +124,7 @@ class _CallView(Rewriting):
         return _called(self._small[path]) & self._small.keys()
 
     def instead(self, node: Any) -> Any:
-        """What a small function does, for a call of it."""
-        match node:
-            case Evaluate(value=Call(function=Function(path=path)) as call) if path in self._small:
-                (done,) = self._small[path].body
-                if isinstance(done, Assign) and _can_stand(self._small[path], call):
-                    given = dict(zip(self._small[path].parameters, call.arguments, strict=True))
-                    target, value = (_written(part, given, node.where) for part in (done.target, done.value))
-                    return Assign(node.where, target, value)
+        """What a small function returns, for a call of it."""
         while isinstance(node, Call) and (function := self._small.get(node.function.path)) is not None:
             (done,) = function.body
             if not isinstance(done, Return) or not _can_stand(function, node):

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Set
 from functools import cached_property
+from typing import NamedTuple
 
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
+    AddressOf,
     Assign,
     Binary,
     Break,
@@ -41,16 +43,44 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
     INSTRUCTIONS,
-    addressed,
-    assigned,
     bare,
     blocks,
+    fixed_words,
     own_nodes,
     parts,
     reached,
     statements,
     variables,
 )
+
+
+class Part(NamedTuple):
+    """Words of an object of static storage: of a structure, those of one member."""
+
+    root: Variable
+    first: int
+    end: int
+
+    def meets(self, other: Part) -> bool:
+        """Whether they have a word in common."""
+        return self.root is other.root and self.first < other.end and other.first < self.end
+
+
+def _part(lvalue: LValue, *, whole: bool = False) -> Part | None:
+    """What an lvalue names; all of the object if that is asked for, or if a subscript is not known."""
+    root = lvalue.root
+    if not isinstance(root, Variable) or root.kind != "global":
+        return None
+    first = None if whole else fixed_words(lvalue)
+    return Part(root, 0, root.ctype.words) if first is None else Part(root, first, first + lvalue.ctype.words)
+
+
+def _name(lvalue: LValue, root: Variable) -> str:
+    """The path of what an lvalue names."""
+    declaration = root.declaration
+    if lvalue.text.startswith(declaration.name):
+        return declaration.path.removesuffix(declaration.name) + lvalue.text
+    return declaration.path
 
 
 class WriterAnalysis:
@@ -73,15 +103,23 @@ class WriterAnalysis:
         }
 
     @cached_property
-    def writers(self) -> dict[Variable, dict[str, Stmt]]:
-        """File-scope object -> the functions that write it or take its address, each with its first such statement."""
-        found: dict[Variable, dict[str, Stmt]] = {}
+    def writers(self) -> dict[Variable, list[tuple[Part, str, Stmt]]]:
+        """File-scope object -> what statements write of it or take the address of, with their functions."""
+        found: dict[Variable, list[tuple[Part, str, Stmt]]] = {}
         for path, function in self.functions.items():
             for s in statements(function.body):
-                for variable in {assigned(s)} | addressed(own_nodes(s)):
-                    if variable is not None and variable.kind == "global":
-                        found.setdefault(variable, {}).setdefault(path, s)
+                # A pointer to an element leads to all others.
+                pointed = (
+                    _part(p.lvalue, whole=bool(p.lvalue.indices)) for p in own_nodes(s) if isinstance(p, AddressOf)
+                )
+                for part in (*_written(s), *pointed):
+                    if part is not None:
+                        found.setdefault(part.root, []).append((part, path, s))
         return found
+
+    def writing(self, variable: Variable) -> list[str]:
+        """The functions that write a file-scope object or take its address."""
+        return list(dict.fromkeys(path for _, path, _ in self.writers.get(variable, ())))
 
     @cached_property
     def begins(self) -> dict[str, set[str]]:
@@ -98,12 +136,12 @@ class WriterAnalysis:
         """A function and all functions that it calls, directly or indirectly."""
         return set(reached([path], lambda caller: self.called.get(caller, ())))
 
-    def writer(self, variable: Variable, waiting: Function) -> tuple[Function, Stmt] | None:
-        """The first function that another thread runs and that writes `variable`; None: there is none."""
+    def writer(self, read: Part, waiting: Function) -> tuple[Function, Stmt] | None:
+        """The first function that another thread runs and that writes some of `read`; None: there is none."""
         inside = self.below(waiting.path)
         runs = {begin for begin, reached in self.begins.items() if waiting.path in reached}
-        for path, s in self.writers.get(variable, {}).items():
-            if path not in inside and any(
+        for part, path, s in self.writers.get(read.root, ()):
+            if path not in inside and part.meets(read) and any(
                 path in reached and runs - {begin} for begin, reached in self.begins.items()
             ):  # fmt: skip
                 return self.functions[path], s
@@ -114,20 +152,20 @@ def check_waiting(function: Function, threads: WriterAnalysis, report: StaticRep
     """Report loops of a function that wait for an object which another thread writes and which is not `volatile`."""
     for loop in statements(function.body):
         if isinstance(loop, While | For):
-            told: set[Variable] = set()
+            told: set[Part] = set()
             for turning in (loop, *_continued(loop)):
-                for variable in dict.fromkeys(_Loop(turning, function, threads).polled()):
-                    found = threads.writer(variable, function)
-                    if found is None or variable in told:
+                for part, path in dict(_Loop(turning, function, threads).polled()).items():
+                    found = threads.writer(part, function)
+                    if found is None or part in told:
                         continue
-                    told.add(variable)
-                    path, (writer, s) = variable.declaration.path, found
+                    told.add(part)
+                    writer, s = found
                     place = f"{s.where.file.rsplit('/', 1)[-1]}:{s.where.line}"
                     message = f"the loop waits on {path}, which {writer.path} writes ({place}) and which is not "
                     message += "volatile: the compiler may read it once, before the loop"
                     report.report(
                         function, turning.where, "poll-not-volatile", message, object=path,
-                        declaration=variable.declaration,
+                        declaration=part.root.declaration,
                     )  # fmt: skip
 
 
@@ -152,7 +190,7 @@ class _Loop:
         self.threads = threads
         #: The statements of a turn after which another one can follow.
         self.inside = [loop, *(s for block in blocks(loop) for s in _turning(block, inner=False))]
-        self.written = {variable for s in self.inside for variable in _written(s)}
+        self.written = {part for s in self.inside for part in _written(s)}
         #: Locals that its turns change -> the values assigned to them (None: not known).
         self.given: dict[Variable, list[Expr | None]] = {}
         for s in self.inside:
@@ -164,13 +202,13 @@ class _Loop:
                 case For(variable=LValue(root=Variable() as root)) | CopyStruct(target=LValue(root=Variable() as root)):
                     self.given.setdefault(root, []).append(None)
 
-    def polled(self) -> list[Variable]:
-        """The objects for which the loop waits and which the compiler need not read again."""
+    def polled(self) -> list[tuple[Part, str]]:
+        """What the loop waits for and the compiler need not read again; its name."""
         decisive = [source for test in self.exits() for source in self.sources(test, frozenset())]
         if not any(self.read(source) for source in decisive) or not self.transparent():
             return []
         read = [self.read(source) for source in decisive]  # again, because `transparent` has added what its calls write
-        return [variable for one in read for variable in one] if all(read) or self.idle() else []
+        return [each for one in read for each in one] if all(read) or self.idle() else []
 
     def exits(self) -> Iterator[Expr | None]:
         """The conditions that decide whether the loop ends (None: a counter at its limit)."""
@@ -201,8 +239,8 @@ class _Loop:
         """The locals in an expression that the turns of the loop change."""
         return {variable for variable in variables(parts(e)) if variable in self.given}
 
-    def read(self, e: Expr | None) -> list[Variable]:
-        """The objects of static storage that an expression reads; none if a part of it must be read every time.
+    def read(self, e: Expr | None) -> list[tuple[Part, str]]:
+        """What an expression reads of objects of static storage; nothing if some of it must be read every time.
 
         A volatile object that no other thread writes is read every time too, but it does not change.
         """
@@ -211,13 +249,16 @@ class _Loop:
             match p:
                 case RegisterLoad() | Call() | CallPointer() | LValue(root=Expr()) | LValue(volatile=True):
                     return []
-                case LValue(root=Variable(volatile=True) as root) if self.threads.writer(root, self.function):
+                case LValue(root=Variable(volatile=True)) if (part := _part(p)) and self.threads.writer(
+                    part, self.function
+                ):
                     return []
-                case Load(lvalue=LValue(root=Variable(kind="global", constant=False) as root)):
-                    if root in self.written:
+                case Load(lvalue=LValue(root=Variable(kind="global", constant=False) as root) as lvalue):
+                    part = _part(lvalue)
+                    if part is None or any(map(part.meets, self.written)):
                         return []
                     if not root.volatile:
-                        found.append(root)
+                        found.append((part, _name(lvalue, root)))
         return found
 
     def transparent(self) -> bool:
@@ -237,7 +278,7 @@ class _Loop:
             body = list(statements(callee.body))
             if any(map(_writes_by_pointer, body)) or any(isinstance(call, CallPointer) for call in _calls(body)):
                 return False
-            self.written |= {variable for s in body for variable in _written(s)}
+            self.written |= {part for s in body for part in _written(s)}
         return True
 
     def idle(self) -> bool:
@@ -306,10 +347,13 @@ def _calls(body: list[Stmt]) -> Iterator[Call | CallPointer]:
                 yield part
 
 
-def _written(s: Stmt) -> set[Variable]:
-    """The objects of static storage that a statement itself writes."""
-    variable = assigned(s)
-    return {variable} if variable is not None and variable.kind == "global" else set()
+def _written(s: Stmt) -> list[Part]:
+    """What a statement itself writes of objects of static storage."""
+    match s:
+        case Assign(target=LValue() as target) | For(variable=LValue() as target) | CopyStruct(target=target):
+            part = _part(target)
+            return [] if part is None else [part]
+    return []
 
 
 def _writes_by_pointer(s: Stmt) -> bool:

@@ -1,4 +1,4 @@
-"""Calls of small functions are what these do, for checks of a whole program."""
+"""Calls of small functions are what these return, for checks of a whole program."""
 
 from __future__ import annotations
 
@@ -46,16 +46,15 @@ def texts(body: str) -> tuple[list[str], set[str]]:
 
 @pytest.mark.parametrize(("body", "shown"), [
     ("return Get();", ["level"]),
-    ("if (Get() > 3) Set(0); return 2;", ["level > 3", "level = 0", "2"]),
+    ("if (Get() > 3) Set(0); return 2;", ["level > 3", "Set(...)", "2"]),
     ("return More(p * 2);", ["p * 2 + limit"]),
-    ("Set(Get() + 1); return 2;", ["level = level + 1", "2"]),
-    ("switch (More(pressed)) { case 1: Put(2, pressed); } return 2;", ["pressed + limit", "table[2] = pressed", "2"]),
+    ("switch (More(pressed)) { case 1: Put(2, pressed); } return 2;", ["pressed + limit", "Put(...)", "2"]),
     ("return At(p) - At(limit);", ["table[p] - table[limit]"]),
     ("return Twice(level);", ["level + level"]),
-    ("if (Full()) Set(1); return 2;", ["level + limit > 7", "level = 1", "2"]),
+    ("if (Full()) limit = 1; return 2;", ["level + limit > 7", "limit = 1", "2"]),
     ("return Late(3);", ["again(...) + 3"]),
 ])  # fmt: skip
-def test_a_call_is_what_the_function_does(body: str, shown: list[str]) -> None:
+def test_a_call_is_what_the_function_returns(body: str, shown: list[str]) -> None:
     assert texts(body)[0] == shown
 
 
@@ -76,8 +75,8 @@ def test_a_call_that_would_not_be_the_same_stays(body: str, shown: list[str]) ->
 
 def test_a_function_that_nothing_calls_any_more_is_left_out() -> None:
     _, left = texts("Set(1); return Twice(level) + Twice(pressed) + At(p);")
-    assert {"Set", "At"}.isdisjoint(left)
-    assert {"Twice", "Put"} <= left  # called still, and never called
+    assert "At" not in left
+    assert {"Set", "Twice", "Put"} <= left  # called still, and never called
 
 
 def rules(statements_of_f: str) -> set[tuple[str, int]]:
@@ -88,10 +87,11 @@ def rules(statements_of_f: str) -> set[tuple[str, int]]:
 
 
 @pytest.mark.parametrize(("body", "rule", "wrong"), [
-    ("Set(0); sum += raw; Set(Get() + 1); if (Get() >= 64) sum = 0;", "constant-condition", True),
-    ("sum += raw; Set(Get() + 1); if (Get() >= 64) sum = 0;", "constant-condition", False),
+    ("n = 0; sum += raw; n++; if (Get() >= 64) sum = 0;", "constant-condition", True),
+    ("sum += raw; n++; if (Get() >= 64) sum = 0;", "constant-condition", False),
+    ("Set(0); sum += raw; Set(Get() + 1); if (Get() >= 64) sum = 0;", "constant-condition", False),
     ("if (High(20)) sum = 1; else if (Low(30)) sum = 2;", "constant-condition", True),
     ("if (High(30)) sum = 1; else if (Low(20)) sum = 2;", "constant-condition", False),
 ])  # fmt: skip
-def test_what_small_functions_do_is_told_like_what_is_done_in_place(body: str, rule: str, *, wrong: bool) -> None:
+def test_what_small_functions_return_is_told_like_what_is_used_in_place(body: str, rule: str, *, wrong: bool) -> None:
     assert ((rule, 2) in rules(body)) == wrong

@@ -17,7 +17,7 @@ from tests.emulator.c28x.readers.c.workshop import read
 HEAD = """\
 #include "F28x_Project.h"
 typedef volatile unsigned int vuint;
-struct data { volatile int ready; int count; };
+struct data { volatile int ready; int count, own; };
 struct bits { unsigned done : 1; unsigned wrong : 1; };
 int flag, mode, limit, enabled, lone, item[4], out[10], *pointer;
 volatile int vflag, vitem[4]; vuint vnamed; struct data data; volatile struct data vdata;
@@ -65,9 +65,10 @@ def waiting(files: str | dict[str, str]) -> list[tuple[str, int, int, str]]:
         ("int wait(void) { int n = 1; while (!mode) { n = twice(n); } return n; }", "mode"),
         ("void wait(void) { while (!mode) { clear(); } }", "mode"),
         ("void wait(void) { while (!hidden) ; }", "hidden"),
-        ("void wait(void) { while (!item[2]) ; }", "item"),
-        ("void wait(void) { while (data.count == 0) ; }", "data"),
-        ("void wait(void) { while (!bits.done) ; }", "bits"),
+        ("void wait(void) { while (!item[2]) ; }", "item[2]"),
+        ("void wait(void) { while (data.count == 0) ; }", "data.count"),
+        ("void wait(void) { while (!bits.done) ; }", "bits.done"),
+        ("void wait(void) { while (!data.count) { data.own++; } }", "data.count"),  # the loop writes another member
     ],
 )
 def test_a_wait_on_what_an_interrupt_writes_is_found_where_the_loop_begins(function: str, variable: str) -> None:
@@ -94,6 +95,7 @@ def test_a_wait_on_what_an_interrupt_writes_is_found_where_the_loop_begins(funct
         "void wait(void) { while (flag) { clear(); } }",
         "void wait(void) { while (!flag) { *pointer = 0; } }",
         "void wait(void) { while (!lone) ; }",  # nobody writes it
+        "void wait(void) { while (!data.own) ; }",  # nobody writes this member
         "void wait(void) { while (1) { if (flag) { flag = 0; out[0]++; } } }",
         "void count(void) { int i; for (i = 0; i < limit; i++) { out[i % 10] = i; } }",
         "void count(void) { int i = 0; while (i < limit) i++; }",
@@ -111,6 +113,17 @@ def test_right_loops_are_silent(function: str) -> None:
 
 
 MAIN = "int flag;\nstatic void raise(void) { flag = 1; }\n%s\nint main(void) { %s while (!flag) ; return 0; }\n"
+
+
+def test_the_statement_that_writes_the_member_is_named() -> None:
+    source = (
+        "struct { int level, done; long sum[2]; } state;\ninterrupt void isr(void)\n{\n    state.level = 1;\n"
+        "    state.sum[1] = 2;\n    state.done = 1;\n}\nvoid wait(void) { while (!state.done) ; }\n"
+    )
+    modules = read({"drv.c": source}).translate()
+    found = check(modules, {v: v.initial for m in modules for v in m.variables}, Stamps(modules, frozenset()))
+    (told,) = (f.message for f in found if f.rule == "poll-not-volatile")
+    assert "waits on drv.state.done, which drv.isr writes (drv.c:6)" in told
 
 
 def test_with_a_main_only_what_runs_beside_it_counts() -> None:
