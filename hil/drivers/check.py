@@ -111,8 +111,10 @@ def source_findings(build: Build) -> list[Finding]:
         *mixed_units(build.modules, image.board.kernel.clocks.tick_period_us), *unused_limits(build.files),
     ):  # fmt: skip
         image.board.findings.report_at(mixed.place, mixed.rule, mixed.message, object=mixed.object, how="static")
-    steps = [*wrong_steps(build.modules), *wrong_steps(with_held_values(with_small_functions(build.modules)))]
-    for step in {step.place: step for step in reversed(steps)}.values():  # as it is written, if that shows it
+    steps = {step.place: step for step in wrong_steps(build.modules)}  # as the source has it, where that shows it
+    for step in wrong_steps(with_held_values(with_small_functions(build.modules))):
+        steps.setdefault(step.place, step)
+    for step in steps.values():
         image.board.findings.report_at(step.place, "step-away", step.message, object=step.object, how="static")
     found = [f for f in image.findings if f.place is None or f.place.file not in build.others]
     image.close()

@@ -33,7 +33,7 @@ class LinePanel:
         self._log = ui.log(max_lines=MAX_LINES).classes("w-full mono log").mark("log")
 
     def update(self, _now: object = None) -> None:
-        """Update the panel, 20 times a second."""
+        """Update the panel, up to 20 times a second."""
         log = self._line.log
         counts = f"{log.bytes_from_robot} B in, {log.bytes_to_robot} B out"
         if self._counts.text != counts:

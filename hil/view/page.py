@@ -228,7 +228,7 @@ class BoardPage:
                 self._second = Tabs(self._second_panels, "more panels", "beside", chosen="Findings").classed("second")
 
     def update(self) -> None:
-        """Update the panel, 20 times a second."""
+        """Update the panel, up to 20 times a second."""
         now = self._engine.snapshot
         for update in self._always:
             update(now)
@@ -282,7 +282,7 @@ class Tabs:
         self._tabs.set_value(title)
 
     def update(self, now: Snapshot) -> None:
-        """Update the panel, 20 times a second."""
+        """Update the panel, up to 20 times a second."""
         panel = self.panels.get(self.chosen)
         if panel is not None:
             panel.update(now)
@@ -331,7 +331,7 @@ class _Head:
         return box
 
     def update(self, now: Snapshot) -> None:
-        """Update the panel, 20 times a second."""
+        """Update the panel, up to 20 times a second."""
         self._tiles["time"].content = f"{now.time_s:.3f} s"
         for title, value in self._status(now):
             self._tiles[title].content = escape(value)

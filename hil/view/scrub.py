@@ -136,7 +136,7 @@ class ScrubBar:
         self._on_finding(finding)
 
     def update(self, now: Snapshot) -> None:
-        """Update the panel, 20 times a second."""
+        """Update the panel, up to 20 times a second."""
         if now.mode is not Mode.REPLAYING:
             self._goal = None
         if now.mode is Mode.RUNNING:

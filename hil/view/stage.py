@@ -62,7 +62,7 @@ class PanelsProtocol(Protocol):
         """The state as tiles of the head line: titles, which stay the same, and values."""
 
     def update(self, now: Snapshot) -> None:
-        """Update the panel, 20 times a second."""
+        """Update the panel, up to 20 times a second."""
 
     def key(self, name: str, down: bool) -> bool:
         """Handle a key before all others.  Returns whether it was used."""

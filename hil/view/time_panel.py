@@ -65,7 +65,7 @@ class TimeBar:
         self._engine.set_pace(None if key == "max" else float(key))
 
     def update(self, now: Snapshot) -> None:
-        """Update the panel, 20 times a second."""
+        """Update the panel, up to 20 times a second."""
         label = "Pause" if now.mode is Mode.RUNNING else "Run"
         if self._run.text != label:
             self._run.text = label

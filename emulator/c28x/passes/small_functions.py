@@ -71,14 +71,13 @@ def with_small_functions(modules: Iterable[Module], entered: frozenset[str] = fr
 @once
 def _is_small(function: Function) -> bool:
     match function.body:
-        case [Return(value=Expr() as value)] if depends(value):
-            pass
-        case _:
-            return False
-    return (
-        len(own_nodes(function.body[0])) <= _MOST and not function.interrupt and function.given is None
-        and all(isinstance(p.ctype, IntType | FloatType | PointerType) and not p.in_memory for p in function.parameters)
-    )  # fmt: skip
+        case [Return(value=Expr() as value) as s]:
+            return (
+                depends(value) and len(own_nodes(s)) <= _MOST and not function.interrupt and function.given is None
+                and all(isinstance(p.ctype, IntType | FloatType | PointerType) for p in function.parameters)
+                and not any(p.in_memory for p in function.parameters)
+            )  # fmt: skip
+    return False
 
 
 @once

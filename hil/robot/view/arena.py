@@ -181,7 +181,7 @@ class ArenaPanel:
         return trails
 
     def update(self, now: Snapshot) -> None:
-        """Update the panel, 20 times a second."""
+        """Update the panel, up to 20 times a second."""
         view = self._view
         scene: Scene = now.scene
         if now.changes != self._changes:
@@ -337,7 +337,7 @@ class FrameMap:
         self._draw_loaded()
 
     def update(self) -> None:
-        """Update the panel, 20 times a second."""
+        """Update the panel, up to 20 times a second."""
         self._turn = (self._turn + 1) % PATH_UPDATES
         if self._turn:
             return

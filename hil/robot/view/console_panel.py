@@ -149,7 +149,7 @@ class ConsolePanel:
         return self.tele.on and self.tele.key(name, down, time.monotonic())
 
     def update(self) -> None:
-        """Update the panel, 20 times a second."""
+        """Update the panel, up to 20 times a second."""
         if self._line.flowing:
             self.send(self.tele.tick(time.monotonic()))
         reference = f"V {self.tele.v_m_s:+.2f} m/s   W {self.tele.w_rad_s:+.2f} rad/s"

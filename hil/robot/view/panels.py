@@ -55,7 +55,7 @@ class Panels:
         )  # fmt: skip
 
     def update(self, now: Snapshot) -> None:
-        """Update the panel, 20 times a second."""
+        """Update the panel, up to 20 times a second."""
         self._arena.update(now)
         self._console.update()
 
