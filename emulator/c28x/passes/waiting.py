@@ -54,25 +54,25 @@ from emulator.c28x.tree_queries import (
 )
 
 
-class Part(NamedTuple):
+class WordRange(NamedTuple):
     """Words of an object of static storage: of a structure, those of one member."""
 
     root: Variable
     first: int
     end: int
 
-    def meets(self, other: Part) -> bool:
+    def meets(self, other: WordRange) -> bool:
         """Whether they have a word in common."""
         return self.root is other.root and self.first < other.end and other.first < self.end
 
 
-def _part(lvalue: LValue, *, whole: bool = False) -> Part | None:
+def _words(lvalue: LValue, *, whole: bool = False) -> WordRange | None:
     """What an lvalue names; all of the object if that is asked for, or if a subscript is not known."""
     root = lvalue.root
     if not isinstance(root, Variable) or root.kind != "global":
         return None
     first = None if whole else fixed_words(lvalue)
-    return Part(root, 0, root.ctype.words) if first is None else Part(root, first, first + lvalue.ctype.words)
+    return WordRange(root, 0, root.ctype.words) if first is None else WordRange(root, first, first + lvalue.ctype.words)
 
 
 def _name(lvalue: LValue, root: Variable) -> str:
@@ -103,18 +103,18 @@ class WriterAnalysis:
         }
 
     @cached_property
-    def writers(self) -> dict[Variable, list[tuple[Part, str, Stmt]]]:
+    def writers(self) -> dict[Variable, list[tuple[WordRange, str, Stmt]]]:
         """File-scope object -> what statements write of it or take the address of, with their functions."""
-        found: dict[Variable, list[tuple[Part, str, Stmt]]] = {}
+        found: dict[Variable, list[tuple[WordRange, str, Stmt]]] = {}
         for path, function in self.functions.items():
             for s in statements(function.body):
                 # A pointer to an element leads to all others.
                 pointed = (
-                    _part(p.lvalue, whole=bool(p.lvalue.indices)) for p in own_nodes(s) if isinstance(p, AddressOf)
+                    _words(p.lvalue, whole=bool(p.lvalue.indices)) for p in own_nodes(s) if isinstance(p, AddressOf)
                 )
-                for part in (*_written(s), *pointed):
-                    if part is not None:
-                        found.setdefault(part.root, []).append((part, path, s))
+                for words in (*_written(s), *pointed):
+                    if words is not None:
+                        found.setdefault(words.root, []).append((words, path, s))
         return found
 
     def writing(self, variable: Variable) -> list[str]:
@@ -136,12 +136,12 @@ class WriterAnalysis:
         """A function and all functions that it calls, directly or indirectly."""
         return set(reached([path], lambda caller: self.called.get(caller, ())))
 
-    def writer(self, read: Part, waiting: Function) -> tuple[Function, Stmt] | None:
+    def writer(self, read: WordRange, waiting: Function) -> tuple[Function, Stmt] | None:
         """The first function that another thread runs and that writes some of `read`; None: there is none."""
         inside = self.below(waiting.path)
         runs = {begin for begin, reached in self.begins.items() if waiting.path in reached}
-        for part, path, s in self.writers.get(read.root, ()):
-            if path not in inside and part.meets(read) and any(
+        for words, path, s in self.writers.get(read.root, ()):
+            if path not in inside and words.meets(read) and any(
                 path in reached and runs - {begin} for begin, reached in self.begins.items()
             ):  # fmt: skip
                 return self.functions[path], s
@@ -152,20 +152,20 @@ def check_waiting(function: Function, threads: WriterAnalysis, report: StaticRep
     """Report loops of a function that wait for an object which another thread writes and which is not `volatile`."""
     for loop in statements(function.body):
         if isinstance(loop, While | For):
-            told: set[Part] = set()
+            told: set[WordRange] = set()
             for turning in (loop, *_continued(loop)):
-                for part, path in dict(_Loop(turning, function, threads).polled()).items():
-                    found = threads.writer(part, function)
-                    if found is None or part in told:
+                for words, path in dict(_Loop(turning, function, threads).polled()).items():
+                    found = threads.writer(words, function)
+                    if found is None or words in told:
                         continue
-                    told.add(part)
+                    told.add(words)
                     writer, s = found
                     place = f"{s.where.file.rsplit('/', 1)[-1]}:{s.where.line}"
                     message = f"the loop waits on {path}, which {writer.path} writes ({place}) and which is not "
                     message += "volatile: the compiler may read it once, before the loop"
                     report.report(
                         function, turning.where, "poll-not-volatile", message, object=path,
-                        declaration=part.root.declaration,
+                        declaration=words.root.declaration,
                     )  # fmt: skip
 
 
@@ -190,7 +190,7 @@ class _Loop:
         self.threads = threads
         #: The statements of a turn after which another one can follow.
         self.inside = [loop, *(s for block in blocks(loop) for s in _turning(block, inner=False))]
-        self.written = {part for s in self.inside for part in _written(s)}
+        self.written = {words for s in self.inside for words in _written(s)}
         #: Locals that its turns change -> the values assigned to them (None: not known).
         self.given: dict[Variable, list[Expr | None]] = {}
         for s in self.inside:
@@ -202,7 +202,7 @@ class _Loop:
                 case For(variable=LValue(root=Variable() as root)) | CopyStruct(target=LValue(root=Variable() as root)):
                     self.given.setdefault(root, []).append(None)
 
-    def polled(self) -> list[tuple[Part, str]]:
+    def polled(self) -> list[tuple[WordRange, str]]:
         """What the loop waits for and the compiler need not read again; its name."""
         decisive = [source for test in self.exits() for source in self.sources(test, frozenset())]
         if not any(self.read(source) for source in decisive) or not self.transparent():
@@ -239,7 +239,7 @@ class _Loop:
         """The locals in an expression that the turns of the loop change."""
         return {variable for variable in variables(parts(e)) if variable in self.given}
 
-    def read(self, e: Expr | None) -> list[tuple[Part, str]]:
+    def read(self, e: Expr | None) -> list[tuple[WordRange, str]]:
         """What an expression reads of objects of static storage; nothing if some of it must be read every time.
 
         A volatile object that no other thread writes is read every time too, but it does not change.
@@ -249,16 +249,16 @@ class _Loop:
             match p:
                 case RegisterLoad() | Call() | CallPointer() | LValue(root=Expr()) | LValue(volatile=True):
                     return []
-                case LValue(root=Variable(volatile=True)) if (part := _part(p)) and self.threads.writer(
-                    part, self.function
+                case LValue(root=Variable(volatile=True)) if (words := _words(p)) and self.threads.writer(
+                    words, self.function
                 ):
                     return []
                 case Load(lvalue=LValue(root=Variable(kind="global", constant=False) as root) as lvalue):
-                    part = _part(lvalue)
-                    if part is None or any(map(part.meets, self.written)):
+                    words = _words(lvalue)
+                    if words is None or any(map(words.meets, self.written)):
                         return []
                     if not root.volatile:
-                        found.append((part, _name(lvalue, root)))
+                        found.append((words, _name(lvalue, root)))
         return found
 
     def transparent(self) -> bool:
@@ -278,7 +278,7 @@ class _Loop:
             body = list(statements(callee.body))
             if any(map(_writes_by_pointer, body)) or any(isinstance(call, CallPointer) for call in _calls(body)):
                 return False
-            self.written |= {part for s in body for part in _written(s)}
+            self.written |= {words for s in body for words in _written(s)}
         return True
 
     def idle(self) -> bool:
@@ -347,12 +347,12 @@ def _calls(body: list[Stmt]) -> Iterator[Call | CallPointer]:
                 yield part
 
 
-def _written(s: Stmt) -> list[Part]:
+def _written(s: Stmt) -> list[WordRange]:
     """What a statement itself writes of objects of static storage."""
     match s:
         case Assign(target=LValue() as target) | For(variable=LValue() as target) | CopyStruct(target=target):
-            part = _part(target)
-            return [] if part is None else [part]
+            words = _words(target)
+            return [] if words is None else [words]
     return []
 
 
