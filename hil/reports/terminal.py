@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
 from rich import box
@@ -22,6 +22,8 @@ STYLE: Final = {Severity.ERROR: "bold red", Severity.WARNING: "yellow", Severity
 OUTPUTS_SHOWN: Final = 6
 #: Findings that the end of a run shows; `hil check`, and the JSON of each command, have them all.
 MAX_SHOWN: Final = 30
+#: Notes of one rule on one peripheral or file that a table shows; if there are more, its last row counts the rest.
+NOTES_ALIKE: Final = 3
 #: From this width on everything has a column of its own.
 WIDE: Final = 140
 
@@ -29,11 +31,12 @@ WIDE: Final = 140
 def print_report(report: Report, console: Console, *, details: bool = False, most: int | None = None) -> None:
     """The findings as a table (in full with `details`), what is gone or accepted in vain, functions that were called.
 
-    `most`: only so many rows, the worst.
+    `most`: only so many rows, the worst.  Without `details`, one row counts the rest of many notes that are alike.
     """
     if report.entries:
         console.print(Text(summary(report.entries), "bold"))
-        console.print(findings_table(report, console.width, most))
+        rows = [[entry] for entry in report.worst_first] if details else _rows(report.worst_first)
+        console.print(findings_table(rows, console.width, most))
     if details:
         for number, entry in enumerate(report.worst_first, 1):
             console.print(_panel(number, entry))
@@ -71,71 +74,107 @@ def _placed(function: CalledFunction) -> str:
     return f"{function.name} ({relative_path(function.file)}:{function.line})"
 
 
-def findings_table(report: Report, width: int, most: int | None = None) -> Table:
-    """The findings, the worst first."""
-    entries = report.worst_first
+def _rows(entries: Iterable[ReportEntry]) -> list[list[ReportEntry]]:
+    """Rows of a table: each finding alone, but of many notes alike the first ones alone and the rest together."""
+    rows: list[list[ReportEntry]] = []
+    alike: dict[tuple[str, str, str], list[ReportEntry]] = {}
+    for entry in entries:
+        if entry.severity is Severity.NOTE:
+            alike.setdefault((entry.finding.rule, _owner(entry), entry.state_word), []).append(entry)
+        else:
+            rows.append([entry])
+    for notes in alike.values():
+        alone = len(notes) if len(notes) <= NOTES_ALIKE else NOTES_ALIKE - 1
+        rows += [[note] for note in notes[:alone]]
+        if notes[alone:]:
+            rows.append(notes[alone:])
+    return rows
+
+
+def _owner(entry: ReportEntry) -> str:
+    """The peripheral or C file to which the object of a finding belongs: `MemCfgRegs`, `us`; empty without object."""
+    return (entry.finding.object or "").partition(".")[0]
+
+
+def findings_table(rows: Sequence[Sequence[ReportEntry]], width: int, most: int | None = None) -> Table:
+    """A table of findings: each row is one finding, or several of one rule that it counts."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     make = _in_columns if width >= WIDE else _stacked
-    make(table, entries[:most])
-    if most is not None and len(entries) > most:
-        table.caption = f"{len(entries) - most} more"
+    make(table, rows[:most])
+    if left := sum(map(len, rows[most:])) if most is not None else 0:
+        table.caption = f"{left} more"
         table.caption_justify = "left"
     return table
 
 
-def _in_columns(table: Table, entries: Iterable[ReportEntry]) -> None:
+def _in_columns(table: Table, rows: Iterable[Sequence[ReportEntry]]) -> None:
     table.add_column("severity")
     table.add_column("rule", no_wrap=True)
     table.add_column("what", ratio=1, overflow="fold")
     table.add_column("where", overflow="fold")
     table.add_column("first seen", no_wrap=True)
-    for entry in entries:
-        severity, what = Text(entry.severity.value, STYLE[entry.severity]), _what(entry)
-        for more in _besides(entry):
+    for row in rows:
+        first = row[0]
+        severity, what = Text(first.severity.value, STYLE[first.severity]), _what(row)
+        for more in _besides(row):
             what.append(f"\n{more}", "dim")
-        where = Text("\n").join(_where(entry))
-        table.add_row(severity, entry.finding.rule, what, where, "\n".join(_seen(entry)), style=_style(entry))
+        where = Text("\n").join(_where(row))
+        table.add_row(severity, first.finding.rule, what, where, "\n".join(_seen(row)), style=_style(first))
 
 
-def _stacked(table: Table, entries: Iterable[ReportEntry]) -> None:
+def _stacked(table: Table, rows: Iterable[Sequence[ReportEntry]]) -> None:
     table.add_column("finding", no_wrap=True)
     table.add_column("what, where, first seen", overflow="fold")
-    for entry in entries:
-        finding = Text.assemble((entry.severity.value, STYLE[entry.severity]), "\n", entry.finding.rule)
-        lines = [_what(entry)]
-        stands = Text(" ").join(_where(entry))
-        if seen := ", ".join(_seen(entry)):
+    for row in rows:
+        first = row[0]
+        finding = Text.assemble((first.severity.value, STYLE[first.severity]), "\n", first.finding.rule)
+        lines = [_what(row)]
+        stands = Text(" ").join(_where(row))
+        if seen := ", ".join(_seen(row)):
             stands.append(f"  {seen}" if stands else seen, "dim")
         if stands:
             lines.append(stands)
-        lines += [Text(more, "dim") for more in _besides(entry)]
-        table.add_row(finding, Text("\n").join(lines), style=_style(entry))
+        lines += [Text(more, "dim") for more in _besides(row)]
+        table.add_row(finding, Text("\n").join(lines), style=_style(first))
 
 
-def _what(entry: ReportEntry) -> Text:
-    return Text(readable(entry.finding.message))
+def _what(row: Sequence[ReportEntry]) -> Text:
+    """The message of one finding; of several, their number."""
+    if len(row) == 1:
+        return Text(readable(row[0].finding.message))
+    owner = _owner(row[0])
+    return Text(f"{len(row)} more" + f" of {owner}" * bool(owner))
 
 
-def _where(entry: ReportEntry) -> list[Text]:
-    place = entry.finding.place
-    return [Text(location(place), "bold"), Text(function_of(place), "dim")] if place else []
+def _where(row: Sequence[ReportEntry]) -> list[Text]:
+    """The place of one finding; of several, their lines in each file."""
+    places = [entry.finding.place for entry in row if entry.finding.place]
+    if len(row) == 1:
+        return [Text(location(place), "bold") for place in places] + [Text(function_of(p), "dim") for p in places]
+    lines: dict[str, list[int]] = {}
+    for place in places:
+        lines.setdefault(relative_path(place.file), []).append(place.line)
+    return [Text(f"{file}:{min(of)} to {max(of)}", "bold") for file, of in lines.items()]
 
 
-def _seen(entry: ReportEntry) -> list[str]:
-    """The task, time and count; empty for a finding that the source shows without a run."""
-    finding = entry.finding
-    if finding.how == "static":
+def _seen(row: Sequence[ReportEntry]) -> list[str]:
+    """The task, time and count; empty for several findings, and for one that the source shows without a run."""
+    finding = row[0].finding
+    if len(row) > 1 or finding.how == "static":
         return []
     times = f", {finding.count} times" if finding.count > 1 else ""
     return [*filter(None, [finding.task]), f"{finding.time_us / 1e3:.3f} ms{times}"]
 
 
-def _besides(entry: ReportEntry) -> Iterator[str]:
+def _besides(row: Sequence[ReportEntry]) -> Iterator[str]:
     """The properties of a finding that only some commands know."""
+    entry = row[0]
     if entry.accepted:
-        yield f"accepted in the source: {entry.accepted}"
+        yield "accepted in the source" if len(row) > 1 else f"accepted in the source: {entry.accepted}"
     elif entry.state:
         yield "known" if entry.state == "unchanged" else entry.state
+    if len(row) > 1:
+        return
     if entry.reach:
         yield f"reaches: {entry.reach.summary}"
     if entry.by:

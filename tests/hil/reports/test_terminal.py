@@ -81,5 +81,28 @@ def test_only_so_many_are_shown_and_the_rest_is_counted(tmp_path: Path) -> None:
     assert "4 more" in text
 
 
+@pytest.mark.parametrize("width", [80, WIDE])
+def test_of_many_notes_alike_one_row_counts_the_rest(tmp_path: Path, width: int) -> None:
+    file = module(tmp_path)
+    of = {"MemCfgRegs.LSxMSEL": range(1, 6), "Cla1Regs.MVECT1": range(1, 4)}
+    found = [finding(file, 6, rule="index", message="an error") for _ in range(4)]
+    for number in range(1, 6):
+        for name, numbers in of.items():
+            if number in numbers:
+                found.append(finding(file, number, rule="unmodelled", message=f"{name} {number}.", object=name))
+    report = Report.of(found, run=Run("x"))
+    text = printed(report, width=width)
+    shown = [f"MemCfgRegs.LSxMSEL {number}." in text for number in of["MemCfgRegs.LSxMSEL"]]
+    assert shown == [True, True, False, False, False]
+    rest = text.partition("3 more of MemCfgRegs")[2].partition("Cla1Regs")[0]
+    assert "us.py:3to5" in "".join(rest.split()), "a narrow table breaks the path"
+    assert all(f"Cla1Regs.MVECT1 {number}." in text for number in of["Cla1Regs.MVECT1"]), "three are not many"
+    assert text.count("an error") == 4, "only notes are counted together"
+    whole = printed(report, width=width, details=True)
+    assert all(whole.count(one.message) >= 2 for one in found), "in the table, and in full"
+    # The caption counts findings, not rows.
+    assert f"{len(found) - 5} more" in printed(report, width=width, most=5)
+
+
 def test_no_finding_is_said_in_words() -> None:
     assert summary([]) == "no findings"
