@@ -142,6 +142,7 @@ FlashPumpSemaphoreRegs = at(0x50024, flash.FlashPumpSemaphoreRegs)
 
 AccessProtectionRegs: unmodelled
 Cla1Regs: unmodelled
+Cla1SoftIntRegs: unmodelled
 Clb1DataExchRegs: unmodelled
 Clb1LogicCfgRegs: unmodelled
 Clb1LogicCtrlRegs: unmodelled
@@ -156,7 +157,9 @@ Clb4LogicCfgRegs: unmodelled
 Clb4LogicCtrlRegs: unmodelled
 ClbXbarRegs: unmodelled
 DcsmCommonRegs: unmodelled
+DcsmZ1Otp: unmodelled
 DcsmZ1Regs: unmodelled
+DcsmZ2Otp: unmodelled
 DcsmZ2Regs: unmodelled
 Emif1ConfigRegs: unmodelled
 Emif1Regs: unmodelled

@@ -153,6 +153,8 @@ class CDeclarationReader:
         if isinstance(ctype, BlockType):
             self.register_block(name, ctype, where)
             return
+        if headers.unmodelled_block(name) is not None and isinstance(ctype, StructType) and not ctype.members:
+            return  # TI's file of all blocks defines it (F2837xS_GlobalVariableDefs.c); it is known by its name
         extern = "extern" in node.storage and node.init is None
         given = self.expressions.initialiser(node.init) if node.init is not None else None
         if not extern or not isinstance(ctype, Unsized):

@@ -148,6 +148,11 @@ def unmodelled_block(name: str) -> Unmodelled | None:
     return unmodelled().get(name)
 
 
+def is_block(name: str) -> bool:
+    """Whether C calls a register block of the chip `name`, modelled or not."""
+    return name in instances() or name in unmodelled()
+
+
 def hint(name: str) -> str | None:
     """The error for a program that uses `name`, if there is a better one than "undeclared"; else None."""
     if name in ("class", "namespace", "template"):

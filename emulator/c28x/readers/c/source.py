@@ -320,9 +320,10 @@ def _remark_preprocessing(module: Module, unit: Unit) -> None:
         module.remarks.append(Remark(remark.where, rule="preprocessor", message=remark.message, name=""))
     for pragma in unit.pragmas:
         word, _, arguments = pragma.text.partition("(")
-        word = word.strip()
+        word, name = word.strip(), arguments.split(",")[0].strip()
         if word == "DATA_SECTION":
-            module.placed.add(arguments.split(",")[0].strip())
-        if word in _PLACING and pragma.where.file == unit.file:
+            module.placed.add(name)
+        # The blocks of the chip have their addresses here too.
+        if word in _PLACING and pragma.where.file == unit.file and not headers.is_block(name):
             message = f"#pragma {pragma.text} is ignored: where code and data lie is not modelled"
             module.remarks.append(Remark(pragma.where, rule="pragma-ignored", message=message, name=word))

@@ -9,6 +9,7 @@ import pytest
 from emulator.c28x.link import Linked
 from emulator.c28x.options import CompileOptions
 from emulator.c28x.program import Program
+from emulator.c28x.readers.c import headers
 from emulator.c28x.rts_functions import library
 from emulator.c28x.runtime import EndlessPoll
 from emulator.c28x.symbols import SourceError
@@ -176,3 +177,17 @@ def test_what_uses_a_block_that_is_not_modelled_and_is_never_called_says_nothing
     robot = Robot(f"{HEAD}{unlock}int f(void)\n{{\n    return 3;\n}}\n")
     assert robot.call("f") == 3
     assert robot.rules() == []
+
+
+def test_a_file_of_the_project_may_define_all_blocks_of_the_chip() -> None:
+    # TI's F2837xS_GlobalVariableDefs.c does, and lies in the folder of most projects.
+    tags = {name: block.struct for name, block in headers.instances().items()}
+    tags |= {name: f"{name.upper()}_REGS" for name in headers.unmodelled()}
+    defined = "".join(
+        f'#pragma DATA_SECTION({name},"{name}File");\nvolatile struct {tag} {name};\n' for name, tag in tags.items()
+    )
+    assert len(tags) > 100
+    uses = "int f(void)\n{\n    pwm->TBPRD = 7;\n    Cla1Regs.MIER.all = 1;\n    return EPwm1Regs.TBPRD;\n}\n"
+    robot = Robot(f"{HEAD}{defined}{uses}")
+    assert robot.call("f") == 7
+    assert robot.rules() == ["unmodelled"], "no pragma is ignored: the blocks have their addresses"
