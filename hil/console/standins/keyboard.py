@@ -5,7 +5,8 @@ The original package asks the system for the state of a key.  Tk delivers events
 
 * A key held down repeats; on X11 each repetition is a release and a press.  A release counts after `SETTLE_S`.
 * A press is processed in ``update``, so it would always become visible at the same point of the app's loop.  A real
-  key goes down at any time, mostly while the loop sleeps.  So a press becomes visible `DELAY_S` later.
+  key goes down at any time, mostly while the loop sleeps.  So a press becomes visible `DELAY_S` later, and not at the
+  first query within `TURN_S`: on a busy machine, that one may follow its ``update`` late.
 * A tap can begin and end within one ``update``.  It stays visible until it was asked for once, at most `TAP_S`.
 
 Only `is_pressed` is here.  It sees every Tk window of this process, those of matplotlib too.
@@ -22,6 +23,8 @@ from typing import Any
 SETTLE_S = 0.02
 #: CHOICE: longer than a loop takes from its ``update`` to its first query (measured: about 1 ms).
 DELAY_S = 0.02
+#: CHOICE: longer than a busy machine keeps a program waiting between its ``update`` and its first query.
+TURN_S = 0.25
 #: CHOICE: the slowest loop of the thesis console queries once a second.
 TAP_S = 1.2
 
@@ -36,7 +39,9 @@ _SYMBOLS = {
 class _Key:
     pressed_s: float
     released_s: float | None = None
-    asked: bool = False
+    #: Whether a query has come since, and whether one has seen it.
+    queried: bool = False
+    seen: bool = False
 
 
 _keys: dict[str, _Key] = {}
@@ -53,12 +58,16 @@ def _is_down(name: str) -> bool:
     plain = name.strip().lower() or name
     key = _keys.get(_SYMBOLS.get(plain, plain))
     now = time.monotonic()
-    if key is None or now < key.pressed_s + DELAY_S:
+    if key is None:
+        return False
+    delay_s = DELAY_S if key.queried else TURN_S
+    key.queried = True
+    if now < key.pressed_s + delay_s:
         return False
     since_release_s = -1.0 if key.released_s is None else now - key.released_s
-    if since_release_s >= SETTLE_S and (key.asked or since_release_s > TAP_S):
+    if since_release_s >= SETTLE_S and (key.seen or since_release_s > TAP_S):
         return False
-    key.asked = True
+    key.seen = True
     return True
 
 

@@ -78,7 +78,7 @@ def test_a_windows_console_finds_all_it_wants(a_desk: Desk, tmp_path: Path) -> N
     finally:
         if process.poll() is None:
             process.send_signal(signal.SIGTERM)
-            process.communicate(timeout=TIMEOUT_S)
+        process.communicate(timeout=TIMEOUT_S)
     assert process.returncode == 0, (out, err)
     for line in ("robot answers: True", "subprocess: works", "drawn with: tkagg", "getch: True", "letters: ñ"):
         assert said(line), output.read_text("utf-8")
