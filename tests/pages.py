@@ -23,6 +23,7 @@ import pytest
 # Imported here, so that a run within a test finds everything in memory: what it imports itself it takes along.
 import emulator.c28x.compile
 import emulator.c28x.readers.python.source  # noqa: F401
+import hil.audit.run
 import hil.bench
 import hil.testing.machines.gates
 import hil.testing.outside
