@@ -22,7 +22,7 @@ STYLE: Final = {Severity.ERROR: "bold red", Severity.WARNING: "yellow", Severity
 OUTPUTS_SHOWN: Final = 6
 #: Findings that the end of a run shows; `hil check`, and the JSON of each command, have them all.
 MAX_SHOWN: Final = 30
-#: Notes of one rule on one peripheral or file that a table shows; if there are more, its last row counts the rest.
+#: Notes of one rule on one peripheral or file that a table shows; if there are more, the last row counts the rest.
 NOTES_ALIKE: Final = 3
 #: From this width on everything has a column of its own.
 WIDE: Final = 140
@@ -92,7 +92,7 @@ def _rows(entries: Iterable[ReportEntry]) -> list[list[ReportEntry]]:
 
 
 def _owner(entry: ReportEntry) -> str:
-    """The peripheral or C file to which the object of a finding belongs: `MemCfgRegs`, `us`; empty without object."""
+    """The first name in the object of a finding: a peripheral (`MemCfgRegs`), a C file (`us`); empty without object."""
     return (entry.finding.object or "").partition(".")[0]
 
 
@@ -143,7 +143,7 @@ def _what(row: Sequence[ReportEntry]) -> Text:
     if len(row) == 1:
         return Text(readable(row[0].finding.message))
     owner = _owner(row[0])
-    return Text(f"{len(row)} more" + f" of {owner}" * bool(owner))
+    return Text(f"{len(row)} more of {owner}" if owner else f"{len(row)} more")
 
 
 def _where(row: Sequence[ReportEntry]) -> list[Text]:
@@ -154,7 +154,10 @@ def _where(row: Sequence[ReportEntry]) -> list[Text]:
     lines: dict[str, list[int]] = {}
     for place in places:
         lines.setdefault(relative_path(place.file), []).append(place.line)
-    return [Text(f"{file}:{min(of)} to {max(of)}", "bold") for file, of in lines.items()]
+    return [
+        Text(f"{file}:{min(of)} to {max(of)}" if min(of) < max(of) else f"{file}:{min(of)}", "bold")
+        for file, of in lines.items()
+    ]
 
 
 def _seen(row: Sequence[ReportEntry]) -> list[str]:
