@@ -19,6 +19,7 @@ import typer
 from rich.console import Console
 
 from emulator.seed import MAX_SEED
+from hil.bytecode import incomplete_file, remedy
 from hil.client.orders import KEYWORDS
 from hil.ending import REPEAT_S, ending_signals
 from hil.extras import hint
@@ -91,6 +92,10 @@ def user_errors() -> Iterator[None]:
         if not (line := hint(error.name or "")):
             raise
         raise UserError(line) from error
+    except EOFError as error:
+        if not (path := incomplete_file(error)):
+            raise
+        raise UserError(remedy(path)) from error
     except (ValueError, OSError) as error:
         if os.environ.get("HIL_TRACEBACK"):  # for those who look for a defect of ours behind it
             raise

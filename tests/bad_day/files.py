@@ -9,6 +9,7 @@ from __future__ import annotations
 import random
 import resource
 import signal
+import sys
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -129,13 +130,19 @@ def _no_folder(output: Output, name: str) -> str:
     return f"{short(command)}: {', '.join(found)}: {outcome.error[-300:]}" if found else ""
 
 
+def _limit(most: int) -> None:
+    """Files of this process have at most `most` bytes: those that it writes, not compiled ones that others read."""
+    sys.dont_write_bytecode = True
+    resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+
+
 def _killed(output: Output, name: str, most: int) -> str:
     """The system ends it at the byte: what was there is there."""
     command, before = (*output.before, name), _content(Path(name))
 
     def limited() -> int:
         signal.signal(signal.SIGXFSZ, signal.SIG_DFL)  # Python ignores it
-        resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+        _limit(most)
         return invoke(list(command))
 
     outcome = forked(limited)
@@ -150,7 +157,7 @@ def _full(output: Output, name: str, most: int) -> str:
     before = set(Path().iterdir())
 
     def limited() -> int:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+        _limit(most)
         return invoke(list(command))
 
     outcome = forked(limited)
