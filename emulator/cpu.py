@@ -69,13 +69,15 @@ class Cpu(Eallow):
 
     __slots__ = (
         "_began", "_described", "_forced", "_handlers", "_left", "_row", "_taken", "asleep", "clock", "deeper",
-        "dispatched", "findings", "ier", "ifr", "in_interrupt", "intm", "isr", "lines_taken", "position", "sp",
+        "dispatched", "edis_at", "findings", "ier", "ifr", "in_interrupt", "intm", "isr", "lines_taken", "position", "sp",
         "stack_limit",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, findings: Findings) -> None:
         #: Power-on state (ST1 = 0x080B: INTM set, EALLOW clear).
         super().__init__(eallow=False)
+        #: The statement that cleared EALLOW last, for findings: its number, 0 if an interrupt or the reset did.
+        self.edis_at = 0
         self.intm = True
         self.clock = clock
         self.findings = findings
@@ -121,6 +123,10 @@ class Cpu(Eallow):
     def routine_at(self, begins: Place) -> str:
         """The thread of the routine that begins there: `Hwi:name` under a kernel's dispatcher, else `Isr:name`."""
         return f"{'Hwi' if begins in self.dispatched else 'Isr'}:{begins.function}"
+
+    def edis(self, at: int = 0) -> None:
+        """Protect the registers again; `at` is the number of the statement, if it is not the one that executes now."""
+        self.eallow, self.edis_at = False, at or self.position.at
 
     def raise_line(self, line: int) -> None:
         """Latch interrupt `line` in IFR, and request the CPU's attention."""
@@ -218,13 +224,13 @@ class Cpu(Eallow):
 
     def _enter(self, line: int) -> None:
         self.lines_taken |= 1 << (line - 1)
-        eallow, ier, row, began = self.eallow, self.ier, self._row, self._began
+        eallow, edis_at, ier, row, began = self.eallow, self.edis_at, self.ier, self._row, self._began
         position = self.position
         position.calls = interrupted = (position.at, position.calls, INTERRUPT)
         position.at = 0
         self._taken += 1
         self.intm = True
-        self.eallow = False
+        self.eallow, self.edis_at = False, 0
         self.ier &= ~(1 << (line - 1))
         self.in_interrupt += 1
         self._left = -1
@@ -239,7 +245,7 @@ class Cpu(Eallow):
         self.sp -= INTERRUPT_CONTEXT_WORDS
         self.in_interrupt -= 1
         position.at, position.calls, _ = interrupted
-        self.eallow = eallow
+        self.eallow, self.edis_at = eallow, edis_at
         self.ier |= ier & (1 << (line - 1))
         self.intm = False
         self._left, self._row, self._began = self.clock.now, row + 1, began

@@ -143,7 +143,7 @@ class DeviceFunctions:
 
     def EDIS(self) -> None:
         """Forbid writes to protected registers."""
-        self._cpu.eallow = False
+        self._cpu.edis()
 
     def EINT(self) -> None:
         """Clear INTM.  Latched and enabled interrupts are taken at once."""
@@ -240,7 +240,7 @@ class DeviceFunctions:
         self._clock.delay(int(_MEASURED * (imult + fmult / 4) / (2 * divsel + 2)))
         self._chip.sysctrl.run_pll(divsel)
         self._chip.sysctrl.check_sysclk()
-        self._cpu.eallow = False
+        self._cpu.edis()
 
     def SysIntOsc1Sel(self) -> None:
         """INTOSC1 is the source."""
@@ -342,7 +342,7 @@ class DeviceFunctions:
         CHOICE: if such a routine runs, that is reported, and the program goes on.
         """
         self._chip.vectors.clear()
-        self._cpu.eallow = False
+        self._cpu.edis()
         self._clock.charge((costs.REGISTER + _COPY_TURN) * 224)
         self._write("PieCtrlRegs", "PIECTRL", 1)
 
@@ -622,7 +622,7 @@ class DeviceFunctions:
         """Between EALLOW and EDIS."""
         self._cpu.eallow = True
         yield
-        self._cpu.eallow = False
+        self._cpu.edis()
 
     def _write(self, block: str, name: str, word: int) -> None:
         self._put(self._chip.register(block, name), word)

@@ -54,7 +54,7 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 
 #: `EALLOW` and `EDIS` set and clear a bit of ST1 (CPU, instruction set): they are no calls, and nobody else sees them.
-INSTRUCTIONS: Final = {"EALLOW": "_cpu.eallow = True", "EDIS": "_cpu.eallow = False"}
+INSTRUCTIONS: Final = ("EALLOW", "EDIS")
 OBSERVABLE: Final = (RegisterLoad, Call, CallPointer)
 
 

@@ -43,8 +43,9 @@ def protecting(register: Cell, write: Write) -> Write:
         if cpu.eallow:
             write(word, lanes)
         else:
+            since = f" since {cpu.findings.places[cpu.edis_at]}" if cpu.edis_at else ""
             cpu.findings.report(
-                "eallow", f"{register.path} is protected and EALLOW is off: the write was dropped silently",
+                "eallow", f"{register.path} is protected and EALLOW is off{since}: the write was dropped silently",
                 object=register.path, value=word if isinstance(word, int) else None,
             )  # fmt: skip
 

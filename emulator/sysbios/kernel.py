@@ -372,15 +372,15 @@ class Kernel:
         swis, tasks = self.swis, self.tasks
         if swis.ready_set and not swis.locked:
             # An interrupt clears EALLOW, and its return restores it.  Code that runs before the return sees it cleared.
-            eallow, cpu.eallow = cpu.eallow, False
+            eallow, edis_at, cpu.eallow, cpu.edis_at = cpu.eallow, cpu.edis_at, False, 0
             swis.run_ready()
             if tasks.work and not tasks.locked and not swis.locked:
                 tasks.schedule()
-            cpu.eallow = eallow
+            cpu.eallow, cpu.edis_at = eallow, edis_at
         elif tasks.work and not tasks.locked and not swis.locked:
-            eallow, cpu.eallow = cpu.eallow, False
+            eallow, edis_at, cpu.eallow, cpu.edis_at = cpu.eallow, cpu.edis_at, False, 0
             tasks.schedule()
-            cpu.eallow = eallow
+            cpu.eallow, cpu.edis_at = eallow, edis_at
 
     def _idle(self, _arg0: int, _arg1: int) -> None:
         """The idle task.  It calls the idle functions in a loop; without any, it moves time on to the next event."""

@@ -43,6 +43,24 @@ def test_eallow_is_cleared_on_entry_and_restored_on_return(cpu: Cpu) -> None:
     assert cpu.eallow
 
 
+def test_the_statement_that_cleared_eallow_is_known_and_a_routine_has_its_own(cpu: Cpu) -> None:
+    inside: list[int] = []
+
+    def routine() -> None:
+        inside.append(cpu.edis_at)
+        cpu.edis(7)
+
+    cpu.connect(1, routine)
+    cpu.write_ier(1)
+    cpu.enable_interrupts()
+    cpu.position.at = 5
+    cpu.edis()
+    cpu.raise_line(1)
+    cpu.clock.charge(1)
+    assert inside == [0]
+    assert cpu.edis_at == 5
+
+
 def test_the_lowest_line_goes_first_and_handlers_do_not_nest_while_intm_is_set(cpu: Cpu) -> None:
     order: list[str] = []
 

@@ -37,7 +37,31 @@ def test_InitSysCtrl_gives_every_module_its_clock_and_stops_the_watchdog() -> No
 def test_InitSysCtrl_ends_in_EDIS() -> None:
     driver = call("EALLOW()\nInitSysCtrl()\nGpioCtrlRegs.GPADIR.bit.GPIO5 = 1 #!\nreturn 0")
     driver.run()
-    driver.only("eallow")
+    assert " since run (drv.py:7):" in driver.only("eallow").message
+
+
+def test_a_finding_names_the_function_that_ended_EALLOW() -> None:
+    driver = Driver("""# drv.c: Pins
+def Pins() -> None:
+    EALLOW()
+    GpioCtrlRegs.GPADIR.bit.GPIO1 = 1
+    EDIS()
+
+
+# drv.c: run
+def run() -> None:
+    EALLOW()
+    Pins()
+    GpioCtrlRegs.GPADIR.bit.GPIO2 = 1 #!
+""")
+    driver.run()
+    assert " since Pins (drv.py:8):" in driver.only("eallow").message
+
+
+def test_none_is_named_where_EALLOW_was_never_on() -> None:
+    driver = call("GpioCtrlRegs.GPADIR.bit.GPIO5 = 1 #!\nreturn 0")
+    driver.run()
+    assert "since" not in driver.only("eallow").message
 
 
 def test_InitPieCtrl_leaves_nothing_enabled_or_latched() -> None:

@@ -334,7 +334,7 @@ class PythonWriter:
                 self.declare(s)
             case Evaluate(value=Call(function=Function(extern=True, name=name))) if name in INSTRUCTIONS:
                 self.cost += s.cycles
-                self.put(INSTRUCTIONS[name])
+                self.put("_cpu.eallow = True" if name == "EALLOW" else f"_cpu.edis({self.statement_at(s.where)})")
             case Evaluate(value=value):
                 self.cost += s.cycles
                 text = self.value(value)
