@@ -69,8 +69,8 @@ class Cpu(Eallow):
 
     __slots__ = (
         "_began", "_described", "_forced", "_handlers", "_left", "_row", "_taken", "asleep", "clock", "deeper",
-        "dispatched", "edis_at", "findings", "ier", "ifr", "in_interrupt", "intm", "isr", "lines_taken", "position", "sp",
-        "stack_limit",
+        "dispatched", "edis_at", "findings", "ier", "ifr", "in_interrupt", "intm", "isr", "lines_taken", "position",
+        "sp", "stack_limit",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, findings: Findings) -> None:

@@ -12,7 +12,7 @@ from typing import Any, Final, NoReturn
 from pycparser import c_ast
 from pycparser.c_parser import CParser
 
-from emulator.c28x.readers.c.parser import KEYWORDS, PUNCTUATORS, Lexeme
+from emulator.c28x.readers.c.parser import KEYWORDS, PUNCTUATORS, Lexeme, ParsedHeaders
 from emulator.c28x.readers.c.tokens import error_at
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Where
@@ -67,13 +67,16 @@ class Parenthesised(c_ast.Assignment):  # type: ignore[misc]
 class Grammar(CParser):  # type: ignore[misc]
     """The parser of one sequence of lexemes."""
 
-    def __init__(self, lexemes: list[Lexeme], typedefs: Collection[str], depth: int) -> None:
-        """`depth`: the limit for nodes from the root to a leaf."""
+    def __init__(
+        self, lexemes: list[Lexeme], typedefs: Collection[str], depth: int, headers: ParsedHeaders | None = None
+    ) -> None:
+        """`depth`: the limit for nodes from the root to a leaf.  `headers`: what the lexemes begin with, if parsed."""
         super().__init__(lexer=_Lexer)
         self._lexemes = lexemes
         #: The lexemes, with enough None at the end for look-ahead.
         self._stream: list[Lexeme | None] = [*lexemes, None, None, None]
-        self._index = 0
+        self._index = len(headers.lexemes) if headers else 0
+        self._headers = headers
         self._typedefs = typedefs
         self._depth = depth
         self._again = 20 * len(lexemes) + 100_000
@@ -83,7 +86,15 @@ class Grammar(CParser):  # type: ignore[misc]
 
     def unit(self) -> c_ast.FileAST:
         """The tree of the translation unit.  Raises SourceError."""
-        return self._guarded(super()._parse_translation_unit_or_empty)
+        tree = self._guarded(super()._parse_translation_unit_or_empty)
+        if self._headers is None:
+            return tree
+        return c_ast.FileAST(self._headers.tree.ext + tree.ext, self._headers.tree.coord)
+
+    @property
+    def names(self) -> dict[str, bool]:
+        """The names of the file scope -> whether each is a type."""
+        return dict(self._scope_stack[1])
 
     def expression(self) -> c_ast.Node:
         """The tree of the one expression that the lexemes are.  Raises SourceError."""
@@ -105,8 +116,9 @@ class Grammar(CParser):  # type: ignore[misc]
         return _placed(tree, self._depth)
 
     def _with_typedefs(self, rule: Any) -> Any:
-        self._scope_stack = [dict.fromkeys(self._typedefs, True), {}]
-        self._visible = dict.fromkeys(self._typedefs, True)
+        names = dict(self._headers.names) if self._headers is not None else {}
+        self._scope_stack = [dict.fromkeys(self._typedefs, True), names]
+        self._visible = dict.fromkeys(self._typedefs, True) | names
         self._hidden = [{}, {}]
         tree = rule()
         if (lexeme := self._peek()) is not None:

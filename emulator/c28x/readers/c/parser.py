@@ -19,6 +19,8 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any, Final
 
 from emulator.c28x.readers.c.tokens import BAD, CHAR, NAME, NUMBER, PUNCT, STRING, Token
@@ -55,10 +57,60 @@ def parse(
 
     `typedefs`: names of types that no token declares.  Raises SourceError for the first error, NoParser.
     """
-    lexemes = lexemes_of(tokens, limits)
-    grammar = _grammar(lexemes, typedefs, limits)
+    _within(tokens, limits)
+    headers = None if typedefs or limits != ParserLimits() else _headers_of(tokens)
+    if headers is None:
+        grammar = _grammar(lexemes_of(tokens, limits), typedefs, limits)
+    else:
+        rest = lexemes_of(tokens[headers.tokens :], limits)
+        grammar = _grammar([*headers.lexemes, *rest], typedefs, limits, headers)
     with reading(_FRAMES):
         return grammar.unit()
+
+
+@dataclass(frozen=True)
+class ParsedHeaders:
+    """Headers of ours that a unit begins with: hundreds of declarations, half of the time for a short file."""
+
+    tokens: int
+    lexemes: list[Lexeme]
+    tree: c_ast.FileAST
+    #: The names of the file scope -> whether each is a type.
+    names: dict[str, bool]
+
+
+def _headers_of(tokens: Sequence[Token]) -> ParsedHeaders | None:
+    """What `tokens` begin with, parsed once per process; None: no header of ours, or one that ends in a declaration."""
+    own = takewhile(lambda token: (token.use or token).source.file.startswith("<"), tokens)
+    run = _Run(list(own))
+    return _parsed(run) if run.tokens and run.tokens[-1].text in (";", "}") else None
+
+
+class _Run:
+    """Tokens that are equal to others with the same texts at the same places."""
+
+    def __init__(self, tokens: list[Token]) -> None:
+        self.tokens = tokens
+        self._key = tuple((t.text, t.at, t.source.file, t.use.at if t.use else None) for t in tokens)
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Run) and self._key == other._key
+
+
+@lru_cache(maxsize=16)
+def _parsed(run: _Run) -> ParsedHeaders | None:
+    limits = ParserLimits()
+    try:
+        lexemes = lexemes_of(run.tokens, limits)
+        grammar = _grammar(lexemes, (), limits)
+        with reading(_FRAMES):
+            tree = grammar.unit()
+    except SourceError:
+        return None  # the error of the whole unit says more
+    return ParsedHeaders(len(run.tokens), lexemes, tree, grammar.names)
 
 
 def parse_expression(
@@ -70,18 +122,25 @@ def parse_expression(
     """
     if not tokens:
         raise ValueError("no tokens, no expression")
-    lexemes = lexemes_of(tokens, limits)
-    grammar = _grammar(lexemes, typedefs, limits)
+    _within(tokens, limits)
+    grammar = _grammar(lexemes_of(tokens, limits), typedefs, limits)
     with reading(_FRAMES):
         return grammar.expression()
 
 
-def _grammar(lexemes: list[Lexeme], typedefs: Collection[str], limits: ParserLimits) -> Any:
+def _within(tokens: Sequence[Token], limits: ParserLimits) -> None:
+    if len(tokens) > limits.tokens:
+        raise tokens[limits.tokens].error(f"the file has more than {limits.tokens:,} tokens with its headers")
+
+
+def _grammar(
+    lexemes: list[Lexeme], typedefs: Collection[str], limits: ParserLimits, headers: ParsedHeaders | None = None
+) -> Any:
     try:
         from emulator.c28x.readers.c.grammar import Grammar
     except ImportError as error:
         raise NoParser("reading C needs pycparser: pip install 'c2000-hil[c]'") from error
-    return Grammar(lexemes, typedefs, limits.depth)
+    return Grammar(lexemes, typedefs, limits.depth, headers)
 
 
 class Lexeme:
@@ -158,8 +217,6 @@ _LONGEST_DECLARATION: Final = 300
 
 def lexemes_of(tokens: Sequence[Token], limits: ParserLimits) -> list[Lexeme]:
     """`tokens` as lexemes.  Raises SourceError for text that is not C or not supported, and for too deep nesting."""
-    if len(tokens) > limits.tokens:
-        raise tokens[limits.tokens].error(f"the file has more than {limits.tokens:,} tokens with its headers")
     out: list[Lexeme] = []
     late: set[int] = set()
     index = 0
