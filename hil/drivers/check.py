@@ -134,12 +134,17 @@ def _add(checked: Checked, findings: Iterable[Finding], keys: dict[Key, Finding]
     return keys
 
 
+def _time(seconds: float) -> str:
+    """A time in the unit in which it is easy to read."""
+    scale, unit = next((each for each in ((1, "s"), (1e3, "ms")) if seconds * each[0] >= 1), (1e6, "us"))
+    return f"{seconds * scale:.4g} {unit}"
+
+
 def _function(tried: CheckedFunction, found: Roles, ran: ProgramOutcome | None) -> CalledFunction:
     function = tried.function
     reason = tried.reason
     if ran is not None and (function is found.main or function in found.tasks):
-        time = f"{ran.virtual_s:g} s" if ran.virtual_s >= 1e-3 else f"{ran.virtual_s * 1e6:.3g} us"
-        reason = f"{reason}; the program ran for {time}" + (f", then ended: {ran.cut}" if ran.cut else "")
+        reason = f"{reason}; the program ran for {_time(ran.virtual_s)}" + (f", then ended: {ran.cut}" if ran.cut else "")
     notes = []
     if tried.guessed:
         notes.append(f"the C does not give the size of what {' and '.join(tried.guessed)} points to: it was guessed")

@@ -325,5 +325,5 @@ def _remark_preprocessing(module: Module, unit: Unit) -> None:
             module.placed.add(name)
         # The blocks of the chip have their addresses here too.
         if word in _PLACING and pragma.where.file == unit.file and not headers.is_block(name):
-            message = f"#pragma {pragma.text} is ignored: where code and data lie is not modelled"
+            message = f"#pragma {pragma.text.rstrip('; ')} is ignored: where code and data lie is not modelled"
             module.remarks.append(Remark(pragma.where, rule="pragma-ignored", message=message, name=word))
