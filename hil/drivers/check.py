@@ -144,7 +144,8 @@ def _function(tried: CheckedFunction, found: Roles, ran: ProgramOutcome | None) 
     function = tried.function
     reason = tried.reason
     if ran is not None and (function is found.main or function in found.tasks):
-        reason = f"{reason}; the program ran for {_time(ran.virtual_s)}" + (f", then ended: {ran.cut}" if ran.cut else "")
+        reason = f"{reason}; the program ran for {_time(ran.virtual_s)}"
+        reason += f", then ended: {ran.cut}" if ran.cut else ""
     notes = []
     if tried.guessed:
         notes.append(f"the C does not give the size of what {' and '.join(tried.guessed)} points to: it was guessed")

@@ -4,13 +4,13 @@
     uint32_t width = now - last;                // so is the difference of two of them
 
 Which values those are, the source says (`HardwareCounts`).  How long one lasts, the registers say at the end of a run
-(`tick_seconds`).
+(`tick_seconds`).  The same holds for the registers that make a time of a count (`TimeRegister`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Final
+from typing import Final, NamedTuple
 
 from emulator.c28x.ctypes import FloatType, IntType
 from emulator.c28x.passes.stamps import Key, Stamps, key_of
@@ -32,8 +32,10 @@ from emulator.c28x.tree_queries import bare
 from emulator.chip import Chip
 from emulator.clock import SYSCLK_HZ
 from emulator.peripherals.cpu_timer import TSS
+from emulator.peripherals.epwm_time_base import STOPPED, UP_DOWN
 from emulator.registers.core import F
 from emulator.registers.epwm import TBCTL
+from emulator.registers.epwm_output import DBCTL
 from emulator.registers.eqep import QCAPCTL
 
 #: Kind of block -> its registers that hold a count of its own counter, or a period of it.
@@ -41,15 +43,25 @@ _REGISTERS: Final = {
     "CpuTimer": frozenset({"TIM", "PRD"}), "ECap": frozenset({"TSCTR", "CAP1", "CAP2", "CAP3", "CAP4"}),
     "EQep": frozenset({"QCTMR", "QCPRD", "QCTMRLAT", "QCPRDLAT"}),
 }  # fmt: skip
-#: The addresses of blocks, as TI's driverlib passes them (DS table of peripheral registers).
-_TIMER_BASE, _TIMER_WORDS = 0x0C00, 8
-_CAPTURE_BASE, _CAPTURE_WORDS = 0x5000, 0x20
-#: Functions of driverlib that return a count, and the first address and the words of their blocks.
+#: Kind of block -> the address of its first one, as TI's driverlib passes it, the words of each, and the first number
+#: (DS table of peripheral registers).
+BASES: Final = {"CpuTimer": (0x0C00, 8, 0), "ECap": (0x5000, 0x20, 1), "EPwm": (0x4000, 0x100, 1)}
+#: Functions of driverlib that return a count of a kind of block.
 _FUNCTIONS: Final = {
-    "CPUTimer_getTimerCount": ("CpuTimer", 0, _TIMER_BASE, _TIMER_WORDS),
-    "ECAP_getEventTimeStamp": ("ECap", 1, _CAPTURE_BASE, _CAPTURE_WORDS),
-    "ECAP_getTimeBaseCounter": ("ECap", 1, _CAPTURE_BASE, _CAPTURE_WORDS),
-}
+    "CPUTimer_getTimerCount": "CpuTimer", "ECAP_getEventTimeStamp": "ECap", "ECAP_getTimeBaseCounter": "ECap",
+}  # fmt: skip
+#: Kind of block -> its registers that make a time of a count.
+_TIMES: Final = {
+    "CpuTimer": frozenset({"PRD"}), "ECap": frozenset({"CAP1", "CAP2", "CAP3", "CAP4"}),
+    "EPwm": frozenset({"TBPRD", "CMPA", "CMPB", "CMPC", "CMPD", "DBRED", "DBFED"}),
+}  # fmt: skip
+#: Functions of driverlib that set one of them to their last argument.
+_SETTERS: Final = {
+    "CPUTimer_setPeriod": ("CpuTimer", "PRD"), "EPWM_setTimeBasePeriod": ("EPwm", "TBPRD"),
+    "EPWM_setCounterCompareValue": ("EPwm", "CMPA"), "EPWM_setRisingEdgeDelayCount": ("EPwm", "DBRED"),
+    "EPWM_setFallingEdgeDelayCount": ("EPwm", "DBFED"), "ECAP_setAPWMPeriod": ("ECap", "CAP1"),
+    "ECAP_setAPWMCompare": ("ECap", "CAP2"),
+}  # fmt: skip
 #: Something else than a count.
 OTHER: Final = ""
 _ECCTL1_PRESCALE: Final = 0x3E00
@@ -119,12 +131,58 @@ def _counter_of_register(register: RegisterRef) -> str:
 
 
 def _counter_of_call(function: Function, arguments: list[Expr]) -> str:
-    kind, first, base, words = _FUNCTIONS[function.name]
     address = bare(arguments[0]) if arguments else None
     if not isinstance(address, Const) or not isinstance(address.value, int):
         return OTHER
-    number, rest = divmod(address.value - base, words)
-    return f"{kind}{first + number}" if 0 <= number <= 5 and not rest else OTHER
+    return counter_at(_FUNCTIONS[function.name], address.value)
+
+
+def counter_at(kind: str, address: int) -> str:
+    """The counter of a kind whose block is at an address, as driverlib passes it."""
+    base, words, first = BASES[kind]
+    number, rest = divmod(address - base, words)
+    return f"{kind}{first + number}" if 0 <= number < 16 and not rest else OTHER
+
+
+class TimeRegister(NamedTuple):
+    """A register that makes a time of a count: of the counter, and the register's name."""
+
+    counter: str
+    name: str
+
+    def tick_seconds(self, chip: Chip) -> float | None:
+        """How long one count of it lasts, in seconds; None: its counter stands, or it makes another time.
+
+        Up and down, a compare value is half of a pulse, or of a pause.
+        """
+        if self.counter.startswith("EPwm"):
+            mode = field(chip.register(f"{self.counter}Regs", "TBCTL").value, TBCTL.CTRMODE)
+            band = chip.register(f"{self.counter}Regs", "DBCTL").value
+            of_band = self.name in ("DBRED", "DBFED")
+            if mode == STOPPED or (of_band and field(band, DBCTL.HALFCYCLE)) or (mode == UP_DOWN and not of_band):
+                return None
+        return tick_seconds(chip, self.counter)
+
+
+def time_register(register: RegisterRef) -> TimeRegister | None:
+    """What a statement sets that writes a register, or its field of the same name; None: something else."""
+    counter = register.block.removesuffix("Regs")
+    whole = register.field is None or register.field.name == register.register
+    named = register.register in _TIMES.get(counter.rstrip("0123456789"), ())
+    # A whole CMPA has the bits of the high resolution below those of the count.
+    return TimeRegister(counter, register.register) if named and whole and not (
+        register.field is None and register.register in ("CMPA", "CMPB")
+    ) else None  # fmt: skip
+
+
+def set_by_call(function: Function, arguments: list[Expr]) -> TimeRegister | None:
+    """What a call of driverlib sets to its last argument; None: something else, or it is not known which block's."""
+    address = bare(arguments[0]) if len(arguments) > 1 else None
+    if function.name not in _SETTERS or not isinstance(address, Const) or not isinstance(address.value, int):
+        return None
+    kind, name = _SETTERS[function.name]
+    counter = counter_at(kind, address.value)
+    return TimeRegister(counter, name) if counter else None
 
 
 def tick_seconds(chip: Chip, counter: str) -> float | None:

@@ -48,7 +48,7 @@ from emulator.clock import SYSCLK_HZ
 from emulator.peripherals.epwm_time_base import STOPPED, UP_DOWN
 from emulator.registers.epwm import ETINTPS, ETPS, ETSEL, ETSOCPS, TBCTL
 from hil.drivers.clock_names import clock_by_name
-from hil.drivers.hardware_counts import field, tick_seconds
+from hil.drivers.hardware_counts import counter_at, field, tick_seconds
 from hil.drivers.stated_units import as_written, defined_number
 from hil.drivers.unit_names import unit_of_name, unit_of_text
 from hil.drivers.units import LIBRARY_UNITS, UnitMismatch
@@ -87,7 +87,6 @@ _SLIPS: Final = tuple(2.0**n for n in (-4, -3, -2, -1, 1, 2, 3, 4)) + tuple(10.0
 #: Numbers without a name beside which the name of a rate still states the rate: conversions, and clocks in MHz and Hz.
 _CONVERTING: Final = frozenset({1, 1000, 1e6, 1e9, 50, 100, 200, 50e6, 100e6, 200e6})
 #: The addresses of blocks, as driverlib passes them (DS table of peripheral registers): first one, words, first number.
-_BASES: Final = {"EPwm": (0x4000, 0x100, 1), "CpuTimer": (0x0C00, 8, 0)}
 _PERIODS: Final = {"EPWM_setTimeBasePeriod": "EPwm", "CPUTimer_setPeriod": "CpuTimer"}
 #: Functions that take a time; the period of a timer is compared with what it counts.
 _TAKING_A_TIME: Final = LIBRARY_UNITS.keys() - {"ConfigCpuTimer"}
@@ -194,12 +193,9 @@ def _settings(function: Function, passed: dict[Variable, list[Expr]]) -> Iterato
                     for block in _timers(timer):
                         yield _Setting(function, s, block, period, counted=False)
                 case Call(function=callee, arguments=[base, count]) if callee.name in _PERIODS:
-                    kind = _PERIODS[callee.name]
-                    first, words, number = _BASES[kind]
                     for address in _constants(base, passed):
-                        n, rest = divmod(address - first, words)
-                        if not rest and 0 <= n < 16:
-                            yield _Setting(function, s, f"{kind}{number + n}", count, counted=True)
+                        if block := counter_at(_PERIODS[callee.name], address):
+                            yield _Setting(function, s, block, count, counted=True)
 
 
 def _timers(e: Expr) -> Iterator[str]:

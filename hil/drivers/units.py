@@ -53,6 +53,7 @@ from emulator.c28x.tree import (
     Load,
     LValue,
     RegisterLoad,
+    RegisterRef,
     Return,
     Stmt,
     Unary,
@@ -63,7 +64,7 @@ from emulator.c28x.tree_queries import assigned, bare, own_nodes, parts, roots, 
 from emulator.chip import Chip
 from hil.drivers.clock_names import clock_by_name, factors
 from hil.drivers.counted import counted
-from hil.drivers.hardware_counts import HardwareCounts, tick_seconds
+from hil.drivers.hardware_counts import HardwareCounts, TimeRegister, set_by_call, tick_seconds, time_register
 from hil.drivers.raw_values import RawValues
 from hil.drivers.stated_units import (
     Measured,
@@ -187,6 +188,14 @@ class _Counters:
                 name = f"counts of {tick * 1e9:g} ns of {counter}"
                 self._units[counter] = Measured(PhysicalUnit(name, "time", tick, tick), counter=counter)
         return self._units[counter]
+
+    def unit_of_time(self, register: TimeRegister | None) -> Measured | None:
+        """The unit in which a register makes a time of a count; None: it makes none."""
+        tick = register.tick_seconds(self._chip) if register is not None else None
+        if register is None or tick is None:
+            return None
+        name = f"counts of {tick * 1e9:g} ns"
+        return Measured(PhysicalUnit(name, "time", tick, tick), counter=register.counter)
 
 
 class _Units:
@@ -444,11 +453,23 @@ class _Units:
                 self._check_target(value, Measured(RADIANS), where, report, f"the angle of {callee.name}")
             case Call(function=callee, arguments=arguments):
                 self._check_printed(e, where, report)
+                self._check_time(set_by_call(callee, arguments), arguments[-1:], where, report)
                 for number, value in enumerate(arguments):
                     wanted, name = self._of_parameter(callee, number)
                     text = f"parameter {name} of {callee.name}"
                     passed = callee.parameters[number : number + 1] if not callee.extern else []
                     self._check_target(value, wanted, where, report, text, _whole(passed[0]) if passed else None)
+
+    def _check_time(
+        self, register: TimeRegister | None, given: list[Expr], where: Where, report: Report
+    ) -> None:  # fmt: skip
+        """Check a value that a register makes a time of; constants that are periods are those of `stated_rates`."""
+        wanted = self._counters.unit_of_time(register) if self._counters is not None else None
+        if register is None or wanted is None:
+            return
+        for value in given:
+            if not (isinstance(bare(value), Const) and register.name in ("TBPRD", "PRD")):
+                self._check_target(value, wanted, where, report, f"{register.name} of {register.counter}")
 
     def _check_printed(self, e: Call, where: Where, report: Report) -> None:
         """Check the objects that a format prints in front of the name of a unit, as they are: `%u mV`.
@@ -491,6 +512,8 @@ class _Units:
             case Assign(target=LValue() as target, value=value):
                 wanted = self._of_lvalue(target)
                 self._check_target(value, wanted, s.where, report, target.text or _name(target), target)
+            case Assign(target=RegisterRef() as register, value=value):
+                self._check_time(time_register(register), [value], s.where, report)
             case Declare(variable=variable, value=Expr() as value):
                 lvalue = _whole(variable)
                 self._check_target(value, self._of_lvalue(lvalue), s.where, report, variable.declaration.name, lvalue)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -121,3 +122,64 @@ def test_a_constant_that_states_another_clock_is_told(tmp_path: Path, define: st
 ])  # fmt: skip
 def test_a_count_that_is_converted_is_not_told(tmp_path: Path, use: str, given: dict[str, object]) -> None:
     assert told(tmp_path, use, **given) == []  # type: ignore[arg-type]
+
+
+SERVO = """#include "F28x_Project.h"
+#define CENTRE_US       1500
+#define TICKS_PER_100US 156
+volatile Uint16 wanted_us = 1200, dead_ns = 300;
+static void Servo(Uint16 us) {{ {set} }}
+void main(void)
+{{
+    InitSysCtrl();
+    GPIO_SetupPinMux(0, GPIO_MUX_CPU1, 1);
+    EPwm1Regs.TBPRD = 31249;
+    EPwm1Regs.TBCTL.bit.CLKDIV = {divider};
+    EPwm1Regs.TBCTL.bit.HSPCLKDIV = 0;
+    EPwm1Regs.AQCTLA.bit.ZRO = 2;
+    EPwm1Regs.AQCTLA.bit.CAU = 1;
+    EPwm1Regs.TBCTL.bit.CTRMODE = {mode};
+    for (;;) {{ Servo(wanted_us); {use} DELAY_US(1000); }}
+}}
+"""
+PLAIN = "EPwm1Regs.CMPA.bit.CMPA = us;"
+
+
+def told_of_a_servo(folder: Path, *, set: str = PLAIN, use: str = "", divider: int = 6, mode: int = 0) -> list[str]:
+    """The messages of the rule, of an ePWM whose counts last 10 ns times two to the `divider`."""
+    file = folder / "servo.c"
+    file.write_text(SERVO.format(set=set, use=use, divider=divider, mode=mode), encoding="utf-8")
+    found = check_files(DriverFiles([file], calls=1, board=load("bare"), seconds=0.01)).findings
+    return [f.message for f in found if f.rule == "count-by-name"]
+
+
+@pytest.mark.parametrize(("given", "message"), [
+    ({}, "us is in us by its name, CMPA of EPwm1 in counts of 640 ns"),
+    ({"set": "EPwm1Regs.CMPB.bit.CMPB = (Uint16)us;"}, "us is in us by its name, CMPB of EPwm1 in counts of 640 ns"),
+    ({"set": "", "use": "EPwm1Regs.CMPA.bit.CMPA = CENTRE_US;"},
+     "CENTRE_US is in us by its name, CMPA of EPwm1 in counts of 640 ns"),
+    ({"set": "", "use": "EPwm1Regs.DBRED.bit.DBRED = dead_ns;", "divider": 0, "mode": 2},
+     "dead_ns is in ns by its name, DBRED of EPwm1 in counts of 10 ns"),
+    ({"set": "", "use": "CpuTimer1Regs.PRD.all = wanted_us;"},
+     "wanted_us is in us by its name, PRD of CpuTimer1 in counts of 5 ns"),
+])  # fmt: skip
+def test_a_time_that_goes_to_a_register_as_it_is_is_told(tmp_path: Path, given: dict[str, Any], message: str) -> None:
+    start = "InitCpuTimers(); StartCpuTimer1(); " if "CpuTimer1" in message else ""
+    given = given | {"use": start + given.get("use", "")}
+    assert told_of_a_servo(tmp_path, **given) == [message]
+
+
+@pytest.mark.parametrize("given", [
+    # Converted: by a fraction, by a shift, by a constant with a name.
+    {"set": "EPwm1Regs.CMPA.bit.CMPA = (Uint32)us * 25 / 16;"},
+    {"set": "EPwm1Regs.CMPA.bit.CMPA = us >> 1;", "divider": 7},
+    {"set": "EPwm1Regs.CMPA.bit.CMPA = (Uint32)us * TICKS_PER_100US / 100;"},
+    # Up and down, a pulse is twice as long; a counter that stands makes none.
+    {"mode": 2}, {"mode": 3},
+    {"set": "CpuTimer1Regs.TCR.bit.TSS = 1; CpuTimer1Regs.PRD.all = us;"},
+    # The bits of the high resolution are no count; nor is another field.
+    {"set": "EPwm1Regs.CMPA.all = (Uint32)us << 16;"}, {"set": "EPwm1Regs.CMPA.bit.CMPAHR = us;"},
+    {"set": "EPwm1Regs.ETPS.bit.INTPRD = us;"},
+])  # fmt: skip
+def test_a_time_that_is_converted_for_a_register_is_not_told(tmp_path: Path, given: dict[str, Any]) -> None:
+    assert told_of_a_servo(tmp_path, **given) == []
