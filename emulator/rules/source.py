@@ -62,6 +62,42 @@ reported.
         "ISO C 6.5.16; CERT EXP45-C",
     ),
     _rule(
+        "empty-body",
+        Severity.WARNING,
+        "An if or a loop ends in a semicolon before what looks like its body.",
+        """
+The block behind `if (count > LIMIT);` runs each time, whatever the condition is; the block behind `for (...);` runs
+once, when the loop has ended.
+
+Reported is a `;` directly behind the parentheses if a block follows, in the same line or the next one; behind an `if`
+also if a statement follows in the same line, or in the next one with a greater indent. A loop that only waits
+(`while (!ready);`), a `;` in a line of its own, an `if` with an `else`, and a macro that is defined as nothing
+(`if (late) TRACE();`) are not reported.
+
+**Fix:** remove the `;`; or put it into a line of its own if nothing is to be done.
+""",
+        "ISO C 6.8.3; CERT EXP15-C",
+    ),
+    _rule(
+        "macro-precedence",
+        Severity.WARNING,
+        "A macro without parentheses is taken apart by an operator beside it, or takes its argument apart.",
+        """
+The expression is not what it looks like: a macro is text, and the operators of the text and those around it bind as if
+somebody had written all of it in one line.
+
+With `#define SCALE(x) x * 2 + 1`, `SCALE(ticks + 3)` is `ticks + 3 * 2 + 1`: only the 3 is multiplied.
+`SCALE(ticks) * 2` is `ticks * 2 + 1 * 2`. With `#define ERRORS OVERRUN | FRAMING`, `status & ERRORS` is
+`(status & OVERRUN) | FRAMING`.
+
+Reported is an operator that takes only a part of the text or of the argument. `x * RATIO` with `#define RATIO 3 / 4`
+and `(float)RATIO` are not reported: there it is usually meant so.
+
+**Fix:** parentheses around the text of the macro, and around each of its parameters in it.
+""",
+        "ISO C 6.10.3; CERT PRE01-C, PRE02-C",
+    ),
+    _rule(
         "implicit-declaration",
         Severity.WARNING,
         "A function is called without a declaration.",

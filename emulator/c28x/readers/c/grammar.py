@@ -64,6 +64,16 @@ class Parenthesised(c_ast.Assignment):  # type: ignore[misc]
     """An assignment in its own parentheses, which state that its value is used on purpose."""
 
 
+class EmptyBody(c_ast.EmptyStatement):  # type: ignore[misc]
+    """The `;` directly behind the parentheses of an if or a loop."""
+
+    def __init__(self, coord: Where, behind: Where, block: bool) -> None:
+        """`behind`: where the next token is; `block`: it is the brace of a block."""
+        super().__init__(coord)
+        self.behind = behind
+        self.block = block
+
+
 class Grammar(CParser):  # type: ignore[misc]
     """The parser of one sequence of lexemes."""
 
@@ -241,6 +251,20 @@ class Grammar(CParser):  # type: ignore[misc]
             while (lexeme := self._peek()) is not None and lexeme.value == "interrupt" and lexeme.type == "INLINE":
                 self._advance()
         return super()._parse_specifiers(allow_storage_and_function=allow_storage_and_function)
+
+    def _parse_pragmacomp_or_statement(self) -> Any:
+        before, found = self._before(), self._peek()
+        node = super()._parse_pragmacomp_or_statement()
+        behind = self._peek()
+        if before is None or found is None or (before.type, found.type) != ("RPAREN", "SEMI"):
+            return node
+        if behind is None or behind.type == "RBRACE":
+            return node
+        closing, end = before.token, found.token
+        between = closing.source.text[closing.at + 1 : end.at]
+        if closing.use or end.use or closing.source is not end.source or between.strip(" \t"):
+            return node  # a macro without text may stand between
+        return EmptyBody(node.coord, behind.token.where, behind.type == "LBRACE")
 
     def _parse_primary_expression(self) -> Any:
         opened = self._peek_type() == "LPAREN"

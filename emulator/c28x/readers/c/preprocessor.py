@@ -35,7 +35,8 @@ from emulator.c28x.readers.c.tokens import (
     error_at,
     kind_of,
     spelled,
-)  # fmt: skip
+)
+from emulator.c28x.readers.c.torn import loosest, torn_by
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Where
@@ -368,6 +369,7 @@ class _Preprocessor:
             text = self._fill(macro, arguments, use)
         self.budget.spend(len(text) + 1, use)
         if text:
+            self._remark_torn_text(macro, text, use)
             first = text[0]
             if first.space != token.space:
                 text[0] = Token(
@@ -434,7 +436,7 @@ class _Preprocessor:
         """The body of `macro` with its arguments inserted, and `#` and `##` carried out."""
         out: list[Token] = []
         expanded: dict[int, list[Token]] = {}
-        for piece in macro.pieces:
+        for number, piece in enumerate(macro.pieces):
             token = piece.token
             index = piece.parameter
             if index < 0:
@@ -465,6 +467,7 @@ class _Preprocessor:
                     argument = arguments[index] if index < len(arguments) else []
                     expanded[index] = self.expand(argument, use) if argument else []
                 part = _spaced(expanded[index], token.space)
+                self._remark_torn_argument(macro, number, part, use)
             if piece.joins_left and out:
                 out.extend(self._joined(out.pop(), part[0], token, use))
                 out.extend(part[1:])
@@ -472,6 +475,32 @@ class _Preprocessor:
                 out.extend(part)
             self.budget.spend(len(part), use)
         return [token for token in out if token.kind != PLACE] if macro.joins else out
+
+    def _remark_torn_text(self, macro: Macro, text: list[Token], use: Token) -> None:
+        """Remark that operators beside the use of a macro take only a part of its text."""
+        own = None if self._closed or use.source.file.startswith("<") else loosest(text)
+        if own is None:
+            return
+        rest = self._texts[-1].tokens[-1:] if self._texts else self._line[self._index : self._index + 1]
+        if by := torn_by(self._out[-2:], own, rest[0] if rest else None):
+            message = (
+                f"{macro.name} is {_brief(macro.body)}, without parentheses: the {by} beside it takes only a part of it"
+            )
+            self.remarks.append(SourceRemark(use.where, message, rule="macro-precedence", name=macro.name))
+
+    def _remark_torn_argument(self, macro: Macro, number: int, argument: list[Token], use: Token) -> None:
+        """Remark that operators in the text of a macro take only a part of an argument."""
+        own = None if use.source.file.startswith("<") or len(argument) < 3 else loosest(argument)
+        if own is None:
+            return
+        before = [piece.token for piece in macro.pieces[max(0, number - 2) : number]]
+        behind = macro.pieces[number + 1].token if number + 1 < len(macro.pieces) else None
+        if by := torn_by(before, own, behind):
+            message = (
+                f"the text of {macro.name}, {_brief(macro.body)}, has its argument {_brief(argument)} without "
+                f"parentheses: the {by} beside it takes only a part of it"
+            )
+            self.remarks.append(SourceRemark(use.where, message, rule="macro-precedence", name=macro.name))
 
     def _string(self, argument: list[Token], at: Token, use: Token) -> Token:
         """`#`: the spelling of the argument as a string (6.10.3.2)."""
@@ -688,3 +717,9 @@ def _rest(line: list[Token]) -> str:
     if len(line) < 3:
         return ""
     return spelled(line[2:])[:500]
+
+
+def _brief(tokens: list[Token]) -> str:
+    """The text of tokens, not longer than a message has room for."""
+    text = spelled(tokens)
+    return text if len(text) <= 40 else f"{text[:37]}..."

@@ -23,6 +23,8 @@ from emulator.c28x.symbols import Module, Remark, SourceError, Symbol
 from emulator.c28x.tree import Function, Variable, Where
 
 if TYPE_CHECKING:
+    from pycparser import c_ast
+
     from emulator.c28x.readers.c.declarations import CDeclarationReader
 
 #: Frames for the deepest function; nested constructs have their own limits.
@@ -123,7 +125,7 @@ class CFiles:
         module = Module(name, file, text or "", short, double=abi.double)
         reader = CDeclarationReader(module, abi, self.find)
         self.files[name] = CFile(module, reader, unit)
-        _remark_preprocessing(module, unit)
+        _remark_preprocessing(module, unit, tree)
         with reading(_FRAMES):
             try:
                 reader.read(tree)
@@ -314,10 +316,14 @@ def _fill_shared(module: Module, unit: Unit) -> None:
             module.initialisers.setdefault(shared, partial(zeros, shared.ctype, pragma.where))
 
 
-def _remark_preprocessing(module: Module, unit: Unit) -> None:
+def _remark_preprocessing(module: Module, unit: Unit, tree: c_ast.FileAST) -> None:
     """Make remarks about pragmas that are not modelled, and about what the preprocessor remarked."""
     for remark in unit.remarks:
-        module.remarks.append(Remark(remark.where, rule="preprocessor", message=remark.message, name=""))
+        where = remark.where
+        before = [node for node in tree.ext if node.coord.file == where.file and node.coord.line <= where.line]
+        declared = getattr(before[-1], "decl", None) if before else None  # only a function's definition has one
+        function = declared.name if declared is not None else ""
+        module.remarks.append(Remark(where, remark.rule, remark.message, remark.name, function))
     for pragma in unit.pragmas:
         word, _, arguments = pragma.text.partition("(")
         word, name = word.strip(), arguments.split(",")[0].strip()

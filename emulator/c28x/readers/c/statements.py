@@ -18,7 +18,7 @@ from emulator.c28x import build
 from emulator.c28x.build import Builder
 from emulator.c28x.ctypes import VOID, ArrayType, IntType, StructType, promote
 from emulator.c28x.readers.c.expressions import CExpressionReader
-from emulator.c28x.readers.c.grammar import Parenthesised
+from emulator.c28x.readers.c.grammar import EmptyBody, Parenthesised
 from emulator.c28x.readers.c.written import written
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import (
@@ -105,12 +105,16 @@ class CStatementReader:
             case c_ast.DeclList():
                 self.statements(node.decls)
             case c_ast.If():
+                if node.iffalse is None:
+                    self.empty_body(node, node.iftrue, "if")
                 self.if_(node)
             case c_ast.While():
+                self.empty_body(node, node.stmt, "while")
                 build.loop(b, lambda: self.test(node.cond), self.body(node.stmt, "loop"), None, where)
             case c_ast.DoWhile():
                 build.do_while(b, self.body(node.stmt, "loop"), lambda: self.test(node.cond), where)
             case c_ast.For():
+                self.empty_body(node, node.stmt, "for")
                 self.for_(node)
             case c_ast.Switch():
                 self.switch(node)
@@ -289,6 +293,20 @@ class CStatementReader:
             self.b.out.extend(statements)
 
         return read
+
+    def empty_body(self, node: c_ast.Node, body: c_ast.Node, keyword: str) -> None:
+        """Remark that a statement ends in `;` before what looks like its body.
+
+        That is a block; behind an `if` also what stands in the same line, or in the next one with a greater indent.
+        """
+        if not isinstance(body, EmptyBody) or body.behind.file != body.coord.file:
+            return
+        lines = body.behind.line - body.coord.line
+        under = keyword == "if" and (not lines or (lines == 1 and body.behind.column > node.coord.column))
+        if under or (body.block and lines <= 1):
+            what = "block" if body.block else "statement"
+            message = f"this {keyword} ends in ; behind its parentheses: the {what} behind it always runs"
+            self.b.remark(body.coord, "empty-body", message, keyword)
 
     def if_(self, node: c_ast.If) -> None:
         """`if`; an `else if` does not open a block."""

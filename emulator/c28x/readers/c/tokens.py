@@ -67,6 +67,9 @@ class SourceRemark:
 
     where: Where
     message: str
+    rule: str = "preprocessor"
+    #: The macro that it is about.
+    name: str = ""
 
 
 def kind_of(text: str) -> str | None:

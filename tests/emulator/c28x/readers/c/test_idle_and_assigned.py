@@ -1,4 +1,4 @@
-"""Statements that do nothing, and conditions that assign: what only C can write."""
+"""Statements that do nothing, conditions that assign, bodies behind a semicolon: what only C can write."""
 
 from __future__ import annotations
 
@@ -75,3 +75,31 @@ def test_a_condition_that_assigns_is_told(statement: str) -> None:
 )
 def test_an_assignment_whose_value_is_wanted_is_not_told(statement: str) -> None:
     assert told(statement) == []
+
+
+def told_bodies(statement: str) -> list[int]:
+    """The lines, from 0, of a statement at which a body is told that is none."""
+    found = findings_of(f"#define TRACE()\n#define BOTH ) ;\n{HEAD}{statement}\n    return a + b;\n}}\n")
+    return [line - LINE - 2 for rule, line in found if rule == "empty-body"]
+
+
+@pytest.mark.parametrize(("statement", "lines"), [
+    ("if (a > b); { k = 1; }", [0]), ("if (a > b);\n{ k = 1; }", [0]), ("if (a > b) ; k = 1;", [0]),
+    ("    if (a > b);\n        k = 1;", [0]), ("if (a) { if (b)\n;\nif (a > b); { k = 1; } }", [2]),
+    ("for (k = 0; k < 3; k++); { total++; }", [0]), ("while (live) ;\n{ total++; }", [0]),
+])  # fmt: skip
+def test_what_looks_like_the_body_behind_a_semicolon_is_told(statement: str, lines: list[int]) -> None:
+    assert told_bodies(statement) == lines
+
+
+@pytest.mark.parametrize("statement", [
+    # What waits, or does nothing, and says so by where the `;` is or by what follows.
+    "while (live); k = 1;", "while (live);\n    k = 1;", "for (k = 0; k < 3 && live; k++);\nk = 1;",
+    "if (a > b)\n    ;\n{ k = 1; }", "    if (next());\n    k = 1;", "if (a) { if (next()); }",
+    "if (next());\n\n{ k = 1; }",
+    "if (a > b); else k = 1;", "if (a > b) /* nothing */ ;", "do k++; while (live); { k = 1; }",
+    # A macro without text, and one that ends the statement.
+    "if (a > b) TRACE(); k = 1;", "if (a > b BOTH { k = 1; }",
+])  # fmt: skip
+def test_a_semicolon_that_is_meant_is_not_told(statement: str) -> None:
+    assert told_bodies(statement) == []
