@@ -62,21 +62,25 @@ reported.
         "ISO C 6.5.16; CERT EXP45-C",
     ),
     _rule(
-        "empty-body",
+        "outside-body",
         Severity.WARNING,
-        "An if or a loop ends in a semicolon before what looks like its body.",
+        "What looks like the body of an if or a loop, or like a part of it, is outside of it.",
         """
-The block behind `if (count > LIMIT);` runs each time, whatever the condition is; the block behind `for (...);` runs
-once, when the loop has ended.
+A statement runs always that somebody meant to run only on a condition, or in each turn of a loop; or it runs in the
+wrong case. The layout of the source says one thing, and C another:
 
-Reported is a `;` directly behind the parentheses if a block follows, in the same line or the next one; behind an `if`
-also if a statement follows in the same line, or in the next one with a greater indent. A loop that only waits
-(`while (!ready);`), a `;` in a line of its own, an `if` with an `else`, and a macro that is defined as nothing
-(`if (late) TRACE();`) are not reported.
+* `if (count > LIMIT);` and `for (...);` before a block; behind an `if` also before a statement in the same line, or in
+  the next one with a greater indent;
+* a second statement that is indented as the body before it, which has no braces;
+* a macro of two statements (`#define BOTH First(); Second()`) as a body without braces: only the first is in it;
+* an `else` that stands under an outer `if`, and belongs to the inner one.
 
-**Fix:** remove the `;`; or put it into a line of its own if nothing is to be done.
+A loop that only waits (`while (!ready);`), a `;` in a line of its own, an `if` with an `else` before such a `;`, and a
+macro that is defined as nothing (`if (late) TRACE();`) are not reported.
+
+**Fix:** braces around each body; `do { ... } while (0)` around the statements of a macro; no `;` behind the condition.
 """,
-        "ISO C 6.8.3; CERT EXP15-C",
+        "ISO C 6.8.3, 6.8.4.1 p3; CERT EXP15-C, EXP19-C, PRE10-C",
     ),
     _rule(
         "macro-precedence",

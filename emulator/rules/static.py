@@ -128,7 +128,9 @@ range of values that decides. Examples:
 * after `if (t > low) ... else if (t < high)` with `low < high` the second test is always true, so the band between the
   two limits is none (the exact complement, `else if (t <= low)`, is not reported); after `if (t > 10) ... else if
   (t > 20)` it is always false;
-* a pointer that was already used is not NULL: the test comes too late, or it should test another pointer.
+* after `if (mode == 1) ... else if (mode == 1)` the second test is always false;
+* a pointer that was already used is not NULL: the test comes too late, or it should test another pointer;
+* `if (Ready)` with a function `Ready` tests its address, `name == "abc"` compares two addresses, `flags && 4` tests 4.
 
 `while (1)` and conditions of constants only (build switches) are not reported.
 
@@ -265,7 +267,7 @@ semaphore.
     _rule(
         "mixed-logic",
         Severity.WARNING,
-        "The result of a comparison or of ! is an operand of a bitwise operator.",
+        "The result of a comparison or of ! is an operand of a bitwise operator, or ^ is taken for a power.",
         """
 A test of several flags looks only at bit 0, or all flags are cleared instead of one.
 
@@ -274,6 +276,8 @@ combined by `&` or `|` are not reported.
 
 `flags &= !MASK` clears all flags: `!MASK` is 0 for every mask. It is reported for a constant that is not 0 or 1, and
 for 1 if another statement sets a higher bit of the same object.
+
+`10^3` and `2^n` with numbers are reported too: `^` is the exclusive or, and `10^3` is 9.
 
 **Fix:** parentheses around the mask: `(flags & MASK) == MASK`; `~MASK` for the other bits.
 """,

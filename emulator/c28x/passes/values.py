@@ -268,7 +268,7 @@ class ValueChecks(ConstantChecks):
             return
         others = [bare(o) for o in test.operands if o is not operand]
         compared = any(isinstance(o, Compare) and o.op == "==" and isinstance(bare(o.right), Const) for o in others)
-        if number.where.macro in self.masks if number.where.macro is not None else compared:
+        if number.where.macro in self.masks if number.where.macro is not None else compared or test.op == "and":
             text = source_text(test)
             message = f"{text}: {source_text(number)} alone is always true; it is not compared with anything"
             self.report_here("constant-condition", message, text)

@@ -356,8 +356,23 @@ class CExpressionReader:
         while isinstance(row[-1].left, c_ast.BinaryOp) and row[-1].left.op not in ("&&", "||"):
             row.append(row[-1].left)
         row.reverse()
+        for step in row:
+            self.tell_odd_operands(step)
         operands = [partial(self.value, operand) for operand in (row[0].left, *(step.right for step in row))]
         return build.row(self.b, operands, [(step.op, step.coord) for step in row])
+
+    def tell_odd_operands(self, node: c_ast.BinaryOp) -> None:
+        """Report a comparison with a text, and `10^6` for a power."""
+        left, right = node.left, node.right
+        text = written(node)
+        if node.op in ("==", "!=") and any(isinstance(e, c_ast.Constant) and e.type == "string" for e in (left, right)):
+            message = f"{text} compares addresses, and the text has its own: strcmp compares what is in it"
+            self.b.remark(node.coord, "constant-condition", message, text)
+        factor = left.right if isinstance(left, c_ast.BinaryOp) and left.op == "*" else left
+        if node.op == "^" and _decimal(factor) in (2, 10) and (power := _decimal(right)) is not None:
+            said = f"{factor.value}^{power}"
+            message = f"{said} is {int(factor.value) ^ power} in C: ^ is the exclusive or, not a power"
+            self.b.remark(node.coord, "mixed-logic", message, said)
 
     def logic(self, node: c_ast.BinaryOp) -> Expr:
         """`&&` and `||`; a chain of the same operator is one node."""
@@ -372,19 +387,22 @@ class CExpressionReader:
     def ternary(self, node: c_ast.TernaryOp) -> Expr:
         """`a ? b : c`."""
         test = self.value(node.cond)
-        self.tell_assigned_constants(node.cond)
+        self.tell_odd_condition(node.cond)
         return build.conditional(
             self.b, test, lambda: self.value(node.iftrue), lambda: self.value(node.iffalse), node.coord
         )
 
-    def tell_assigned_constants(self, node: c_ast.Node) -> None:
-        """Report the assignments of constants in a condition, and in the operands of its `!`, `&&` and `||`."""
+    def tell_odd_condition(self, node: c_ast.Node) -> None:
+        """Report assignments of constants, and functions, in a condition and in the operands of `!`, `&&` and `||`."""
         match node:
+            case c_ast.ID(name=name) if isinstance(self.b.look_up(name), Function):
+                message = f"{name} is a function, whose address is never 0: {name}() calls it"
+                self.b.remark(node.coord, "constant-condition", message, name)
             case c_ast.UnaryOp(op="!", expr=inner):
-                self.tell_assigned_constants(inner)
+                self.tell_odd_condition(inner)
             case c_ast.BinaryOp(op="&&" | "||", left=left, right=right):
-                self.tell_assigned_constants(left)
-                self.tell_assigned_constants(right)
+                self.tell_odd_condition(left)
+                self.tell_odd_condition(right)
             case c_ast.Assignment(op="=") if self.assigns_constant(node):
                 self.tell_assigned(node)
 
@@ -664,3 +682,9 @@ def _orders(node: c_ast.Node) -> bool:
     if isinstance(node, c_ast.BinaryOp):
         return node.op in ("&&", "||")
     return isinstance(node, c_ast.FuncCall | c_ast.ExprList | c_ast.TernaryOp)
+
+
+def _decimal(node: c_ast.Node) -> int | None:
+    """The value of a decimal number that stands in the file itself; None: something else."""
+    plain = isinstance(node, c_ast.Constant) and node.coord.macro is None and node.value.isdecimal()
+    return int(node.value) if plain and (node.value[0] != "0" or node.value == "0") else None

@@ -74,6 +74,15 @@ class EmptyBody(c_ast.EmptyStatement):  # type: ignore[misc]
         self.block = block
 
 
+class IfElse(c_ast.If):  # type: ignore[misc]
+    """An if with an else: `otherwise` is the place of the word."""
+
+    def __init__(self, node: c_ast.If, otherwise: Where) -> None:
+        """The same as `node`."""
+        super().__init__(node.cond, node.iftrue, node.iffalse, node.coord)
+        self.otherwise = otherwise
+
+
 class Grammar(CParser):  # type: ignore[misc]
     """The parser of one sequence of lexemes."""
 
@@ -86,6 +95,7 @@ class Grammar(CParser):  # type: ignore[misc]
         #: The lexemes, with enough None at the end for look-ahead.
         self._stream: list[Lexeme | None] = [*lexemes, None, None, None]
         self._index = len(headers.lexemes) if headers else 0
+        self._else = Where("", 0)
         self._headers = headers
         self._typedefs = typedefs
         self._depth = depth
@@ -252,9 +262,16 @@ class Grammar(CParser):  # type: ignore[misc]
                 self._advance()
         return super()._parse_specifiers(allow_storage_and_function=allow_storage_and_function)
 
+    def _parse_selection_statement(self) -> Any:
+        node = super()._parse_selection_statement()
+        # The last `else` whose statement has ended is that of this `if`.
+        return IfElse(node, self._else) if isinstance(node, c_ast.If) and node.iffalse is not None else node
+
     def _parse_pragmacomp_or_statement(self) -> Any:
         before, found = self._before(), self._peek()
         node = super()._parse_pragmacomp_or_statement()
+        if before is not None and before.type == "ELSE":
+            self._else = before.token.where
         behind = self._peek()
         if before is None or found is None or (before.type, found.type) != ("RPAREN", "SEMI"):
             return node

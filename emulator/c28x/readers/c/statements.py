@@ -18,7 +18,8 @@ from emulator.c28x import build
 from emulator.c28x.build import Builder
 from emulator.c28x.ctypes import VOID, ArrayType, IntType, StructType, promote
 from emulator.c28x.readers.c.expressions import CExpressionReader
-from emulator.c28x.readers.c.grammar import EmptyBody, Parenthesised
+from emulator.c28x.readers.c.grammar import Parenthesised
+from emulator.c28x.readers.c.outside_body import outside_bodies
 from emulator.c28x.readers.c.written import written
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import (
@@ -105,16 +106,12 @@ class CStatementReader:
             case c_ast.DeclList():
                 self.statements(node.decls)
             case c_ast.If():
-                if node.iffalse is None:
-                    self.empty_body(node, node.iftrue, "if")
                 self.if_(node)
             case c_ast.While():
-                self.empty_body(node, node.stmt, "while")
                 build.loop(b, lambda: self.test(node.cond), self.body(node.stmt, "loop"), None, where)
             case c_ast.DoWhile():
                 build.do_while(b, self.body(node.stmt, "loop"), lambda: self.test(node.cond), where)
             case c_ast.For():
-                self.empty_body(node, node.stmt, "for")
                 self.for_(node)
             case c_ast.Switch():
                 self.switch(node)
@@ -156,6 +153,8 @@ class CStatementReader:
                 if node.name in self.labels:
                     raise SourceError.at(node.coord, f"the label {node.name} is here twice in one function")
                 self.labels[node.name] = node.coord
+        for found in outside_bodies(items):
+            self.b.remark(found.where, "outside-body", found.message, found.keyword)
         self.statements(items)
 
     def break_(self, where: Where) -> None:
@@ -294,20 +293,6 @@ class CStatementReader:
 
         return read
 
-    def empty_body(self, node: c_ast.Node, body: c_ast.Node, keyword: str) -> None:
-        """Remark that a statement ends in `;` before what looks like its body.
-
-        That is a block; behind an `if` also what stands in the same line, or in the next one with a greater indent.
-        """
-        if not isinstance(body, EmptyBody) or body.behind.file != body.coord.file:
-            return
-        lines = body.behind.line - body.coord.line
-        under = keyword == "if" and (not lines or (lines == 1 and body.behind.column > node.coord.column))
-        if under or (body.block and lines <= 1):
-            what = "block" if body.block else "statement"
-            message = f"this {keyword} ends in ; behind its parentheses: the {what} behind it always runs"
-            self.b.remark(body.coord, "empty-body", message, keyword)
-
     def if_(self, node: c_ast.If) -> None:
         """`if`; an `else if` does not open a block."""
         links: list[build.IfBranch] = []
@@ -326,7 +311,7 @@ class CStatementReader:
         if value.ctype == VOID:
             raise SourceError.at(node.coord, f"'{written(node)}' is void: it is not a condition")
         if not isinstance(node, c_ast.Assignment):
-            self.expressions.tell_assigned_constants(node)
+            self.expressions.tell_odd_condition(node)
         elif node.op == "=" and self.compares(node, branches):
             self.expressions.tell_assigned(node)
         return value
