@@ -83,6 +83,21 @@ macro that is defined as nothing (`if (late) TRACE();`) are not reported.
         "ISO C 6.8.3, 6.8.4.1 p3; CERT EXP15-C, EXP19-C, PRE10-C",
     ),
     _rule(
+        "comment-open",
+        Severity.WARNING,
+        "A comment without an end swallows the code up to the end of the next comment.",
+        """
+Statements or declarations are missing from the program, and nothing says so: C has no comments within comments, so a
+comment whose `*/` was forgotten ends with the next `*/`.
+
+Reported is a comment that contains the beginning of another one, and between the two beginnings a line that ends in
+`;`, `{` or `}`.
+
+**Fix:** end the comment. Code that is to be left out stands between `#if 0` and `#endif`.
+""",
+        "ISO C 6.4.9; CERT MSC04-C",
+    ),
+    _rule(
         "macro-precedence",
         Severity.WARNING,
         "A macro without parentheses is taken apart by an operator beside it, or takes its argument apart.",

@@ -158,6 +158,10 @@ def _run(source: SourceText, include: IncludePath, options: PreprocessorOptions)
     preprocessor.command_line(options.defines)
     with reading(_FRAMES):
         tokens = preprocessor.run(source)
+    for read in {id(each): each for each in (source, *include.files.values())}.values():
+        for at in sorted(set(read.swallowing)):
+            message = "this comment has no end of its own: it ends with the next one, and the code between is in it"
+            preprocessor.remarks.append(SourceRemark(read.where(at), message, rule="comment-open"))
     macros = {name: macro for name, macro in preprocessor.macros.items() if own.get(name) is not macro}
     return Unit(
         source.file, tokens, macros, preprocessor.pragmas, preprocessor.remarks, include.files, options.limits,

@@ -49,6 +49,7 @@ _TOKEN: Final = re.compile(
 )
 _BLANK, _NEWLINE, _OPEN_COMMENT = 1, 2, 7
 _KINDS: Final = ("", "", "", STRING, CHAR, NAME, NUMBER, "", PUNCT, BAD, OTHER)
+_COMMENT: Final = re.compile(r"//[^\n]*+|/\*(?s:.*?)\*/")
 _SPLICE: Final = re.compile(r"\\\r?\n")
 _ONE: Final = re.compile(rf"(?:({_STRING})|({_CHAR})|({_NAME})|({_NUMBER})|({_PUNCTUATORS}))")
 _ONE_KINDS: Final = ("", STRING, CHAR, NAME, NUMBER, PUNCT)
@@ -78,10 +79,18 @@ def kind_of(text: str) -> str | None:
     return _ONE_KINDS[match.lastindex or 0] if match else None
 
 
+def _swallowing(blank: str) -> Iterator[int]:
+    """Where comments begin whose end is that of another one, with code between the two beginnings."""
+    for comment in _COMMENT.finditer(blank):
+        before, _, _ = comment.group().rpartition("/*")
+        if any(line.rstrip().endswith((";", "{", "}")) for line in before.split("\n")[1:]):
+            yield comment.start()
+
+
 class SourceText:
     """The text of one file with joined lines, and the map from an offset in it to line and column on disk."""
 
-    __slots__ = ("_joints", "_kept", "_removed", "_starts", "file", "folder", "text")
+    __slots__ = ("_joints", "_kept", "_removed", "_starts", "file", "folder", "swallowing", "text")
 
     def __init__(self, file: str, text: str, folder: str | None = None, *, keep: bool = False) -> None:
         """`file`: the name in places.  `folder`: searched first for its own `#include "..."`.
@@ -89,6 +98,8 @@ class SourceText:
         `keep`: store its tokens, because many files include it.
         """
         self._kept: list[list[Token]] | None = [] if keep else None
+        #: Where comments begin that contain code and the beginning of another comment.  Scanning fills it.
+        self.swallowing: list[int] = []
         if "\r" in text and "\n" not in text:
             text = text.replace("\r", "\n")
         text = text.removeprefix("\ufeff")
@@ -134,6 +145,8 @@ class SourceText:
             index = match.lastindex or 0
             if index == _BLANK:
                 space = True
+                if "\n" in (blank := match.group()):
+                    self.swallowing += (match.start() + at for at in _swallowing(blank))
             elif index == _NEWLINE:
                 if line:
                     budget.spend(len(line), line[0])
