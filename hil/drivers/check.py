@@ -134,17 +134,12 @@ def _add(checked: Checked, findings: Iterable[Finding], keys: dict[Key, Finding]
     return keys
 
 
-def _time(seconds: float) -> str:
-    """A time in the unit in which it is easy to read."""
-    scale, unit = next((each for each in ((1, "s"), (1e3, "ms")) if seconds * each[0] >= 1), (1e6, "us"))
-    return f"{seconds * scale:.4g} {unit}"
-
-
 def _function(tried: CheckedFunction, found: Roles, ran: ProgramOutcome | None) -> CalledFunction:
     function = tried.function
     reason = tried.reason
     if ran is not None and (function is found.main or function in found.tasks):
-        reason = f"{reason}; the program ran for {_time(ran.virtual_s)}"
+        time = f"{ran.virtual_s:.4g} s" if ran.virtual_s >= 1e-3 else f"{ran.virtual_s * 1e6:.3g} us"
+        reason = f"{reason}; the program ran for {time}"
         reason += f", then ended: {ran.cut}" if ran.cut else ""
     notes = []
     if tried.guessed:

@@ -53,7 +53,7 @@ def loosest(tokens: Sequence[Token]) -> Loosest | None:
     for index, token in enumerate(tokens):
         text = token.text
         if token.kind != PUNCT:
-            if not closing and text in _WORDS:
+            if not closing and text in _WORDS and text != "sizeof":
                 return None
         elif text in _OPENING:
             if text == "{":

@@ -24,6 +24,7 @@ def remarks(defines: str, use: str) -> list[str]:
     ("#define M(a, b) a > b ? a : b", "M(x, y) + 1", ["M +"]),
     ("#define M(a, b) a > b ? a : b", "M(x & 1, y)", ["M >"]),
     ("#define N(x) -x", "N(a + b)", ["N -"]), ("#define N(x) ~x", "N(a | b)", ["N ~"]),
+    ("#define LEN sizeof(v) / sizeof(v[0])", "n % LEN", ["LEN %"]),
     ("#define D(A) f(((long double) A * 1000.0L) / 5)", "D(a + b)", ["D *"]),
     ("#define A x + y\n#define B A * 2", "B", ["A *"]), ("#define A x + y\n#define S(x) (x * 2)", "S(A)", ["S *"]),
 ])  # fmt: skip
@@ -45,6 +46,7 @@ def test_a_part_of_a_text_or_of_an_argument_is_told(defines: str, use: str, told
     ("#define P (*(volatile int *) 0x7000)", "P * 2"), ("#define U unsigned long", "sizeof(U) * 2"),
     ("#define L(x) do { x * 2; } while (0)", "0; L(a)"), ("#define I int *", "(I) p"),
     ("#define C a, b + c", "f(C) * 2"),
+    ("#define LEN sizeof(v) / sizeof(v[0])", "n < LEN - 1"), ("#define S sizeof(int)", "n / S"),
     ("#define T(x) (long) x", "T(a + b)"), ("#define A x = y", "A * 2"),
 ])  # fmt: skip
 def test_what_is_the_same_with_parentheses_or_meant_so_is_not_told(defines: str, use: str) -> None:
