@@ -167,12 +167,13 @@ class TimeRegister(NamedTuple):
 def time_register(register: RegisterRef) -> TimeRegister | None:
     """What a statement sets that writes a register, or its field of the same name; None: something else."""
     counter = register.block.removesuffix("Regs")
-    whole = register.field is None or register.field.name == register.register
-    named = register.register in _TIMES.get(counter.rstrip("0123456789"), ())
-    # A whole CMPA has the bits of the high resolution below those of the count.
-    return TimeRegister(counter, register.register) if named and whole and not (
-        register.field is None and register.register in ("CMPA", "CMPB")
-    ) else None  # fmt: skip
+    name = register.register
+    if register.field is None:
+        whole = name not in ("CMPA", "CMPB")  # which have the bits of the high resolution below those of the count
+    else:
+        whole = register.field.name == name
+    named = name in _TIMES.get(counter.rstrip("0123456789"), ())
+    return TimeRegister(counter, name) if named and whole else None
 
 
 def set_by_call(function: Function, arguments: list[Expr]) -> TimeRegister | None:

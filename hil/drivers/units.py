@@ -460,9 +460,7 @@ class _Units:
                     passed = callee.parameters[number : number + 1] if not callee.extern else []
                     self._check_target(value, wanted, where, report, text, _whole(passed[0]) if passed else None)
 
-    def _check_time(
-        self, register: TimeRegister | None, given: list[Expr], where: Where, report: Report
-    ) -> None:  # fmt: skip
+    def _check_time(self, register: TimeRegister | None, given: list[Expr], where: Where, report: Report) -> None:
         """Check a value that a register makes a time of; constants that are periods are those of `stated_rates`."""
         wanted = self._counters.unit_of_time(register) if self._counters is not None else None
         if register is None or wanted is None:

@@ -34,7 +34,7 @@ from emulator.c28x.tree import (
     Unary,
     Variable,
 )
-from emulator.c28x.tree_queries import OPPOSITE, TURNED, bare, calls, source_text, statements
+from emulator.c28x.tree_queries import OPPOSITE, TURNED, calls, source_text, statements
 
 
 class _Linear(NamedTuple):
@@ -60,13 +60,13 @@ def check_decided(function: Function, report: StaticReport) -> None:
     for s in statements(function.body):
         if isinstance(s, If) and id(s) not in inner:
             known: list[_Limit] = []
-            failed: dict[str, Expr] = {}
+            failed: dict[str, int] = {}
             for test in _chain(s):
                 inner.add(id(test))
                 _check(test, known, function, report)
                 _check_again(test, failed, function, report)
                 known += [limit for limit in map(_limit, _each(test.test)) if limit is not None]
-                failed |= {source_text(each): each for each in _each(test.test) if _stays(each)}
+                failed |= {source_text(each): test.where.line for each in _each(test.test) if _stays(each)}
 
 
 def _chain(first: If) -> Iterator[If]:
@@ -97,19 +97,19 @@ def _check(s: If, known: list[_Limit], function: Function, report: StaticReport)
             return
 
 
-def _check_again(s: If, failed: dict[str, Expr], function: Function, report: StaticReport) -> None:
-    """Report a test that is one of those that have failed."""
+def _check_again(s: If, failed: dict[str, int], function: Function, report: StaticReport) -> None:
+    """Report a test that is one of those that have `failed`: their texts, with the lines of their `if`."""
     text = source_text(s.test)
     if text in failed and _stays(s.test):
-        message = f"{text} is always false here: line {failed[text].where.line or s.where.line} has tested it"
+        message = f"{text} is always false here: line {failed[text]} has tested it"
         report.report(function, s.where, "constant-condition", message, object=text)
 
 
 def _stays(test: Expr) -> bool:
     """Whether a test has the same result a moment later, and its text says all of it."""
     text = source_text(test)
-    same = not calls(test) and not volatile(test) and not isinstance(bare(test), Const)
-    return same and isinstance(test, Compare) and "..." not in text and "expression" not in text
+    same = isinstance(test, Compare) and not calls(test) and not volatile(test)
+    return same and "..." not in text and "expression" not in text
 
 
 def _decided(before: _Limit, now: _Limit) -> bool | None:

@@ -13,7 +13,8 @@ DEPTH: Final = 200
 _MASK: Final = (1 << 64) - 1
 _INTEGER: Final = re.compile(r"(0[xX][0-9a-fA-F]+|0[bB][01]+|[0-9]+)([uU]?(?:ll|LL|[lL])?|(?:ll|LL|[lL])[uU])")
 _ESCAPES: Final = {"n": 10, "t": 9, "r": 13, "a": 7, "b": 8, "f": 12, "v": 11}
-_PRECEDENCE: Final = {
+#: Operators with two operands -> how tight they bind (6.5.5 to 6.5.14).
+PRECEDENCE: Final = {
     "||": 1, "&&": 2, "|": 3, "^": 4, "&": 5, "==": 6, "!=": 6, "<": 7, ">": 7, "<=": 7, ">=": 7, "<<": 8, ">>": 8,
     "+": 9, "-": 9, "*": 10, "/": 10, "%": 10,
 }  # fmt: skip
@@ -116,7 +117,7 @@ class _ConditionReader:
 
     def binary(self, lowest: int, live: bool) -> Value:
         left = self.unary(live)
-        while (level := _PRECEDENCE.get(self._peek(), 0)) >= lowest:
+        while (level := PRECEDENCE.get(self._peek(), 0)) >= lowest:
             operator = self._next()
             needed = live
             if operator.text == "&&":

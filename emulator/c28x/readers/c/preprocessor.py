@@ -18,6 +18,7 @@ from typing import Final
 
 from emulator.c28x.readers.c.conditions import evaluate
 from emulator.c28x.readers.c.includes import IncludePath, Refused
+from emulator.c28x.readers.c.macro_precedence import loosest, torn_by
 from emulator.c28x.readers.c.macros import Macro, definition
 from emulator.c28x.readers.c.tokens import (
     BAD,
@@ -36,7 +37,6 @@ from emulator.c28x.readers.c.tokens import (
     kind_of,
     spelled,
 )
-from emulator.c28x.readers.c.torn import loosest, torn_by
 from emulator.c28x.readers.reading import reading
 from emulator.c28x.symbols import SourceError
 from emulator.c28x.tree import Where

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.emulator.c28x.readers.c.workshop import findings_of
+from tests.emulator.c28x.readers.c.workshop import CWorkshop, findings_of
 
 HEAD = """enum mode { OFF, SLOW, FAST };
 struct link { struct link *next; int n; };
@@ -106,3 +106,12 @@ def test_a_condition_that_can_change_is_not_told(statement: str) -> None:
 ])  # fmt: skip
 def test_an_exclusive_or_for_a_power_is_told(statement: str, rules: list[str]) -> None:
     assert told(statement) == rules
+
+
+def test_a_repeated_test_names_the_line_of_the_first() -> None:
+    chain = "    if (a == 1)\n        b = 1;\n    else if (a == 1)\n        b = 2;\n"
+    drv = CWorkshop(f"{HEAD}{chain}    return b;\n}}\n", static=True)
+    (finding,) = drv.findings.of("constant-condition")
+    assert f"line {LINE} has tested it" in finding.message
+    assert finding.place is not None
+    assert finding.place.line == LINE + 2

@@ -12,13 +12,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
+from emulator.c28x.readers.c.conditions import PRECEDENCE
 from emulator.c28x.readers.c.tokens import CHAR, NAME, NUMBER, PUNCT, STRING, Token
 
-#: Binary operators -> how tight they bind (ISO/IEC 9899:1999, 6.5.5 to 6.5.15).
-_BINDS: Final = {
-    "*": 10, "/": 10, "%": 10, "+": 9, "-": 9, "<<": 8, ">>": 8, "<": 7, ">": 7, "<=": 7, ">=": 7, "==": 6, "!=": 6,
-    "&": 5, "^": 4, "|": 3, "&&": 2, "||": 1, "?": 0,
-}  # fmt: skip
+#: Operators with a left and a right operand -> how tight they bind.
+_BINDS: Final = PRECEDENCE | {"?": 0}
 #: Unary operators that take less than a sum, or than any operand with an operator.
 _UNARY: Final = {"-": 9, "~": 10, "!": 10, "*": 10}
 #: Operators -> those of the same strength behind which the operand on their right is another one without parentheses.
