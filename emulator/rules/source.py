@@ -75,8 +75,8 @@ wrong case. The layout of the source says one thing, and C another:
 * a macro of two statements (`#define BOTH First(); Second()`) as a body without braces: only the first is in it;
 * an `else` that stands under an outer `if`, and belongs to the inner one.
 
-A loop that only waits (`while (!ready);`), a `;` in a line of its own, an `if` with an `else` before such a `;`, and a
-macro that is defined as nothing (`if (late) TRACE();`) are not reported.
+A loop that only waits (`while (!ready);`), a `;` before an empty block or in a line of its own, an `if` with an `else`
+before such a `;`, and a macro that is defined as nothing (`if (late) TRACE();`) are not reported.
 
 **Fix:** braces around each body; `do { ... } while (0)` around the statements of a macro; no `;` behind the condition.
 """,

@@ -275,8 +275,8 @@ class Grammar(CParser):  # type: ignore[misc]
         behind = self._peek()
         if before is None or found is None or (before.type, found.type) != ("RPAREN", "SEMI"):
             return node
-        if behind is None or behind.type == "RBRACE":
-            return node
+        if behind is None or behind.type == "RBRACE" or (behind.type == "LBRACE" and self._peek_type(2) == "RBRACE"):
+            return node  # nothing is behind it, or an empty block: TI's driverlib has room for a comment so
         closing, end = before.token, found.token
         between = closing.source.text[closing.at + 1 : end.at]
         if closing.use or end.use or closing.source is not end.source or between.strip(" \t"):

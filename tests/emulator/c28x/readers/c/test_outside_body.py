@@ -45,7 +45,7 @@ def test_a_body_behind_a_semicolon_is_told(tmp_path: Path, statement: str, lines
     "while (live); k = 1;", "while (live);\n    k = 1;", "for (k = 0; k < 3 && live; k++);\nk = 1;",
     "if (a > b)\n    ;\n{ k = 1; }", "    if (next());\n    k = 1;", "if (a) { if (next()); }",
     "if (next());\n\n{ k = 1; }", "if (a > b); else k = 1;", "if (a > b) /* nothing */ ;",
-    "do k++; while (live); { k = 1; }",
+    "do k++; while (live); { k = 1; }", "while (live);\n{\n    // stuck here?\n}", "if (a > b); { }",
     # A macro without text, and one that ends the statement.
     "if (a > b) TRACE(); k = 1;", "if (a > b END { k = 1; }",
 ])  # fmt: skip
