@@ -29,3 +29,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--bad-day", type=float, default=0.0, metavar="SECONDS", help="each test of tests/bad_day goes on for so long"
     )
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The tests with a browser come first: they take longest, and in the end one process would be alone with them."""
+    items.sort(key=lambda item: "browser" not in getattr(item, "fixturenames", ()))
