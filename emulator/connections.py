@@ -94,6 +94,8 @@ MIN_EDGES: Final = 8
 NO_CHANGE: Final = 3
 #: Value of LOADAMODE: the active register is never loaded from the shadow register.
 FREEZE: Final = 3
+#: A program that reads a counter so often wants to know a time.
+_TIMES: Final = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,6 +142,7 @@ class Connections:
         self._groups()
         self._qualifiers()
         self._cpu_timers()
+        self._time_bases()
         self._trips()
         self._trip_actions()
         self._trips_at_once()
@@ -913,6 +916,18 @@ class Connections:
         if self._stuck(register, "ENABLE", bool):
             return MissingLink(f"{register}.ENABLE = 0", register, "ENABLE")
         return self._no_input(XINT_INPUT[number], register)
+
+    def _time_bases(self) -> None:
+        """CPU timers of which the program reads the time, and which stand."""
+        for n, timer in enumerate(self._chip.timers):
+            name = f"CpuTimer{n}Regs"
+            reads = [by for _, by in timer.read_standing if by is not None]
+            if timer.used or len(reads) < _TIMES:
+                continue
+            path = self._chip.findings.path(reads[-1].at, reads[-1].calls)
+            if path and self._stuck(f"{name}.TCR", "TSS", lambda stopped: not stopped):
+                missing = MissingLink(f"{name}.TCR.TSS = 1: it does not count", f"{name}.TCR", "TSS")
+                self._report(path[0], f"{path[0].function} reads {name}.TIM again and again", missing, name)
 
     def _cpu_timers(self) -> None:
         """Routines of CPU timers 1 and 2, whose interrupts go to the CPU directly."""

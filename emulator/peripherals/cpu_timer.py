@@ -17,7 +17,7 @@ from collections.abc import Callable
 from typing import Final
 
 from emulator.c28x.findings import Cause
-from emulator.clock import Clock, ClockEvent
+from emulator.clock import CYCLES_PER_US, Clock, ClockEvent
 from emulator.cpu import Cpu
 from emulator.registers.core import ALL, LOW
 from emulator.registers.cpu_timer import CpuTimerRegs
@@ -26,6 +26,10 @@ TIF: Final = 0x8000
 TIE: Final = 0x4000
 TRB: Final = 0x0020
 TSS: Final = 0x0010
+#: Who reads TIM so often wants to know a time.
+_READS: Final = 3
+#: Between the statements that set it up, a timer may run for a moment: TSS is 0 until it is written.
+_MOMENT_CYCLES: Final = 10 * CYCLES_PER_US
 
 
 class CpuTimer:
@@ -54,6 +58,10 @@ class CpuTimer:
         self._tick = 1
         #: The statement that has set the period; None: none.
         self.period_by: Cause | None = None
+        #: Whether it has run for the program, and the first reads of TIM before that: when, and the statements.
+        self.used = False
+        self._started: int | None = None
+        self.read_standing: list[tuple[int, Cause | None]] = []
         self.reset()
 
     def reset(self) -> None:
@@ -188,6 +196,10 @@ class CpuTimer:
 
     def _read_TIM(self) -> int:
         self._sync()
+        reads = self.read_standing
+        self.used = self.used or self._running()
+        if not self.used and len(reads) < _READS and (not reads or reads[-1][0] != self._clock.now):
+            reads.append((self._clock.now, self._cpu.findings.mark()))
         return self._tim.value
 
     def _write_TIM(self, word: int, lanes: int = ALL) -> None:
@@ -227,6 +239,9 @@ class CpuTimer:
         self._sync()
         running = self._running()
         self._tcr.store(word, lanes & LOW)
+        if self._started is not None and self._clock.now - self._started > _MOMENT_CYCLES:
+            self.used = True
+        self._started = None if self._tcr.value & TSS else self._clock.now
         if word & TRB or not self._tcr.value & TIF or self._running() is not running:
             # Else TIF is still the one that was seen: `TCR &= ~TIF` clears nothing.
             self._clock.cancel(self._next_check)

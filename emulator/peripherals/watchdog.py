@@ -46,7 +46,9 @@ class Watchdog:
         self._event: ClockEvent | None = None
         #: The statement that wrote the first key last.
         self._begun: Cause | None = None
-        #: When it was serviced last.
+        #: The statement that wrote WDCR last.
+        self._set_up: Cause | None = None
+        #: When it was serviced last; 0: never.
         self._serviced_at = 0
         self.reset()
 
@@ -94,6 +96,11 @@ class Watchdog:
         self._plan()
 
     def _expire(self) -> None:
+        """The counter overflowed."""
+        served = self._serviced_at
+        self._over(f"last serviced {ms(self._clock.now - served):.1f} ms ago" if served else "never serviced")
+
+    def _over(self, why: str) -> None:
         """The counter overflowed, or a service came too early: reset, or WDINT."""
         self._event = None
         if self._scsr.value & 0x2:
@@ -101,14 +108,14 @@ class Watchdog:
             self._int_until = self._clock.now + COUNT_CYCLES
             self._wakeint()
         else:
-            self._bite("expired")
+            self._bite(why)
 
     def _bite(self, why: str) -> None:
         if self._key_seen:
             why += "; 0x55 was written to WDKEY, and 0xAA did not follow"
         self._cpu.findings.report(
             "watchdog-reset", f"the watchdog resets the device: {why}", object=self._regs.name,
-            cause=self._begun if self._key_seen else None,
+            cause=self._begun if self._key_seen else None, otherwise=self._begun or self._set_up,
         )  # fmt: skip
         self._reset_device()
 
@@ -134,7 +141,7 @@ class Watchdog:
         if window & 0xFF:
             # TRM: the first service after MIN was set is free; later ones must not come before it.
             if window & FIRSTKEY and self._counter() < window & 0xFF:
-                self._expire()
+                self._over("serviced before the counter reached WDWCR.MIN")
                 return
             self._wdwcr.value = window | FIRSTKEY
         self._serviced_at = self._clock.now
@@ -144,6 +151,7 @@ class Watchdog:
         if word & 0x38 != WDCHK:
             self._bite(f"{word:#06x} was written to WDCR without 101b in WDCHK")
             return
+        self._set_up = self._cpu.findings.mark()
         count = self._counter()
         if not self._scsr.value & 1:  # WDOVERRIDE cleared: WDDIS keeps its state
             word = word & ~WDDIS | self._wdcr.value & WDDIS

@@ -335,7 +335,12 @@ runs again, and their other gates stay taken. The details name the other places.
 Or a task pends for ever on a semaphore while it holds a gate, and the only task that posts the semaphore waits for that
 gate. Then the place is the pend.
 
-**Fix:** see `gate-order`; leave a gate before waiting for anything else.
+Or semaphores begin with 0, and each is posted only behind waits for another of them: A waits for B and posts C, D waits
+for C and posts B. One that is taken before it is given back, as a lock, and begins with 0, is a ring of one. The place
+is one of these waits. If all of them have a time-out, the rule is `always-timeout`.
+
+**Fix:** see `gate-order`; leave a gate before waiting for anything else; begin one semaphore of a ring with what is
+free at the start (`Semaphore_create(SLOTS, ...)`, or 1 for a lock).
 """, "BIOS, GateMutexPri_enter",
     ),
     _rule(
@@ -356,7 +361,8 @@ or takes the address of the posting function: then anything could post it.
 The program tests whether a wait was answered, and it never is. What it does for the answer never happens.
 
 No function of the program posts the semaphore or the event, or sends to the mailbox, and no wait for it was answered in
-the run. `Semaphore_pend(pause, 10);` as a pause, with a result that nothing uses, is not reported.
+the run. `Semaphore_pend(pause, 10);` as a pause, with a result that nothing uses, is not reported. A ring of
+semaphores, each of which is posted only behind a wait for another of them (`deadlock`), is reported too.
 
 The check is made at the end of a run. Nothing is reported if the program passes the handle on, keeps it in a structure,
 or takes the address of the posting function: then anything could post it.
@@ -407,6 +413,19 @@ not reported: the next one comes.
 
 **Fix:** clear the flag, then start.
 """, "TRM SPI, I2C, ADC, DMA: interrupts at the end of what was started",
+    ),
+    _rule(
+        "event-mask", Severity.WARNING, "A task waits until all events have come, and tests them one by one.", """
+The task wakes up only when the last of the events has come, or after its time-out.
+
+`Event_pend(event, andMask, orMask, timeout)` returns when all bits of `andMask` have been posted, or one of `orMask`.
+Behind a wait for all of them, each bit of the result is set: tests of single bits are always true. The masks are mostly
+exchanged.
+
+It is reported where the result goes to a local, at least two parts of `andMask` are tested, and `orMask` is 0.
+
+**Fix:** give events of which one is enough in the second mask: `Event_pend(event, Event_Id_NONE, EVENTS, timeout)`.
+""", "BIOS, Event_pend: andMask, orMask", how="static",
     ),
     _rule(
         "clock-not-started", Severity.ERROR, "A Clock is created but never started.", """

@@ -204,6 +204,7 @@ connections are checked:
   is not enabled. Or the interrupt of a routine in the vector table has come, and no statement enables its line. Or
   `IER` or `ENPIE` does not pass the interrupt on, or no statement executes `EINT`. So it is if `IER = M_INT1` takes bit
   13 away again before the interrupt can come, and if the program has stopped the timer or disabled the line since.
+* CPU timers: the program reads `TIM` again and again, and no statement starts the timer.
 * DMA: a channel was never started, has no trigger, does not interrupt (`CHINTE`), or uses an ADC interrupt that is not
   enabled. It has stopped after a transfer, and is given the addresses of the next one without a start.
 * ADC post-processing: an event interrupts, and nothing starts the SOC of its block.

@@ -117,6 +117,23 @@ and `(float)RATIO` are not reported: there it is usually meant so.
         "ISO C 6.10.3; CERT PRE01-C, PRE02-C",
     ),
     _rule(
+        "same-bit",
+        Severity.WARNING,
+        "Two names of a set of flags are the same bit.",
+        """
+Whoever tests for one of the flags finds the other one too, and the set has a bit less than it has names.
+
+`#define EVENT_ALL (EVENT_TICK | EVENT_START | EVENT_STOP)` lists three names. If `EVENT_START` and `EVENT_STOP` are
+both `Event_Id_02`, mostly a line that was copied, each stop is a start as well.
+
+It is reported at the second name, if a macro lists both with `|`. A name that is defined by the other one
+(`#define EVENT_STOP EVENT_START`) is meant so, and 0 is no flag.
+
+**Fix:** give each name a bit of its own.
+""",
+        "CERT PRE; MISRA C 2012, Dir 4.5",
+    ),
+    _rule(
         "implicit-declaration",
         Severity.WARNING,
         "A function is called without a declaration.",

@@ -222,6 +222,9 @@ register stores only its bits. A hexadecimal constant of the same width, and -1,
 The statement has no effect. Usually one of the two names should be another one: a member of the other structure, the
 parameter with a similar name, the next element.
 
+An object that gets the value that it was just found to have is reported too: `if (state == IDLE) { state = IDLE; }`.
+Often the test names the wrong state. It is not reported in one of several cases, where it says that the state stays.
+
 These are not reported: parameters (`arg = arg;` says that it is not used, unless a file-scope object has the same
 name), volatile objects, `*p = *p;`, and an object that the other branch of the `if` changes.
 

@@ -203,6 +203,10 @@ _SCALED: Final = re.compile(
     r"factor|ratio|loops?|cycles?|steps?|q\d+|x ?10+)\b|[*/×%]|0\.\d|\d\.\.",
     re.IGNORECASE,
 )  # fmt: skip
+#: How long a tick lasts; it does not scale the value beside it.
+_TICK_LASTS: Final = re.compile(
+    r"\b(?:one|1|a|each|the) (?:\w+ )?tick (?:is|=|lasts) (?:1|one) ?(?:ms|millisecond)\b", re.IGNORECASE
+)
 _STATED: Final = re.compile(r"^(?:in )?(?:(?P<part>[a-z]+|[01][./]\d+)(?: of)?(?: an?)? )?(?P<unit>\S+(?: \S+)?)$")
 _NUMBER: Final = r"[-+]?\d+(?:\.\d*)?"
 
@@ -300,7 +304,7 @@ class UnitRemark:
 @lru_cache(maxsize=4096)
 def remark(comment: str) -> UnitRemark:
     """What a comment says; its text without the marks."""
-    text = " ".join(comment.split())
+    text = _TICK_LASTS.sub("", " ".join(comment.split())).strip()
     bracket = re.search(r"\[([^\]]+)\]", text)
     if bracket is not None and (unit := unit_of_text(bracket[1])) is not None:
         return UnitRemark(unit)

@@ -1601,3 +1601,37 @@ def test_a_one_shot_whose_flags_are_cleared_for_the_next_capture_is_armed_again(
     text = ONE_SHOT.replace(was, now) if was else ONE_SHOT
     places = [finding.place for finding in told(tmp_path, text, seconds=0.02)]
     assert [place and at and at in text.splitlines()[place.line - 1] for place in places] == [True] * (at is not None)
+
+
+MEASURED = """#include "F28x_Project.h"
+#define TCR CpuTimer1Regs.TCR
+Uint32 Began, Took, Order;
+static void Work(void) { Uint16 n; for (n = 0; n < 1000; n++) { Began++; } }
+void main(void)
+{
+    InitSysCtrl();
+    CpuTimer1Regs.PRD.all = 0xFFFFFFFF;
+    TCR.bit.TRB = 1;
+    TCR.bit.TSS = 0;
+    for (;;) {
+        Began = CpuTimer1Regs.TIM.all;
+        Work();
+        Took = Began - CpuTimer1Regs.TIM.all;
+    }
+}
+"""
+
+
+@pytest.mark.parametrize(("was", "now", "told_at"), [
+    ("TCR.bit.TSS = 0;", "TCR.bit.TSS = 0;", []),
+    ("TCR.bit.TSS = 0;", "TCR.bit.TSS = 1;", ["TCR.bit.TSS = 1;"]),
+    # It may be started on an order; it runs while the program reads it; it has measured, and stands now.
+    ("TCR.bit.TSS = 0;", "TCR.bit.TSS = 1; if (Order) TCR.bit.TSS = 0;", []),
+    ("for (;;) {", "TCR.bit.TSS = 1; for (;;) { if (Order) TCR.bit.TSS = 0;", []),
+    ("for (;;) {", "Work(); TCR.bit.TSS = 1; for (;;) {", []),
+    ("for (;;) {", "TCR.bit.TSS = 1; for (;;) { TCR.bit.TSS = 0; TCR.bit.TSS = 1;", []),
+])  # fmt: skip
+def test_a_time_base_that_stands_is_told(tmp_path: Path, was: str, now: str, told_at: list[str]) -> None:
+    text = MEASURED.replace(was, now, 1)
+    found = [f for f in told(tmp_path, text) if "TIM again and again" in f.message]
+    assert [text.splitlines()[f.place.line - 1].strip() for f in found if f.place is not None] == told_at

@@ -18,6 +18,7 @@ from emulator.c28x.passes.decided import check_decided
 from emulator.c28x.passes.drained import check_drained
 from emulator.c28x.passes.dropped import check_dropped
 from emulator.c28x.passes.entrances import check_entrances
+from emulator.c28x.passes.event_masks import check_event_masks
 from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.fraction_texts import check_fraction_texts
 from emulator.c28x.passes.future_stamps import unreachable_exits
@@ -187,5 +188,6 @@ def _of_function(function: Function) -> list[StaticFinding]:
     check_copies(function, report)
     check_admitted(function, report)
     check_masked(function, report)
+    check_event_masks(function, report)
     NullTests(function, report).run()
     return found

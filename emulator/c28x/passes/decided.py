@@ -1,4 +1,4 @@
-"""Static check of tests that a failed test before them decides: `constant-condition`.
+"""Static check of tests that a test before them decides, `constant-condition`, and of assignments: `self-assignment`.
 
     if (air > wanted - SLACK) cool();
     else if (air < wanted + SLACK) rest();
@@ -9,6 +9,12 @@ difference (`air - wanted`) with constants.  It looks only at tests without call
 
 The exact complement (`else if (air <= wanted - SLACK)`) is a usual way to say what `else` means, and not reported.
 Nor is a difference of unsigned numbers, which wraps.
+
+    if (state == IDLE) { state = IDLE; lamp(0); }
+
+The assignment has no effect: the test has just found that value.  Reported only where the function tests for the same
+value elsewhere, and leaves it there, and where nothing beside the test gives the object another value: `state = IDLE;`
+in one of several cases says that the state stays.
 """
 
 from __future__ import annotations
@@ -20,6 +26,7 @@ from emulator.c28x.ctypes import FloatType, IntType
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.values import volatile
 from emulator.c28x.tree import (
+    Assign,
     Binary,
     Compare,
     Const,
@@ -34,7 +41,7 @@ from emulator.c28x.tree import (
     Unary,
     Variable,
 )
-from emulator.c28x.tree_queries import OPPOSITE, TURNED, calls, source_text, statements
+from emulator.c28x.tree_queries import OPPOSITE, TURNED, bare, calls, runs_function, source_text, statements
 
 
 class _Linear(NamedTuple):
@@ -57,8 +64,10 @@ class _Limit(NamedTuple):
 def check_decided(function: Function, report: StaticReport) -> None:
     """Report the tests after an `else` that a test before it decides."""
     inner: set[int] = set()
+    found = [pair for s in statements(function.body) if isinstance(s, If) and (pair := _finds(s)) is not None]
     for s in statements(function.body):
         if isinstance(s, If) and id(s) not in inner:
+            _check_kept(s, found, function, report)
             known: list[_Limit] = []
             failed: dict[str, int] = {}
             for test in _chain(s):
@@ -103,6 +112,51 @@ def _check_again(s: If, failed: dict[str, int], function: Function, report: Stat
     if text in failed and _stays(s.test):
         message = f"{text} is always false here: line {failed[text]} has tested it"
         report.report(function, s.where, "constant-condition", message, object=text)
+
+
+class _Equal(NamedTuple):
+    """What the test of an `if` finds an object to be."""
+
+    at: If
+    name: str
+    value: float
+
+
+def _finds(s: If) -> _Equal | None:
+    """The object that a test compares with a constant for equality, and the constant."""
+    match s.test:
+        case Compare(op="==", left=left, right=right):
+            match bare(left), bare(right):
+                case (Load(lvalue=lvalue), Const(value=value)) | (Const(value=value), Load(lvalue=lvalue)):
+                    return _Equal(s, _name(lvalue), value)
+    return None
+
+
+def _gives(body: list[Stmt], name: str) -> set[float | None]:
+    """What statements assign to an object; None: something else than a constant."""
+    return {
+        value.value if isinstance(value := bare(s.value), Const) else None
+        for s in statements(body) if isinstance(s, Assign) and isinstance(s.target, LValue) and _name(s.target) == name
+    }  # fmt: skip
+
+
+def _check_kept(s: If, found: list[_Equal], function: Function, report: StaticReport) -> None:
+    """Report an assignment of the value that the test of its `if` has just found."""
+    own = _finds(s)
+    if own is None or _gives(s.otherwise, own.name) or any(_finds(other) for other in _chain(s) if other is not s):
+        return
+    if not any(each.name == own.name and each.value == own.value and _gives(each.at.then, own.name) - {own.value}
+               for each in found if each.at is not s):  # fmt: skip
+        return
+    for inner in s.then:
+        if isinstance(inner, Assign) and _gives([inner], own.name) == {own.value}:
+            assert isinstance(inner.target, LValue)
+            text = inner.target.text
+            message = f"{text} is {source_text(inner.value)} here already: line {s.test.where.line} has tested it"
+            report.report(function, inner.where, "self-assignment", message, object=text)
+            return
+        if _gives([inner], own.name) or any(runs_function(each) for each in statements([inner])):
+            return
 
 
 def _stays(test: Expr) -> bool:

@@ -1,7 +1,8 @@
 """Tasks that wait for ever: for each other (`deadlock`), or for a post that never comes (`never-posted`).
 
-In such a deadlock a task pends on a semaphore while it holds a gate, and the only task that posts the semaphore waits
-for that gate.  `gates.py` finds cycles of gates alone.
+In a deadlock a task pends on a semaphore while it holds a gate, and the only task that posts the semaphore waits for
+that gate; or semaphores begin with 0, and each is posted only behind waits for another of them, or for itself.
+`gates.py` finds cycles of gates alone.
 
 A task that still waits without a timeout at the end of a run is `never-posted` if no statement of the program ends
 such a wait.  A wait with a timeout whose result the program tests is `always-timeout`, if no wait for that object ever
@@ -10,12 +11,15 @@ ended by a post.  Part of a program, without its `main`, gets no such finding: t
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
 from typing import Any, Final
 
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked
 from emulator.c28x.sites import Place
+from emulator.c28x.tree import Call, Stmt
+from emulator.c28x.tree_queries import blocks, own_nodes
 from emulator.sysbios.clock import ClockObject
 from emulator.sysbios.core import WAIT_FOREVER
 from emulator.sysbios.event import Event
@@ -24,7 +28,7 @@ from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.swi import Swi
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
-from emulator.sysbios.watch.names import HandleNames
+from emulator.sysbios.watch.names import HandleNames, first_argument
 from emulator.sysbios.watch.posters import Posters
 from emulator.sysbios.watch.statements import StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import Gate, Thread, ThreadWatch
@@ -152,6 +156,7 @@ class Standstill:
                 place, "always-timeout", f"{thread} tests whether {function} gets {name}, and no statement calls "
                 f"{ENDS[function]} for it: each wait times out", object=name, how="dynamic", task=thread.name,
             )  # fmt: skip
+        self._rings({what: (thread, statement) for thread, (_, what, statement) in pends.items()})
         for clock, statement in self._idle.items():
             place = self._locator.place(statement)
             if place is not None and not clock.active and not self._names.could("Clock_start", clock):
@@ -204,6 +209,74 @@ class Standstill:
                 details=(f"it waits at {place}",),
             )  # fmt: skip
 
+    def _rings(self, forever: dict[Semaphore, tuple[Thread, StatementNumber]]) -> None:
+        """Report semaphores that nobody has ever got, each of which is posted only behind a wait for one of them."""
+        timed = {
+            what: (thread, statement) for statement, (thread, _, what) in self._timed_out.items()
+            if isinstance(what, Semaphore)
+        }  # fmt: skip
+        waits = {what: wait for what, wait in {**timed, **forever}.items() if what not in self._answered}
+        behind = {what: self._behind(what, set(waits)) for what in waits}
+        while out := [what for what, others in behind.items() if not others <= set(behind) or not others]:
+            for what in out:
+                del behind[what]
+        while behind:
+            ring = [next(iter(behind))]
+            while (then := min(behind[ring[-1]], key=self._names.of)) not in ring:
+                ring.append(then)
+            ring = ring[ring.index(then) :]
+            # It is told at a wait without a timeout, if it has one.
+            begin = next((n for n, what in enumerate(ring) if what in forever), 0)
+            self._report_ring(ring[begin:] + ring[:begin], waits, behind, forever=ring[begin] in forever)
+            # What is posted behind a wait for one of the ring is no ring of its own.
+            told = set(ring)
+            while told & set(behind):
+                for what in told & set(behind):
+                    del behind[what]
+                told |= {what for what, others in behind.items() if others & told}
+
+    def _report_ring(
+        self, ring: list[Semaphore], waits: dict[Semaphore, tuple[Thread, StatementNumber]],
+        behind: dict[Semaphore, set[Semaphore]], *, forever: bool,
+    ) -> None:  # fmt: skip
+        (thread, statement), name = waits[ring[0]], self._names.of(ring[0])
+        place = self._locator.place(statement)
+        if place is None:
+            return
+        posted = "".join(
+            f", which is posted only behind a wait for {' or '.join(sorted(map(self._names.of, behind[what])))}"
+            for what in ring
+        )
+        self._findings.report_at(
+            place, "deadlock" if forever else "always-timeout",
+            f"{thread} waits for {name}{posted}: none of them is ever posted", object=name, how="dynamic",
+            task=thread.name, details=tuple(
+                f"{waits[what][0]} waits for {self._names.of(what)} in {self._locator.text(waits[what][1])}"
+                for what in ring[1:]
+            ),
+        )  # fmt: skip
+
+    def _behind(self, semaphore: Semaphore, waited: set[Semaphore]) -> set[Semaphore]:
+        """Those of the semaphores `waited` of which a wait comes before each post of `semaphore`, one for each post.
+
+        Empty if a post has no such wait before it, or if no statement is known to post it.
+        """
+        found: set[Semaphore] = set()
+        if semaphore.count or not self._names.could("Semaphore_post", semaphore):
+            return found
+        paths = {what: self._names.objects(what) for what in waited}
+        bodies = {function.path: function.body for function in self._names.functions}
+        for path in self._names.callers("Semaphore_post", semaphore):
+            for post, before in _calls_before(bodies[path], "Semaphore_post", "Semaphore_pend"):
+                if first_argument(post) not in {None, *paths[semaphore]}:
+                    continue
+                of = {first_argument(wait) for wait in before}
+                waits = [what for what in waited if of & paths[what]]
+                if not waits:
+                    return set()
+                found.add(semaphore if semaphore in waits else waits[0])
+        return found
+
     def _function(self, thread: Thread) -> str:
         """The function in which a thread waits."""
         return self._waits[thread][0] if thread in self._waits else "Semaphore_pend"
@@ -247,3 +320,17 @@ class Standstill:
             f"post {awaited}, waits for {held}: neither runs again", object=held, how="dynamic", task=consumer.name,
             details=(f"{producer} waits in {self._locator.text(self._gates.statement(producer))}",),
         )  # fmt: skip
+
+
+def _calls_before(body: list[Stmt], name: str, earlier: str) -> Iterator[tuple[Call, list[Call]]]:
+    """The calls of `name`, each with the calls of `earlier` that come before it in its block or in those around it."""
+
+    def inside(block: list[Stmt], before: list[Call]) -> Iterator[tuple[Call, list[Call]]]:
+        for s in block:
+            own = [node for node in own_nodes(s) if isinstance(node, Call)]
+            yield from ((call, before) for call in own if call.function.name == name)
+            before = before + [call for call in own if call.function.name == earlier]
+            for inner in blocks(s):
+                yield from inside(inner, before)
+
+    return inside(body, [])

@@ -47,7 +47,8 @@ STATIC = (
         f"emulator/c28x/passes/{name}.py"
         for name in (
             "admitted", "anew", "begun_again", "blocks", "checks", "cleared", "copies", "decided", "drained", "dropped",
-            "entrances", "flow", "formats", "fraction_texts", "likes", "lost_writes", "messages", "names", "never_back",
+            "entrances", "event_masks", "flow", "formats", "fraction_texts", "likes", "lost_writes", "messages",
+            "names", "never_back",
             "null_tests", "off_by_one", "one_sided", "published", "quotients", "released", "ring_back", "search_end",
             "spans", "state_tables", "stated", "states", "stores", "tables", "undone", "unlimited_lines",
             "unread_inputs", "values", "waiting",

@@ -232,3 +232,135 @@ def test_a_task_that_posts_news_and_sleeps_is_silent(tmp_path: Path) -> None:
     text = BURST.replace("{0}", ";").replace(wait, "Semaphore_post(ready); Task_sleep(1);")
     text = text.replace("Flag = 0;", "Flag = 0; Task_sleep(5);").replace("Event_post(event, Event_Id_00);", "")
     assert not told(tmp_path, text)
+
+
+#: A ring of slots: the writer waits for a free one, the reader for a used one.
+RING = """#include <xdc/std.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/knl/Task.h>
+#include <ti/sysbios/knl/Semaphore.h>
+Semaphore_Handle unused, used, lock;
+Int Slots[4], Put, Got, Taken;
+static Void store(Int value)
+{
+    if (!Semaphore_pend(unused, 5)) {
+        return;
+    }
+    Semaphore_pend(lock, BIOS_WAIT_FOREVER);
+    Slots[Put] = value;
+    Put = (Put + 1) & 3;
+    Semaphore_post(lock);
+    Semaphore_post(used);
+}
+Void writer(UArg a, UArg b)
+{
+    for (;;) {
+        Task_sleep(2);
+        store(3);
+    }
+}
+Void reader(UArg a, UArg b)
+{
+    for (;;) {
+        Semaphore_pend(used, BIOS_WAIT_FOREVER);
+        Semaphore_pend(lock, BIOS_WAIT_FOREVER);
+        Taken = Slots[Got];
+        Got = (Got + 1) & 3;
+        Semaphore_post(lock);
+        Semaphore_post(unused);
+    }
+}
+Int main(Void)
+{
+    Task_Params t;
+    unused = Semaphore_create(4, NULL, NULL);
+    used = Semaphore_create(0, NULL, NULL);
+    lock = Semaphore_create(1, NULL, NULL);
+    Task_Params_init(&t);
+    t.priority = 2;
+    Task_create(writer, &t, NULL);
+    Task_create(reader, &t, NULL);
+    BIOS_start();
+    return 0;
+}
+"""
+
+
+def in_a_ring(tmp_path: Path, text: str) -> list[tuple[str, str, int]]:
+    """What is told of waits: the rule, the statement, and how many other waits it names."""
+    (tmp_path / "drv.c").write_text(text, encoding="utf-8")
+    checked = check_files(DriverFiles([tmp_path / "drv.c"], calls=1, board=load("bare"), seconds=0.1))
+    lines = text.splitlines()
+    return [
+        (finding.rule, lines[finding.place.line - 1].strip(), len(finding.details))
+        for finding in checked.findings
+        if finding.rule in (*RULES, "deadlock") and finding.place is not None
+    ]
+
+
+@pytest.mark.parametrize(("changes", "found"), [
+    ({}, []),
+    ({"create(4": "create(0"}, [("deadlock", "Semaphore_pend(used, BIOS_WAIT_FOREVER);", 1)]),
+    # A lock that is taken before it was ever given is a ring of its own.
+    ({"create(1": "create(0"}, [("deadlock", "Semaphore_pend(lock, BIOS_WAIT_FOREVER);", 0)]),
+    # Nobody waits for ever.
+    ({"create(4": "create(0", "Semaphore_pend(used, BIOS_WAIT_FOREVER);": "if (!Semaphore_pend(used, 7)) continue;"},
+     [("always-timeout", "if (!Semaphore_pend(used, 7)) continue;", 1)]),
+    # Somebody else gives the first one, though on an order that does not come in this run.
+    ({"create(4": "create(0", "Task_sleep(2);": "Task_sleep(2); if (Taken == 9) Semaphore_post(unused);"}, []),
+    # The writer goes on without a slot, and so posts.
+    ({"create(4": "create(0", "        return;\n": ""}, []),
+    # A wait that is not always made does not hold back the post.
+    ({"create(4": "create(0", "Semaphore_pend(used, BIOS_WAIT_FOREVER);":
+      "if (Taken == 0) {\n Semaphore_pend(used, BIOS_WAIT_FOREVER);\n }"}, []),
+])  # fmt: skip
+def test_semaphores_that_are_posted_only_behind_each_other_are_told(
+    tmp_path: Path, changes: dict[str, str], found: list[tuple[str, str, int]]
+) -> None:
+    text = RING
+    for was, now in changes.items():
+        assert text.count(was) == 1
+        text = text.replace(was, now)
+    assert in_a_ring(tmp_path, text) == found
+
+
+EVENTS = """#include <xdc/std.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/knl/Event.h>
+#define TICK Event_Id_00
+#define START Event_Id_01
+#define BOTH (TICK | START)
+Event_Handle event;
+Int Ticks, Starts;
+Void machine(UArg a, UArg b)
+{
+    UInt events, more;
+    for (;;) {
+        events = Event_pend(event, Event_Id_NONE, BOTH, 100);
+        more = 0;
+        if (events & TICK) Ticks++;
+        if ((START & events) != 0) Starts++;
+        Ticks += more;
+    }
+}
+"""
+PEND = "Event_Id_NONE, BOTH"
+
+
+@pytest.mark.parametrize(("changes", "found"), [
+    ({}, False), ({PEND: "BOTH, Event_Id_NONE"}, True),
+    # One is enough too; one test, of all that have come; a local that something else is given as well.
+    ({PEND: "BOTH, START"}, False), ({PEND: "BOTH, Event_Id_NONE", "START & events": "BOTH & events"}, False),
+    ({PEND: "BOTH, Event_Id_NONE", "if (events & TICK)": "if (events)"}, False),
+    ({PEND: "BOTH, Event_Id_NONE", "more = 0": "events = Ticks"}, False), ({PEND: "TICK, Event_Id_NONE"}, False),
+])  # fmt: skip
+def test_events_that_must_all_come_and_are_tested_one_by_one_are_told(
+    tmp_path: Path, changes: dict[str, str], found: bool
+) -> None:
+    text = EVENTS
+    for was, now in changes.items():
+        assert text.count(was) == 1
+        text = text.replace(was, now)
+    (tmp_path / "drv.c").write_text(text, encoding="utf-8")
+    checked = check_files(DriverFiles([tmp_path / "drv.c"], calls=0, board=load("bare"), seconds=0.001))
+    assert [f.place.line for f in checked.findings if f.rule == "event-mask" and f.place] == [13] * found

@@ -43,6 +43,8 @@ def test_the_end_of_a_name_states_a_unit(name: str, unit: str) -> None:
     ("85.0 degrees, in tenths", "degree", True, 85.0),
     # One letter can be a channel; a scale that is not understood says that the name is not to be trusted.
     ("A", "", False, None), ("last edge", "", False, None), ("mV per count", "", True, None),
+    ("one tick is 1 ms", "", False, None), ("1 kernel tick = 1 ms", "", False, None),
+    ("a tick of 1 ms", "", True, None),
     ("ms * 10", "", True, None), ("12 V in 48 ms", "", False, None), ("nothing", "", False, None),
 ])  # fmt: skip
 def test_a_comment_states_a_unit(comment: str, unit: str, unclear: bool, amount: float | None) -> None:

@@ -379,3 +379,41 @@ def test_a_message_that_repeats_what_a_silent_node_said(tmp_path: Path, aged: st
     findings = [f for f in check_files(wanted).findings if f.rule == "stale-value"]
     lines = [text.splitlines()[f.place.line - 1].strip() for f in findings if f.place is not None]
     assert lines == ["Send(words);"] * (not aged)
+
+
+SLEEPERS = """#include <xdc/std.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/knl/Task.h>
+#include "F28x_Project.h"
+Int Alive;
+Void watch(UArg a, UArg b)
+{
+    for (;;) {
+        Task_sleep(5);
+        if (Alive)
+            ServiceDog();
+    }
+}
+Int main(Void)
+{
+    Task_create(watch, NULL, NULL);
+    /*served*/
+    EALLOW;
+    WdRegs.WDCR.all = 0x0028;
+    EDIS;
+    BIOS_start();
+    return 0;
+}
+"""
+
+
+@pytest.mark.parametrize(("served", "at", "why"), [
+    ("", "WdRegs.WDCR.all = 0x0028;", "never serviced"), ("ServiceDog();", "ServiceDog();", "last serviced 13"),
+])  # fmt: skip
+def test_a_reset_while_all_tasks_sleep_has_a_place(tmp_path: Path, served: str, at: str, why: str) -> None:
+    text = SLEEPERS.replace("/*served*/", served)
+    (finding,) = told(tmp_path, text)
+    assert finding.rule == "watchdog-reset"
+    assert finding.place is not None
+    assert text.splitlines()[finding.place.line - 1].strip() == at
+    assert why in finding.message

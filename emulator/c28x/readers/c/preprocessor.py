@@ -20,6 +20,7 @@ from emulator.c28x.readers.c.conditions import evaluate
 from emulator.c28x.readers.c.includes import IncludePath, Refused
 from emulator.c28x.readers.c.macro_precedence import loosest, torn_by
 from emulator.c28x.readers.c.macros import Macro, definition
+from emulator.c28x.readers.c.same_bits import same_bits
 from emulator.c28x.readers.c.tokens import (
     BAD,
     CHAR,
@@ -163,6 +164,7 @@ def _run(source: SourceText, include: IncludePath, options: PreprocessorOptions)
             message = "this comment has no end of its own: it ends with the next one, and the code between is in it"
             preprocessor.remarks.append(SourceRemark(read.where(at), message, rule="comment-open"))
     macros = {name: macro for name, macro in preprocessor.macros.items() if own.get(name) is not macro}
+    preprocessor.remarks += same_bits(macros)
     return Unit(
         source.file, tokens, macros, preprocessor.pragmas, preprocessor.remarks, include.files, options.limits,
         preprocessor.macros,

@@ -255,3 +255,28 @@ def test_an_unsigned_object_held_against_a_negative_constant(test: str, told: bo
 def test_what_constants_lose_is_told_though_it_never_runs(value: str, rules: list[str]) -> None:
     text = f"unsigned long f(unsigned int u)\n{{\n    if (u != u)\n        return {value};\n    return 0;\n}}\n"
     assert [rule for rule, line in findings_of(text) if line == 4 and rule in ("overflow", "shift-range")] == rules
+
+
+STATES = """enum { IDLE, RUN, FAULT } state, other;
+int lamps, ready;
+void stop(void) { state = FAULT; }
+"""
+
+
+@pytest.mark.parametrize(("body", "told"), [
+    ("if (state == IDLE) { lamps = 0; state = IDLE; } else if (ready) lamps = 2;", True),
+    ("if (IDLE == state) { state = IDLE; }", True),
+    # Another state, another object, another value, and a state that what runs before the assignment may change.
+    ("if (state == RUN) { state = IDLE; }", False), ("if (other == IDLE) { state = IDLE; }", False),
+    ("if (state == IDLE) { stop(); state = IDLE; }", False),
+    ("if (state == IDLE) { if (ready) state = RUN; state = IDLE; }", False),
+    # One of several cases, in which it stays.
+    ("if (state == IDLE) { state = IDLE; } else if (state == RUN) { state = FAULT; }", False),
+    ("if (state == IDLE) { state = IDLE; } else { state = RUN; }", False),
+    ("if (state == IDLE && ready) { state = IDLE; }", False),
+    # A state that the function never leaves may stand for the end.
+    ("if (state == FAULT) { state = FAULT; }", False),
+])  # fmt: skip
+def test_a_value_that_the_test_has_just_found_is_no_news(body: str, told: bool) -> None:
+    text = f"{STATES}void step(void)\n{{\n    if (state == IDLE) state = RUN;\n{body}\n}}\n"
+    assert [line for rule, line in findings_of(text) if rule == "self-assignment"] == [7] * told
