@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
-from operator import eq
+from operator import eq, not_
 from typing import Final
 
 from emulator.c28x.link import Linked
@@ -44,6 +44,7 @@ from emulator.chip import (
     Chip,
 )
 from emulator.clock import CYCLES_PER_MS, CYCLES_PER_US, SYSCLK_HZ
+from emulator.interrupt_flags import InterruptFlag, acknowledged, interrupt_flags, routine_of, wanted_again
 from emulator.latched_flags import CLEARED, LASTING, latched_flags
 from emulator.peripherals.can import REQUEST, WRITE
 from emulator.peripherals.can_objects import DIR, EOB, ID, MSGLST, MSGVAL, OBJECTS, RXIE, STANDARD_ID, UMASK
@@ -153,6 +154,7 @@ class Connections:
         self._chip.pie.finish()
         self._i2c()
         self._serial()
+        self._interrupts_kept_back(modules)
         self._flags_kept(modules)
         self._can()
         self._dacs()
@@ -1402,6 +1404,46 @@ class Connections:
                 why = f"a break at {at} has stopped the receiver, and no statement clears {register}.SWRESET again"
                 message = f"{block} receives nothing any more: {receiver.unheard} characters have come since"
                 self._report(reads[-1], message, MissingLink(why, register, "SWRESET"), f"{block}.SCIRXST")
+
+    def _interrupts_kept_back(self, modules: list[Module]) -> None:
+        """Interrupts that can come once only: their flag stays set, for no statement clears it behind the start-up."""
+        lines = dict.fromkeys((group, n) for group, n, _ in interrupt_flags())
+        flags = [*interrupt_flags(), *((group, n, acknowledged(group)) for group, n in (*lines, *XINT_PIE.values()))]
+        told = {finding.object for finding in self._chip.findings.of("flag-not-cleared")}
+        for group, n, kept in flags:
+            begins, name = self._chip.pie.routine(group, n), f"{kept.block}.{kept.flag}"
+            if begins is None or name in told or not self._stays_enabled(group, n, kept):
+                continue
+            routine = routine_of(modules, begins)
+            if routine is None or (kept.block == "PieCtrlRegs" and not routine.interrupt):
+                continue  # the kernel's dispatcher acknowledges
+            cleared = any(
+                (kept.block, register) in self._source.by_library
+                or self._writes_again(f"{kept.block}.{register}", partial(eq, value), field)
+                for register, field, value in kept.clears
+            )
+            if not cleared and wanted_again(modules, routine):
+                told.add(name)
+                register, field, value = kept.clears[0]
+                self._chip.findings.report_at(
+                    begins, "flag-not-cleared",
+                    f"interrupt {group}.{n} comes once only: {name} stays set after the first one, and no statement "
+                    f"gives {kept.block}.{register}.{field} the value {value} behind the start-up",
+                    object=name, how="dynamic", task=self._chip.cpu.routine_at(begins),
+                )  # fmt: skip
+
+    def _stays_enabled(self, group: int, n: int, kept: InterruptFlag) -> bool:
+        """Whether an interrupt is enabled in its module, in PIEIER and in IER, and no statement disables it again."""
+        bit = 1 << group - 1
+        needs = [(f"{kept.block}.{register}", field) for register, field in kept.needs]
+        needs.append((f"PieCtrlRegs.PIEIER{group}", f"INTx{n}"))
+        without = [(f"{kept.block}.{register}", field) for register, field in kept.without]
+        return bool(
+            self._chip.cpu.ier & bit
+            and not self._source.could("CPU", "IER", bit, not_, again=self.started_up)
+            and all(self._value(*need) and not self._writes_again(need[0], not_, need[1]) for need in needs)
+            and all(self._stuck(*other, bool) for other in without)
+        )
 
     def _flags_kept(self, modules: list[Module]) -> None:
         """Flags that a test takes for new each time, and that no statement clears behind the start-up."""

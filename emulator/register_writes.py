@@ -128,6 +128,8 @@ class RegisterWrites:
     def __init__(self, modules: Iterable[Module], register_blocks: Iterable[Block]) -> None:
         #: (block, register) -> its assignments in the order of the source; the CPU's IER and IFR are of block "CPU".
         self.writes: dict[tuple[str, str], list[Write]] = {}
+        #: The registers that functions of libraries assign by their names.
+        self.by_library: set[tuple[str, str]] = set()
         #: Register -> its assignments through a pointer to a block, if the source does not show which block.
         self.pointed: dict[str, list[Write]] = {}
         #: As `writes`, of assignments by a number that the source shows only in part: an address in the block, to
@@ -267,7 +269,9 @@ class RegisterWrites:
                     self.writes.setdefault((block, target.name), []).append(write)
                 if not named or len(sure) < len(named):
                     self.pointed.setdefault(target.name, []).append(write)
-            elif not of_library:
+            elif of_library:
+                self.by_library.add((target.block, target.register))
+            else:
                 self.writes.setdefault((target.block, target.register), []).append(write)
 
     def _blocks(self, register: RegisterRef | RegisterAt) -> list[str] | None:
@@ -355,7 +359,7 @@ class RegisterWrites:
         if isinstance(target, LValue):
             changed = self._changed_bits(value, lambda e: isinstance(e, Load) and e.lvalue == target, known)
         elif target.field is None:
-            changed = self._changed_bits(value, lambda e: isinstance(e, RegisterLoad), known)
+            changed = self._changed_bits(value, lambda e: isinstance(e, RegisterLoad) and e.register == target, known)
         else:
             mask, values = target.field.mask, self.values(value, known)
             shift = (mask & -mask).bit_length() - 1

@@ -347,7 +347,9 @@ The finding is made where the program believes the old flag, or where an interru
 * SCI: the program empties the FIFO a second time for one overflow (`RXFFOVF`);
 * ePWM: the one-shot latch (`TZFLG.OST`) stays set while the program clears `TZFLG.INT` again and again;
 * CAN: `NewDat` stays set, and the program takes the same message again and again;
-* PIE: a routine leaves its flag or `PIEACK` set;
+* PIE: a routine leaves its flag or `PIEACK` set. At the end of a run that is told also of interrupts that have not come
+  (eCAP, ePWM, eQEP, ADC, FIFOs, CAN): no statement of the program clears the flag after the start-up. Not told is a
+  routine that disables the interrupt, stops the program, or only stores constants that nothing takes back;
 * a test of an error that stays (`RXERROR`, `RXFFOVF`, `OVERRUN_FLAG`, `COEF`, `PHE`, `OST`, `NACK`, `BOff` and others)
   leads to a count, or away from the received character, and no statement clears the error after the start-up. A SCI
   keeps its errors until `SWRESET`.
