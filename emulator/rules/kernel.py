@@ -133,6 +133,17 @@ whether and where the routine writes, if `main` does not look at the index, and 
 """, "ISO C 5.1.2.3 p2", how="static",
     ),
     _rule(
+        "cleared-early", Severity.WARNING, "A count is cleared before it is used.", """
+A speed or a rate is always 0.
+
+`edges = 0; rate = edges * PER_SECOND;`: another function counts `edges`, and the function that needs it clears it
+first. It is reported if the count is used only behind its clear, as a factor, as a dividend or in a comparison, and
+nothing that runs in between could count.
+
+**Fix:** use it first, or take a copy and clear it then.
+""", "ISO C 6.8 p4", how="static",
+    ),
+    _rule(
         "cleared-late", Severity.WARNING,
         "An object that an interrupt routine writes is cleared a while after it was read.", """
 Now and then, an order or a count is lost without a trace.

@@ -134,6 +134,21 @@ It is reported at the second name, if a macro lists both with `|`. A name that i
         "CERT PRE; MISRA C 2012, Dir 4.5",
     ),
     _rule(
+        "text-compare",
+        Severity.WARNING,
+        "The result of a comparison of texts is taken for yes or no.",
+        """
+The branch runs for every other text, and not for the one that it names.
+
+`strcmp` and `memcmp` return 0 if both are equal. In `if (strcmp(line, "on") == 0) ... else if (strcmp(line, "off"))`
+the second test is true for whatever is not `off`, and what follows it runs only for `off`. It is reported in a chain of
+`else if` with at least two tests of the same text for 0.
+
+**Fix:** `strcmp(line, "off") == 0`.
+""",
+        "ISO C 7.21.4.2",
+    ),
+    _rule(
         "implicit-declaration",
         Severity.WARNING,
         "A function is called without a declaration.",

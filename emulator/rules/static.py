@@ -90,7 +90,8 @@ finding is made only if the next case sets the same object, member or field befo
 Cases that fall through and add to each other are not reported.
 
 Without a comment that says so (`/* fall through */`) a case is reported too that calls the same as the next one again,
-and the only one of a switch without a `break` if it stores the same value in another object than the next case.
+and the only one of a switch without a `break` if it stores the same value in another object than the next case. So is
+a case of a state machine that gives a state and goes on with the case of a state that is not this one.
 
 **Fix:** `break`.
 """,
@@ -105,6 +106,9 @@ A speed or another difference is always 0, whatever the sensor measures.
 
 `last = now; speed = now - last;` stores before it subtracts. A quotient of the two is always 1. The check reports it
 if nothing between the copy and the difference can change one of the two. Volatile objects are not reported.
+
+A moving sum that loses and gets the same is reported too: `ring[at] = new; sum -= ring[at]; sum += new;` takes off the
+new value, not the oldest one.
 
 **Fix:** subtract first, then store.
 """,
@@ -258,7 +262,8 @@ loop, and the loop never sees what the interrupt or the other task writes. An `a
 nothing.
 
 The check reports a loop only if the compiler may do this. The turns of a main loop that begin anew are a loop, too
-(`for (;;) { if (Ticks == seen) continue; ... }`): nothing else runs as long as the test holds. A loop that calls a
+(`for (;;) { if (Ticks == seen) continue; ... }`): nothing else runs as long as the test holds. So are those in which no
+test holds (`for (;;) { if (Events > 0) { ... } }`). A loop that calls a
 function with an unknown body, or that writes through a pointer, is not reported. In files without a `main`, every
 function that others can call counts as another thread.
 
@@ -296,7 +301,9 @@ An index skips elements, or never comes back to 0: a ring buffer repeats old dat
 `i & (N - 1)` is `i % N` only if N is a power of two. For N = 60 the mask is 0x3B: bit 2 of the index is always 0. The
 finding is made if the source (or a macro) says `N - 1` or `~(N - 1)`. Any other mask may have gaps.
 
-**Fix:** a power of two for N, or `i % N`.
+`i = (i + 1) & 16` is reported too: the mask of a remainder by 16 is 15, and this index is 0 or 16.
+
+**Fix:** a power of two for N, and the mask N - 1; or `i % N`.
 """,
         "ISO C 6.5.10; 6.5.5 p6",
     ),

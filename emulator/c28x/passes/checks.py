@@ -13,6 +13,7 @@ from emulator.c28x.passes.admitted import check_admitted
 from emulator.c28x.passes.anew import check_begun_anew
 from emulator.c28x.passes.begun_again import check_begun_again
 from emulator.c28x.passes.cleared import check_cleared
+from emulator.c28x.passes.cleared_early import check_cleared_early
 from emulator.c28x.passes.copies import check_copies
 from emulator.c28x.passes.decided import check_decided
 from emulator.c28x.passes.drained import check_drained
@@ -138,6 +139,7 @@ def check(
         check_sent_buffers(sides)
         check_cleared(sides)
         check_lost_writes(sides)
+    check_cleared_early(modules, reports)
     check_dropped(modules, reports)
     check_likes(modules, reports)
     check_messages(modules, reports)

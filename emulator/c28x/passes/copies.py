@@ -54,7 +54,10 @@ def check_copies(function: Function, report: StaticReport) -> None:
 
 
 def _block(function: Function, body: list[Stmt], copies: _Copies, report: StaticReport) -> None:
+    #: What the block has added to objects or taken off: object -> the statement, the operator, the operand, the copies.
+    changed: dict[str, tuple[Stmt, str, LValue, _Copies]] = {}
     for s in body:
+        _check_sum(function, s, changed, copies, report)
         inner = blocks(s)
         copies = _copies_within(s, copies)
         for e in own_nodes(s) if copies else ():
@@ -64,6 +67,34 @@ def _block(function: Function, body: list[Stmt], copies: _Copies, report: Static
         for block in inner:
             _block(function, block, list(copies) if isinstance(s, If) else [], report)
         copies = [] if inner or not isinstance(s, Assign | Declare | Evaluate) else _copies_after(s, copies)
+
+
+def _check_sum(
+    function: Function, s: Stmt, changed: dict[str, tuple[Stmt, str, LValue, _Copies]], copies: _Copies,
+    report: StaticReport,
+) -> None:  # fmt: skip
+    """Report a sum that gets what it has just lost: `ring[at] = new; sum -= ring[at]; sum += new;`."""
+    match s:
+        case Assign(target=LValue() as target, value=value):
+            match bare(value):
+                case Binary(op="+" | "-" as op, left=left, right=right):
+                    match bare(left), bare(right):
+                        case Load(lvalue=same), Load(lvalue=operand) if same == target and target.text:
+                            before = changed.get(target.text)
+                            if before is not None and before[1] != op and _both(before[2], operand, before[3], copies):
+                                first = before[0]
+                                message = (
+                                    f"{target.text} loses and gets the same: {before[2].text} and {operand.text} are "
+                                    "copies of each other here"
+                                )
+                                report.report(function, first.where, "own-copy", message, object=target.text)
+                            changed[target.text] = s, op, operand, list(copies)
+
+
+def _both(one: LValue, other: LValue, before: _Copies, now: _Copies) -> bool:
+    """Whether two objects were copies of each other then, and are now."""
+    pairs = (one, other), (other, one)
+    return any(pair in before and pair in now for pair in pairs)
 
 
 def _are_copies(e: Binary, copies: _Copies) -> bool:
@@ -163,17 +194,18 @@ def _plain(lvalue: LValue) -> bool:
     if volatile(lvalue) or lvalue.ctype.leaves != 1:
         return False
     outer = lvalue.root if isinstance(lvalue.root, Expr) else None
+    shared = isinstance(lvalue.root, Variable) and lvalue.root.kind == "global"  # then calls end what is known
     designators = [outer, *(index.expr for index in lvalue.indices)]
-    return all(_fixed(e) for e in designators if e is not None)
+    return all(_fixed(e, shared=shared) for e in designators if e is not None)
 
 
-def _fixed(e: Expr) -> bool:
-    """Whether an expression is a constant, or a local that no pointer leads to."""
+def _fixed(e: Expr, *, shared: bool) -> bool:
+    """Whether an expression is a constant, a local that no pointer leads to, or (`shared`) another scalar."""
     match bare(e):
         case Const():
             return True
         case Load(lvalue=LValue(root=Variable() as root, indices=[])):
-            return root.plain
+            return root.plain or (shared and root.kind == "global" and not root.volatile)
     return False
 
 

@@ -20,7 +20,7 @@ in one of several cases says that the state stays.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from emulator.c28x.ctypes import FloatType, IntType
 from emulator.c28x.passes.report import StaticReport
@@ -28,6 +28,7 @@ from emulator.c28x.passes.values import volatile
 from emulator.c28x.tree import (
     Assign,
     Binary,
+    Call,
     Compare,
     Const,
     Convert,
@@ -37,11 +38,15 @@ from emulator.c28x.tree import (
     Load,
     Logic,
     LValue,
+    Not,
     Stmt,
     Unary,
     Variable,
 )
 from emulator.c28x.tree_queries import OPPOSITE, TURNED, bare, calls, runs_function, source_text, statements
+
+#: Functions whose result is 0 for equal texts or blocks.
+_COMPARES: Final = ("strcmp", "strncmp", "memcmp", "strcasecmp", "stricmp")
 
 
 class _Linear(NamedTuple):
@@ -68,6 +73,7 @@ def check_decided(function: Function, report: StaticReport) -> None:
     for s in statements(function.body):
         if isinstance(s, If) and id(s) not in inner:
             _check_kept(s, found, function, report)
+            _check_texts(s, function, report)
             known: list[_Limit] = []
             failed: dict[str, int] = {}
             for test in _chain(s):
@@ -112,6 +118,25 @@ def _check_again(s: If, failed: dict[str, int], function: Function, report: Stat
     if text in failed and _stays(s.test):
         message = f"{text} is always false here: line {failed[text]} has tested it"
         report.report(function, s.where, "constant-condition", message, object=text)
+
+
+def _check_texts(first: If, function: Function, report: StaticReport) -> None:
+    """Report a comparison of texts that is taken for yes or no, among others that are compared with 0."""
+    equal: list[str] = []
+    truths: list[tuple[If, Call]] = []
+    for s in _chain(first):
+        match s.test:
+            case Compare(op="==", left=Call() as call, right=Const(value=0)) | Not(operand=Call() as call):
+                if call.function.name in _COMPARES:
+                    equal.append(source_text(call.arguments[0]))
+            case Compare(op="!=", left=Call() as call, right=Const(value=0)) | (Call() as call):
+                if call.function.name in _COMPARES:
+                    truths.append((s, call))
+    for s, call in truths:
+        if equal.count(source_text(call.arguments[0])) > 1 and len(truths) == 1:
+            text = source_text(call)
+            message = f"{text} is 0 for equal texts: this is true for all others; the tests beside it compare with 0"
+            report.report(function, s.where, "text-compare", message, object=text)
 
 
 class _Equal(NamedTuple):

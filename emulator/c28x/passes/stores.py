@@ -24,6 +24,7 @@ from emulator.c28x.tree import (
     Expr,
     FallThrough,
     Function,
+    Load,
     LValue,
     RegisterAt,
     RegisterRef,
@@ -49,12 +50,13 @@ def check_stores(function: Function, report: StaticReport) -> None:
         if isinstance(s, Switch):
             falling = [body for _, body in s.cases if len(body) > 1 and isinstance(body[-1], FallThrough)]
             ended = sum(bool(body) and not isinstance(body[-1], FallThrough) for _, body in s.cases)
-            for (_, body), (_, following) in zip(s.cases, s.cases[1:], strict=False):
+            for (_, body), (labels, following) in zip(s.cases, s.cases[1:], strict=False):
                 if body and isinstance(end := body[-1], FallThrough):
                     told = _falls(function, body[:-1], following, report, said=end.said)
                     if not end.said:
                         only = len(falling) == 1 and ended > LEAST_ENDED
                         told |= _check_fall_through(function, body[:-1], following, report, only=only)
+                        told = told or _check_next_state(function, s, body[:-1], labels, report)
                         if only and not told and body[:-1]:
                             message = "this case goes on with the next one, and no comment says so; all others end"
                             report.report(function, statements(body[:-1])[-1].where, "case-goes-on", message)
@@ -134,6 +136,25 @@ def _check_fall_through(
             message = f"{text} goes to {one.text}, and in the next case to {other.text}, and no comment says so: "
             report.report(function, body[-1].where, "case-falls", message + "a break is missing", object=one.text)
             return True
+    return False
+
+
+def _check_next_state(
+    function: Function, switch: Switch, body: list[Stmt], labels: list[int] | None, report: StaticReport
+) -> bool:
+    """Report a case of a state machine that gives a state and goes on with the case of another one."""
+    match bare(switch.subject):
+        case Load(lvalue=state) if labels is not None:
+            given = [
+                s for s in statements(body)
+                if isinstance(s, Assign) and s.target == state and isinstance(value := bare(s.value), Const)
+                and value.value not in (labels or ())
+            ]  # fmt: skip
+            if given and state.text:
+                message = f"{state.text} becomes {source_text(given[-1].value)}, and this case goes on with the next "
+                message += "one, which is for another state: a break is missing"
+                report.report(function, statements(body)[-1].where, "case-falls", message, object=state.text)
+                return True
     return False
 
 

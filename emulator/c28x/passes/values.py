@@ -202,6 +202,9 @@ class ValueChecks(ConstantChecks):
                 case CopyStruct(target=target, source=source) if target == source and id(s) not in self.kept:
                     self.assigned_to_itself(target)
             match s:
+                case Assign(target=LValue() as target, value=stepped):
+                    self.stepped_by_one_bit(target, bare(stepped))
+            match s:
                 case Assign(value=value) | Declare(value=value) | Return(value=value):
                     for item in different(value) if isinstance(value, list) else [value]:
                         self.given(item)
@@ -230,6 +233,18 @@ class ValueChecks(ConstantChecks):
         parameter = isinstance(root, Variable) and root.kind == "parameter" and root.declaration.name not in self.shared
         if not parameter and not volatile(target) and not target.text.startswith("*") and not calls(target):
             self.report_here("self-assignment", f"{target.text} is assigned to itself", target.text)
+
+    def stepped_by_one_bit(self, target: LValue, value: Expr) -> None:
+        """Report `at = (at + 1) & 16`, where `& 15` is the remainder.  One bit that is stepped by itself toggles."""
+        match value:
+            case Binary(op="&", left=left, right=Const(value=int(mask))) if mask > 1 and mask & (mask - 1) == 0:
+                match bare(left):
+                    case Binary(op="+", left=Load(lvalue=same), right=Const(value=step)) if (
+                        same == target and step != mask
+                    ):
+                        text = source_text(value)
+                        message = f"{text} is 0 or {mask}: the mask of a remainder by {mask} is {mask} - 1"
+                        self.report_here("mask-gaps", message, text, mask)
 
     # Conditions
 

@@ -170,15 +170,24 @@ def check_waiting(function: Function, threads: WriterAnalysis, report: StaticRep
 
 
 def _continued(loop: While | For) -> Iterator[While]:
-    """The turns that end at a `continue`, as loops of their own: `for (;;) { if (Ticks == seen) continue; ... }`.
+    """Turns in which a loop without an end waits, as loops of their own.
 
-    Nothing behind the `continue` runs as long as its test holds.  A loop that ends by itself does not wait there.
+    `for (;;) { if (Ticks == seen) continue; ... }`: nothing behind the `continue` runs as long as its test holds.
+    `for (;;) { if (Events > 0) { ... } }`: as long as no test holds, only the tests run.
     """
     if isinstance(loop, While) and isinstance(loop.test, Const) and not loop.step:
         for n, s in enumerate(loop.body):
             match s:
                 case If(test=test, then=[*before, Continue()], otherwise=[]):
                     yield While(s.where, test, [*loop.body[:n], *before])
+                case If(test=test, otherwise=[]):
+                    others = [_untaken(other) for other in loop.body if other is not s]
+                    yield While(s.where, Not(test.ctype, test), others)
+
+
+def _untaken(s: Stmt) -> Stmt:
+    """A statement without what runs only on a condition."""
+    return If(s.where, s.test, [], []) if isinstance(s, If) and not s.otherwise else s
 
 
 class _Loop:

@@ -280,3 +280,81 @@ void stop(void) { state = FAULT; }
 def test_a_value_that_the_test_has_just_found_is_no_news(body: str, told: bool) -> None:
     text = f"{STATES}void step(void)\n{{\n    if (state == IDLE) state = RUN;\n{body}\n}}\n"
     assert [line for rule, line in findings_of(text) if rule == "self-assignment"] == [7] * told
+
+
+@pytest.mark.parametrize(("tests", "told"), [
+    ("if (strcmp(s, A) == 0) n = 1; else if (strcmp(s, B)) n = 2; else if (!strcmp(s, C)) n = 3;", True),
+    ("if (strcmp(s, A) == 0) n = 1; else if (!strcmp(s, B)) n = 2; else if (strcmp(s, C) != 0) n = 3;", True),
+    # Everything else, one after the other, and another text.
+    ("if (strcmp(s, A) == 0) n = 1; else if (strcmp(s, B)) n = 2;", False), ("if (strcmp(s, A)) n = 1;", False),
+    ("if (strcmp(s, A) == 0) n = 1; else if (!strcmp(s, B)) n = 2; else if (!strcmp(s, C)) n = 3;", False),
+    ("if (strcmp(s, A) != 0) n = 1; else if (strcmp(s, B)) n = 2; else if (strcmp(s, C)) n = 3;", False),
+    ("if (!strcmp(s, A)) n = 1; else if (!strcmp(s, B)) n = 2; else if (strcmp(t, C)) n = 3;", False),
+])  # fmt: skip
+def test_a_difference_of_texts_that_is_taken_for_equality(tests: str, told: bool) -> None:
+    head = '#include <string.h>\n#define A "a"\n#define B "b"\n#define C "c"\nint n; char s[4], t[4];\n'
+    rules = [rule for rule, _ in findings_of(f"{head}void f(void)\n{{\n    {tests}\n}}\n")]
+    assert ("text-compare" in rules) is told
+
+
+@pytest.mark.parametrize(("step", "told"), [
+    ("at = (at + 1) & 16;", True), ("at = (at + 1) & N;", True), ("at += 1; at &= N;", False),
+    ("at = (at + 1) & (N - 1);", False),
+    # It toggles, or tests a bit of another object.
+    ("at = (at + 1) & 1;", False), ("at = (at + 2) & 2;", False), ("at = (n + 1) & 16;", False),
+])  # fmt: skip
+def test_a_step_that_is_masked_by_one_bit(step: str, told: bool) -> None:
+    rules = [rule for rule, _ in findings_of(f"#define N 16\nint at, n;\nvoid f(void)\n{{\n    {step}\n}}\n")]
+    assert ("mask-gaps" in rules) is told
+
+
+@pytest.mark.parametrize(("body", "line"), [
+    ("ring[at] = new;\nsum -= ring[at];\nsum += new;", 5),
+    ("ring[at] = new;\nsum += new;\nsum -= ring[at];", 5),
+    ("sum -= ring[at];\nring[at] = new;\nsum += new;", 0),
+    ("ring[at] = new;\nsum -= old;\nsum += new;", 0),
+    ("ring[at] = new;\nsum -= ring[at];\nnew = old;\nsum += new;", 0),
+    ("ring[at] = new;\nsum += ring[at];\nsum += new;", 0),
+    ("ring[at] = new;\nat = (at + 1) & 7;\nsum -= ring[at];\nsum += new;", 0),
+])  # fmt: skip
+def test_a_sum_that_gets_what_it_loses(body: str, line: int) -> None:
+    text = f"int ring[8], at, old; long sum;\nvoid f(int new)\n{{\n{body}\n}}\n"
+    assert [at for rule, at in findings_of(text) if rule == "own-copy"] == [line] * bool(line)
+
+
+@pytest.mark.parametrize(("body", "line"), [
+    ("edges = 0;\nrate = edges * 20;", 6), ("edges = 0;\nlong k = 3;\nrate = 60 * edges + k;", 7),
+    ("edges = 0;\nif (edges > 3) rate = 0;", 6),
+    # It is used first, shown, counted here, or something runs in between.
+    ("rate = edges * 20;\nedges = 0;", 0), ("edges = 0;\nshow(edges);", 0),
+    ("edges = 0;\nedges++;\nrate = edges * 20;", 0),
+    ("edges = 0;\nshow(1);\nrate = edges * 20;", 0), ("rate = edges;\nedges = 0;\nrate = edges * 20;", 0),
+    ("edges = 1;\nrate = edges * 20;", 0),
+])  # fmt: skip
+def test_a_count_that_is_cleared_before_it_is_used(body: str, line: int) -> None:
+    head = "int edges; long rate; void show(int n) { rate = n; }\nvoid count(void) { edges++; }\n"
+    text = f"{head}void f(void)\n{{\n{body}\n}}\n"
+    assert [at for rule, at in findings_of(text) if rule == "cleared-early"] == [line] * bool(line)
+
+
+MACHINE = """enum { OFF, ON, ALARM, WAIT } state;
+int hot;
+void step(void)
+{
+    switch (state) {
+    case OFF: if (hot) state = WAIT; break;
+    case ON: if (hot) { %s }
+    case ALARM: if (!hot) state = OFF; break;
+    case WAIT: state = ON; break;
+    }
+}
+"""
+
+
+@pytest.mark.parametrize(("body", "told"), [
+    ("state = OFF;", True), ("state = ALARM;", False), ("hot = 0;", False),
+    ("state = OFF; } /* falls through */ {", False),
+    ("state = OFF; } break; {", False),
+])  # fmt: skip
+def test_a_state_that_goes_on_with_the_case_of_another(body: str, told: bool) -> None:
+    assert [line for rule, line in findings_of(MACHINE % body) if rule == "case-falls"] == [7] * told
