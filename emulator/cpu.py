@@ -68,9 +68,9 @@ class Cpu(Eallow):
     """
 
     __slots__ = (
-        "_began", "_described", "_forced", "_handlers", "_left", "_row", "_taken", "asleep", "clock", "deeper",
+        "_began", "_described", "_forced", "_handlers", "_left", "_row", "asleep", "clock", "deeper",
         "dispatched", "edis_at", "findings", "ier", "ifr", "in_interrupt", "intm", "isr", "lines_taken", "position",
-        "sp", "stack_limit",
+        "sp", "stack_limit", "taken",
     )  # fmt: skip
 
     def __init__(self, clock: Clock, findings: Findings) -> None:
@@ -89,7 +89,7 @@ class Cpu(Eallow):
         self.lines_taken = 0
         self.in_interrupt = 0
         #: How many interrupts were ever taken.
-        self._taken = 0
+        self.taken = 0
         #: The core waits in IDLE.
         self.asleep = False
         #: Whether LPMCR selects a mode below IDLE.  Those are not modelled: the program goes on at once.
@@ -168,10 +168,10 @@ class Cpu(Eallow):
         clock.charge(IDLE_CYCLES)
         if self.deeper():
             return True
-        taken = self._taken
+        taken = self.taken
         self.asleep = True
         try:
-            while self._taken == taken and not self.ifr & self.ier:
+            while self.taken == taken and not self.ifr & self.ier:
                 if clock.next >= NEVER:
                     return False
                 clock.advance_to(clock.next)
@@ -228,7 +228,7 @@ class Cpu(Eallow):
         position = self.position
         position.calls = interrupted = (position.at, position.calls, INTERRUPT)
         position.at = 0
-        self._taken += 1
+        self.taken += 1
         self.intm = True
         self.eallow, self.edis_at = False, 0
         self.ier &= ~(1 << (line - 1))

@@ -40,7 +40,7 @@ from emulator.c28x.sites import Site
 from emulator.c28x.tree import NOWHERE, Declaration, Where
 from emulator.c28x.varargs import ArgumentBlock
 from emulator.c28x.watcher import Watcher
-from emulator.clock import CYCLES_PER_US, Clock
+from emulator.clock import CYCLES_PER_US, NEVER, Clock
 from emulator.seed import parse_seed
 
 #: The time limit of a loop that only computes.  Such a loop takes milliseconds; the limit catches those that never end.
@@ -187,6 +187,8 @@ class StackPointer(Protocol):
     sp: int
     stack_limit: int
     eallow: bool
+    #: How many interrupts were ever taken.
+    taken: int
 
 
 def parse_fill(fill: str) -> tuple[str, int]:
@@ -292,8 +294,8 @@ class Runtime:
         #: Whether time skips the turns of a loop that change nothing.
         self.skips_turns = False
         #: After the last such turn: the time, the time of the next event, how many events were ever scheduled,
-        #: and the occurrences of findings.
-        self._idle_turn = (-1, -1, -1, -1)
+        #: the interrupts that were taken, and the occurrences of findings.
+        self._idle_turn = (-1, -1, -1, -1, -1)
         #: When a function last did what no idle turn does.
         self._busy = -1
         memory.take_policy_from(self)
@@ -1369,15 +1371,18 @@ class Runtime:
     def turn(self, began: int, until: int) -> None:
         """A turn of a loop that began at `began` has changed nothing (pass `idle_turns`).
 
-        If no event came in it or was scheduled, and the turn before it was such a one too, the next ones are the same.
-        Time skips those that end before the next event, and before `until`.
+        If no event came in it or was scheduled, no interrupt was taken, and the turn before it was such a one too, the
+        next ones are the same.
+        Time skips those that end before the next event, and before `until`: behind that time each turn begins with
+        `endless`.  If this one did, and went on without a word, so do the next ones.
         """
         if not self.skips_turns or self._busy >= began:
             return
-        clock, findings = self.clock, self.findings
-        if self._idle_turn == (began, int(clock.next), int(clock.scheduled), findings.occurrences):
-            clock.skip_turns(clock.now - began, until)
-        self._idle_turn = (clock.now, clock.next, clock.scheduled, findings.occurrences)
+        clock = self.clock
+        same = int(clock.next), int(clock.scheduled), self.cpu.taken, self.findings.occurrences
+        if self._idle_turn == (began, *same):
+            clock.skip_turns(clock.now - began, NEVER if began > until else until)
+        self._idle_turn = (clock.now, *same)
 
     def idle(self, number: int) -> None:
         """An endless loop without a body has no more events to wait for: raises Idling."""

@@ -1,8 +1,9 @@
 """Pass `idle_turns`: the turns of a loop that change nothing, so that the next one does the same.
 
 A turn is idle if it only reads named objects and registers, compares them, and sets locals that it does not read
-before.  It may call functions that do no more (`idle_calls`).  As long as no event comes, each turn after an idle one
-is idle too, and takes the same cycles.  So time can skip whole turns (`Runtime.turn`), up to the next event.
+before.  It may count through a table, switch interrupts off and on, and call functions that do no more (`idle_calls`).
+As long as no event comes and no interrupt is taken, each turn after an idle one is idle too, and takes the same
+cycles.  So time can skip whole turns (`Runtime.turn`), up to the next event.
 
 A register may change by itself, or notice that it is read.  The loop asks each of them at run time (`Cell.steady`).
 
@@ -13,6 +14,7 @@ fails.  What begins a turn that is not idle is marked, also in the functions tha
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import Final
 
 from emulator.c28x.tree import (
     Assign,
@@ -24,6 +26,7 @@ from emulator.c28x.tree import (
     Evaluate,
     Expr,
     FallThrough,
+    For,
     Function,
     If,
     Jump,
@@ -40,6 +43,8 @@ from emulator.c28x.tree_queries import parts, polls, statements
 
 #: Path of a function that a turn may call and still be idle -> the registers that it reads then.
 IdleCalls = Mapping[str, tuple[RegisterRef, ...]]
+#: They only set INTM or DBGM: after two turns that did the same, another one changes nothing.
+_MASKS: Final = frozenset({"DINT", "EINT", "DRTM", "ERTM", "__disable_interrupts", "__enable_interrupts"})
 
 
 def idle_calls(functions: Iterable[Function]) -> IdleCalls:
@@ -115,6 +120,9 @@ class _Turn:
         self.carries_on = False
         self.last: list[Expr] = []
         self.called = False
+        #: Of the turns of a counting loop within: whether a `break` or `continue` ends an idle one.
+        self.within = False
+        self.leaves = False
 
     def of(self, loop: While) -> bool:
         """Whether the loop has idle turns."""
@@ -143,6 +151,9 @@ class _Turn:
         """
         for s in body:
             match s:
+                case Break() | Continue() if self.within:
+                    self.leaves = True
+                    return None
                 case Continue():
                     self.carries_on = True
                     self._reads(self.last, known)
@@ -159,6 +170,8 @@ class _Turn:
                     self._reads([value], known)
                 case Declare(value=None) | FallThrough():
                     pass
+                case Evaluate(value=Call(function=Function(extern=True, name=name))) if name in _MASKS:
+                    pass
                 case Assign(target=LValue(root=Variable() as target, indices=[]), value=value) | Declare(
                     variable=target, value=Expr() as value
                 ) if target.plain and target not in self.carried and self._pure([value]):  # fmt: skip
@@ -171,6 +184,18 @@ class _Turn:
                     if not ends:
                         return None
                     known = set.intersection(*ends)
+                case For(start=start, stop=stop, counter=counter) if (
+                    counter.plain and counter not in self.carried and self._pure([start, stop])
+                ):
+                    counting = self._counting(s, {*known, counter})
+                    if counting is None:
+                        self.busy.append(s)
+                        return None
+                    self._reads([start], known)
+                    known = {*known, counter}
+                    self._reads([stop], known)
+                    self.set.add(counter)
+                    self._take(counting)
                 case While(first=True, test=test, body=[first, *_]) if self._pure([test]) and not (
                     self.called and _idle_turn(s, self.idle)  # a call that marked its turns would end their idleness
                 ):
@@ -180,6 +205,20 @@ class _Turn:
                     self.busy.append(s)
                     return None
         return known
+
+    def _counting(self, loop: For, known: set[Variable]) -> _Turn | None:
+        """The idle turns of a counting loop within this turn; None: it has none."""
+        inner = _Turn(self.carried, self.idle)
+        inner.called, inner.within = self.called, True
+        return inner if inner._block(loop.body, known) is not None or inner.leaves else None
+
+    def _take(self, inner: _Turn) -> None:
+        """Add what the turns of a loop within do."""
+        self.busy += inner.busy
+        self.set |= inner.set
+        self.read |= inner.read
+        self.registers.update(inner.registers)
+        self.carries_on = self.carries_on or inner.carries_on
 
     def _reads(self, values: Iterable[Expr], known: set[Variable]) -> None:
         for value in values:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from emulator.c28x.coverage import Coverage
+from emulator.c28x.runtime import EndlessPoll
+from tests.emulator.c28x.readers.c.workshop import CWorkshop
 from tests.emulator.c28x.workshop import Workshop
 
 #: Each function ends after eight changes of Ticks.
@@ -194,3 +196,158 @@ def test_a_function_that_is_replaced_runs_in_each_turn() -> None:
     firmware.clock.schedule(10_000, lambda: ticks.__setitem__(0, 8))
     firmware.called()
     assert len(turns) > 50
+
+
+#: Main loops, which an interrupt routine ends that counts Ticks.
+MAINS = """
+volatile unsigned int Ticks = 0, Due = 0;
+unsigned int Done = 0, Kept = 0, Periods[3] = { 2, 3, 5 }, Last[3] = { 0 };
+void flagged(void) { for (;;) { if (Due >= 2) { Due = 0; Done++; } } }
+static unsigned int now(void)
+{
+    unsigned int ticks;
+    asm(" setc INTM");
+    ticks = Ticks;
+    asm(" clrc INTM");
+    return ticks;
+}
+void scheduled(void)
+{
+    unsigned int i;
+    for (;;) {
+        unsigned int at = now();
+        for (i = 0; i < 3; i++) {
+            if (at - Last[i] >= Periods[i]) { Last[i] += Periods[i]; Done += i; }
+        }
+    }
+}
+void let_in_for_a_moment(void)
+{
+    for (;;) {
+        asm(" clrc INTM");
+        Kept;
+        asm(" setc INTM");
+        if (Due >= 2) { Due = 0; Done++; }
+    }
+}
+static unsigned int first(void)
+{
+    unsigned int i;
+    for (i = 0; i < 3; i++) {
+        if (Last[i] == Ticks) continue;
+        if (Last[i] > Ticks) break;
+        return i;
+    }
+    return 3;
+}
+void searched(void)
+{
+    unsigned int i;
+    for (;;) {
+        i = first();
+        if (i < 3) Last[i]++;
+    }
+}
+void chosen_among(void)
+{
+    unsigned int i, most = 0;
+    for (;;) {
+        for (i = 0; i < 3; i++) {
+            if (Last[i] > Ticks) break;
+            if (Due + i > most) { most = Due + i; Done++; }
+        }
+        if (i < 3) Kept = i;
+    }
+}
+void counted_in_a_table(void)
+{
+    unsigned int i, turns = 0;
+    for (;;) {
+        for (i = 0; i < 3; i++) turns++;
+        if (Due >= 2) { Due = 0; Done = turns; }
+    }
+}
+void filled(void)
+{
+    unsigned int i;
+    for (;;) {
+        for (i = 0; i < 3; i++) Last[i]++;
+        if (Due >= 2) { Due = 0; Done++; }
+    }
+}
+void ended(void) { while (Ticks < 900) { if (Due >= 2) { Due = 0; Done++; } } }
+"""
+WITHOUT_END = ("flagged", "scheduled", "let_in_for_a_moment", "searched")
+MAINS_SKIPPED = (*WITHOUT_END, "chosen_among", "ended")
+
+
+class _TimeUp(Exception):
+    pass
+
+
+def run_main(name: str, gaps: list[int], *, skips: bool, driven: bool, limit: int) -> tuple[Any, int]:
+    """What happens while an interrupt comes after each of `gaps`, and the cycles that were executed.
+
+    `limit`: how long a loop may compute alone, in cycles; a host that runs it in slices of time (`driven`) allows more.
+    """
+    externs = {"DINT": lambda: cpu.disable_interrupts(), "EINT": lambda: cpu.enable_interrupts()}
+    firmware = CWorkshop(MAINS, watch=True, driven=lambda: driven, externs=externs)
+    if skips:
+        firmware.linked.skip_turns()
+    firmware.linked.allow_loops(limit)
+    clock, cpu, objects = firmware.clock, firmware.cpu, firmware.linked.objects
+    log: list[Any] = []
+
+    def routine() -> None:
+        for path in ("drv.Ticks", "drv.Due"):
+            objects[path].data[0] += 1
+        left = {path: list(obj.data) for path, obj in objects.items()}
+        log.append((clock.now, firmware.findings.position.calls, left))
+
+    def up() -> None:
+        raise _TimeUp
+
+    cpu.connect(13, routine)
+    cpu.ier = 1 << 12
+    cpu.enable_interrupts()
+    at = 0
+    for gap in gaps:
+        at += gap
+        clock.schedule(at, lambda: cpu.raise_line(13))
+    clock.schedule(at + 300, up)
+    with pytest.raises((_TimeUp, EndlessPoll)) as why:
+        firmware.call(name)
+    found = [(finding.rule, finding.count, finding.time_cycles) for finding in firmware.findings]
+    return (log, clock.now, found, why.type), clock.now - clock.waited
+
+
+@pytest.mark.parametrize("driven", [True, False])
+@pytest.mark.parametrize("name", [*MAINS_SKIPPED, "counted_in_a_table", "filled"])
+@settings(max_examples=12)
+@given(gaps=st.lists(st.integers(0, 700), min_size=8, max_size=8), limit=st.sampled_from([500, 2_000, 100_000]))
+def test_a_main_loop_that_skips_is_the_one_that_does_not(name: str, gaps: list[int], limit: int, driven: bool) -> None:
+    skipping, turning = (run_main(name, gaps, skips=skips, driven=driven, limit=limit)[0] for skips in (True, False))
+    assert skipping == turning
+
+
+@pytest.mark.parametrize(
+    ("name", "limit"),
+    [*((name, 1_000_000) for name in MAINS_SKIPPED), *((name, 1_000) for name in WITHOUT_END)],
+)
+def test_a_main_loop_is_skipped_also_after_the_limit_of_a_loop(name: str, limit: int) -> None:
+    (log, now, _, _), executed = run_main(name, [20_000] * 8, skips=True, driven=True, limit=limit)
+    assert (len(log), now >= 160_000) == (8, True)
+    assert executed < 8_000
+
+
+def test_a_main_loop_that_nobody_drives_ends_at_the_limit() -> None:
+    for name in ("flagged", "ended"):
+        (log, now, found, why), _ = run_main(name, [20_000] * 8, skips=True, driven=False, limit=50_000)
+        assert (len(log), why, [rule for rule, _, _ in found]) == (2, EndlessPoll, ["endless-loop"])
+        assert 50_000 < now < 60_000
+
+
+@pytest.mark.parametrize("name", ["counted_in_a_table", "filled"])
+def test_a_main_loop_that_computes_is_executed(name: str) -> None:
+    (_, now, _, _), executed = run_main(name, [2_000] * 8, skips=True, driven=True, limit=1_000)
+    assert executed == now
