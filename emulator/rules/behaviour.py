@@ -280,6 +280,11 @@ So is the bit rate of an SCI with a comment beside the statements that set `SCIH
 above their function (`// 38400 baud`). If the real rate is another usual one, the comment may be old: it is reported
 only if the other end of the line, on your board, has another rate, too.
 
+A constant from which `SCIHBAUD` and `SCILBAUD` are computed, and whose name says a bit rate (`BAUD`, `BAUD_RATE`,
+`GPS_BAUDIOS`), is reported if the SCI has another one by more than 4 %, at the half that is wrong: the two halves may
+disagree (`BAUD * 8` in one, `BAUD * 16` in the other), or LSPCLK has another frequency. Not reported is a rate that is
+set a second time or measured by the SCI, nor one that no divider gives better.
+
 A comment that is nothing but a time beside a wait (`DELAY_US(500);  // 5 ms`, `Task_sleep(10)`), or beside the
 definition of its number, is reported if the two differ by a power of ten, but not in a loop that ends.
 

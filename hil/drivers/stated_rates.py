@@ -19,9 +19,10 @@ TI's driverlib is told the frequency of a clock (`SCI_setConfig(base, lspclkHz, 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from math import isclose
+from operator import add, and_, floordiv, mul, rshift, sub
 from typing import Final
 
 from emulator.c28x.declarations import lines_with_comments
@@ -30,8 +31,10 @@ from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     AddressOf,
     Assign,
+    Binary,
     Call,
     Const,
+    Declare,
     Expr,
     For,
     Function,
@@ -42,11 +45,12 @@ from emulator.c28x.tree import (
     Variable,
     While,
 )  # fmt: skip
-from emulator.c28x.tree_queries import bare, own_nodes, parts, statements, without_end
+from emulator.c28x.tree_queries import assigned, bare, gives, own_nodes, parts, statements, without_end
 from emulator.chip import Chip
 from emulator.clock import SYSCLK_HZ
 from emulator.peripherals.epwm_time_base import STOPPED, UP_DOWN
 from emulator.registers.epwm import ETINTPS, ETPS, ETSEL, ETSOCPS, TBCTL
+from emulator.registers.sci import SCIFFCT
 from hil.drivers.clock_names import clock_by_name
 from hil.drivers.hardware_counts import counter_at, field, tick_seconds
 from hil.drivers.stated_units import as_written, defined_number
@@ -61,6 +65,15 @@ _BAUD: Final = re.compile(
     r"|(9600|19200|38400|57600|115200|230400))\b(?![.,]\d)",
     re.IGNORECASE,
 )  # fmt: skip
+_OPERATORS: Final[dict[str, Callable[[int, int], int]]] = {
+    "+": add, "-": sub, "*": mul, "/": floordiv, "&": and_, ">>": rshift,
+}  # fmt: skip
+#: The name of a bit rate: not that of a divider, of a limit, or of some times the rate.
+_BAUD_NAME: Final = re.compile(
+    r"^(?!.*(?:DIV|TEIL|REG(?![A-Z])|BRR|PRE|CLK|CLOCK|MAX|MIN|ERR|TOL|COUNT|TIMES|\d+X|X\d+|_\d+$))"
+    r"(?:\w*_)?(?:BAUD(?:_?RATE|IOS|S)?|BIT_?RATE|BPS)(?:_\w*)?$",
+    re.IGNORECASE,
+)
 #: Comments that speak of another rate than that of today.
 _NOT_NOW: Final = re.compile(
     r"\b(?:was|old|instead|not|former\w*|before|früher|frueher|statt|nicht|antes|no)\b", re.IGNORECASE
@@ -82,6 +95,8 @@ _CLOCK_HZ: Final = 1e6
 _EQUAL: Final = 0.03
 #: A receiver takes a rate that differs by less.
 _SAMPLED: Final = 0.05
+#: Sender and receiver may differ by less.
+_SENT: Final = 0.04
 #: Between them lies what a divider that was forgotten, or a slip of the decimal point, makes.
 _SLIPS: Final = tuple(2.0**n for n in (-4, -3, -2, -1, 1, 2, 3, 4)) + tuple(10.0**n for n in range(-6, 7) if n)
 #: Numbers without a name beside which the name of a rate still states the rate: conversions, and clocks in MHz and Hz.
@@ -369,13 +384,13 @@ def _time(comment: str) -> float:
 
 def _wrong_bit_rates(functions: list[Function], chip: Chip, *, peer_known: bool) -> Iterator[UnitMismatch]:
     """The statements that set the divider of an SCI, where a comment states another bit rate than it gives."""
-    set_: dict[str, dict[str, list[tuple[Function, Stmt, int | None]]]] = {}
+    set_: dict[str, dict[str, list[tuple[Function, Assign, int | None]]]] = {}
     for function in functions:
         for s in statements(function.body):
             match s:
                 case Assign(target=RegisterRef(block=block, register="SCIHBAUD" | "SCILBAUD" as name), value=value):
-                    number = bare(value)
-                    byte = int(number.value) & 0xFF if isinstance(number, Const) else None
+                    number = _number(value, function)
+                    byte = None if number is None else number & 0xFF
                     set_.setdefault(block, {}).setdefault(name, []).append((function, s, byte))
     differs = peer_known and bool(chip.findings.of("serial-rate"))
     for block, registers in set_.items():
@@ -385,6 +400,11 @@ def _wrong_bit_rates(functions: list[Function], chip: Chip, *, peer_known: bool)
         if not alone or any(chip.register(block, n).value != given[0][2] for n, given in registers.items()):
             continue
         real = SYSCLK_HZ / chip.sci[block.removesuffix("Regs")[-1].upper()].format().bit_cycles
+        halves = {name: given[0][1] for name, given in registers.items()}
+        if wrong := _wrong_by_name(block, function, halves, chip, real):
+            s, message = wrong
+            yield UnitMismatch(_place(function, s), message, f"{block}.SCILBAUD", "stated-rate")
+            continue
         only = sum(any(f is function for given in each.values() for f, _, _ in given) for each in set_.values()) == 1
         stated = {rate: text for text in _comments_about(function, [s for _, s, _ in settings], header=only)
                   for rate in _bit_rates(text)}  # fmt: skip
@@ -395,6 +415,79 @@ def _wrong_bit_rates(functions: list[Function], chip: Chip, *, peer_known: bool)
         if not any(isclose(rate, real * x, rel_tol=_SAMPLED) for x in chip.sysctrl.sysclk_shares):
             message = f"the comment {text!r} states {rate} baud, and {block} sends and receives {real:.0f}"
             yield UnitMismatch(_place(function, s), message, f"{block}.SCILBAUD", "stated-rate")
+
+
+def _number(e: Expr, function: Function, deep: int = 4) -> int | None:
+    """The integer that an expression of constants is, also through locals that get one value; None: it is another."""
+    match bare(e):
+        case Const(value=value):
+            return int(value)
+        case Load(lvalue=lvalue) if deep and (origin := _origin(lvalue, function)) is not None:
+            return _number(origin, function, deep - 1)
+        case Binary(op=op, left=left, right=right) if op in _OPERATORS:
+            one, other = _number(left, function, deep), _number(right, function, deep)
+            if one is not None and other is not None and not (op == "/" and (one < 0 or other <= 0)):
+                return _OPERATORS[op](one, other)
+    return None
+
+
+def _origin(lvalue: LValue, function: Function) -> Expr | None:
+    """The only value that a `const` object or a local of a function ever has."""
+    match lvalue:
+        case LValue(root=Variable(kind="global", constant=True, initial=[value]), indices=[], bits=None):
+            return value
+        case LValue(root=Variable(kind="local", in_memory=False) as variable, indices=[], bits=None):
+            given = [gives(s) for s in statements(function.body) if assigned(s) == variable]
+            values = [each for each in given if each is not None]
+            declared_only = any(isinstance(s, Declare) and s.variable == variable and s.value is None
+                                for s in statements(function.body))  # fmt: skip
+            return values[0][1] if len(values) == len(given) - declared_only == 1 else None
+    return None
+
+
+def _baud_names(e: Expr, function: Function) -> Iterator[tuple[float, str]]:
+    """The bit rates that names in an expression state, with the names."""
+    for p in _leaves(e):
+        name = defined_number(p)[0] if isinstance(p, Const) else ""
+        if isinstance(p, Const) and _BAUD_NAME.search(name):
+            yield p.value, name
+    for p in parts(e):
+        origin = _origin(p.lvalue, function) if isinstance(p, Load) else None
+        value = _number(origin, function) if origin is not None else None
+        if origin is None or value is None:
+            continue
+        if _BAUD_NAME.search(name := p.lvalue.root.declaration.name):
+            yield value, name
+        else:
+            yield from _baud_names(origin, function)
+
+
+def _wrong_by_name(
+    block: str, function: Function, halves: dict[str, Assign], chip: Chip, real: float
+) -> tuple[Assign, str] | None:  # fmt: skip
+    """The statement with the wrong half of a divider that is computed from a named bit rate, and what is wrong.
+
+    A rate that no divider gives any better is none, and so is that of a SCI that measures the rate itself.
+    """
+    named = {
+        rate: name for s in halves.values() for rate, name in _baud_names(s.value, function) if rate >= _RATES[0]
+    }  # fmt: skip
+    if len(named) != 1 or field(chip.register(block, "SCIFFCT").value, SCIFFCT.CDC):
+        return None
+    (rate, name), = named.items()
+    counts = chip.sysctrl.lspclk_hz / 8
+    best = max(1, round(counts / rate)) - 1
+    if isclose(counts / (best + 1), rate, rel_tol=_SENT) and not any(
+        isclose(rate, real * x, rel_tol=_SENT) for x in chip.sysctrl.sysclk_shares
+    ):  # fmt: skip
+        low_is_right = abs(chip.register(block, "SCILBAUD").value - (best & 0xFF)) <= 1
+        wrong = "SCIHBAUD" if low_is_right and "SCIHBAUD" in halves else "SCILBAUD"
+        message = (
+            f"{name} states {rate:g} baud, and {block} sends and receives {real:.0f}: the divider is "
+            f"{round(counts / real) - 1}, for {name} it is {best}"
+        )
+        return halves.get(wrong, next(iter(halves.values()))), message
+    return None
 
 
 def _comments_about(function: Function, settings: list[Stmt], *, header: bool, above: bool = True) -> Iterator[str]:

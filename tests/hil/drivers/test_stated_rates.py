@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -101,3 +102,99 @@ def test_a_rate_that_the_hardware_does_not_have_is_told(
 ])  # fmt: skip
 def test_a_rate_that_the_hardware_has_is_not_told(tmp_path: Path, set_: str, given: dict[str, str]) -> None:
     assert told(tmp_path, set_, **given) == []
+
+
+#: Two SCIs, with names for the rates.
+SERIAL = """#include "F28x_Project.h"
+#define LSPCLK_HZ   {clock}
+#define BAUD        {baud}
+#define GPS_BAUD    9600UL
+static const Uint32 link_baud = 38400UL;
+volatile Uint16 Order;
+void main(void)
+{{
+    Uint16 brr = LSPCLK_HZ / (BAUD * {times}UL) - 1;
+    InitSysCtrl();
+    DINT;
+    EALLOW;
+    CpuSysRegs.PCLKCR7.bit.SCI_A = 1;
+    CpuSysRegs.PCLKCR7.bit.SCI_B = 1;
+    {clocks}
+    EDIS;
+    ScibRegs.SCIHBAUD.all = (LSPCLK_HZ / (GPS_BAUD * 8) - 1) >> 8;
+    ScibRegs.SCILBAUD.all = (LSPCLK_HZ / (GPS_BAUD * 8) - 1) & 0xFF;
+    {high}
+    {low}
+    for (;;) {{ {then} }}
+}}
+"""
+HIGH = "SciaRegs.SCIHBAUD.all = ((LSPCLK_HZ / (BAUD * 8)) - 1) >> 8;"
+LOW = "SciaRegs.SCILBAUD.all = ((LSPCLK_HZ / (BAUD * 8)) - 1) & 0xFF;"
+
+
+def serial(
+    folder: Path, high: str = HIGH, low: str = LOW, *, clock: str = "50000000UL", clocks: str = "", then: str = "",
+    baud: str = "115200UL", times: int = 8,
+) -> list[tuple[str, str]]:  # fmt: skip
+    """Statement and message of each `stated-rate` about the two SCIs."""
+    file = folder / "serial.c"
+    text = SERIAL.format(high=high, low=low, clock=clock, clocks=clocks, then=then, baud=baud, times=times)
+    file.write_text(text, encoding="utf-8")
+    found = check_files(DriverFiles([file], calls=1, board=load("bare"), seconds=0.01)).findings
+    lines = text.splitlines()
+    return [
+        (lines[f.place.line - 1].strip(), f.message) for f in found if f.rule == "stated-rate" and f.place is not None
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("high", "low", "given", "at", "real"), [
+    (HIGH, LOW.replace("* 8", "* 16"), {}, "low", "231481: the divider is 26, for BAUD it is 53"),
+    (HIGH.replace("* 8", "* 16"), LOW.replace("* 8", "* 16"), {}, "low", "231481: the divider is 26"),
+    (HIGH.replace("8)", "16)", 1), LOW, {"baud": "9600UL"}, "high", "15823: the divider is 394, for BAUD it is 650"),
+    ("SciaRegs.SCIHBAUD.all = 0;", LOW.replace("* 8", "* 16"), {}, "low", "231481: the divider is 26"),
+    # A clock that the chip does not have.
+    (HIGH, LOW, {"clock": "100000000UL"}, "low", "57870: the divider is 107, for BAUD it is 53"),
+    # A local of both halves: declared with its value, and before it.
+    ("Uint16 set; set = LSPCLK_HZ / (BAUD * 16UL) - 1; SciaRegs.SCIHBAUD.all = set >> 8;",
+     "SciaRegs.SCILBAUD.all = set & 0xFF;", {}, "low", "231481: the divider is 26"),
+    ("SciaRegs.SCIHBAUD.all = brr >> 8;", "SciaRegs.SCILBAUD.all = brr & 0xFF;", {"times": 16}, "low", "231481: the"),
+])  # fmt: skip
+def test_a_divider_whose_name_states_another_bit_rate_is_told(
+    tmp_path: Path, high: str, low: str, given: dict[str, Any], at: str, real: str
+) -> None:
+    found = serial(tmp_path, high, low, **given)
+    found = [each for each in found if "SciaRegs" in each[0]]
+    ((statement, message),) = found
+    assert statement == (high if at == "high" else low)
+    assert message.startswith(f"BAUD states {given.get('baud', '115200UL').rstrip('UL')} baud, and SciaRegs sends and")
+    assert real in message
+
+
+def test_a_const_object_states_a_bit_rate(tmp_path: Path) -> None:
+    low = LOW.replace("BAUD * 8", "link_baud * 16")
+    assert [each[0] for each in serial(tmp_path, "SciaRegs.SCIHBAUD.all = 0;", low)] == [low]
+    low = low.replace("16", "8")
+    assert not serial(tmp_path, "SciaRegs.SCIHBAUD.all = 0;", low)
+
+
+@pytest.mark.parametrize(("high", "low", "given"), [
+    (HIGH, LOW, {}),
+    ("SciaRegs.SCIHBAUD.all = brr >> 8;", "SciaRegs.SCILBAUD.all = brr & 0xFF;", {}),
+    # The clock that is set.
+    (HIGH, LOW, {"clock": "100000000UL", "clocks": "ClkCfgRegs.LOSPCP.bit.LSPCLKDIV = 1;"}),
+    # A local that changes; one that is made of itself.
+    ("brr = 53; SciaRegs.SCIHBAUD.all = brr >> 8;", "SciaRegs.SCILBAUD.all = brr & 0xFF;", {"times": 16}),
+    ("Uint16 own; own = own + BAUD / 2170; SciaRegs.SCIHBAUD.all = 0;", "SciaRegs.SCILBAUD.all = own;", {}),
+    # Another rate at run time, by name and by a pointer; a rate that the SCI measures.
+    (HIGH, LOW.replace("* 8", "* 16"), {"then": "if (Order) SciaRegs.SCILBAUD.all = 53;"}),
+    (HIGH, LOW.replace("* 8", "* 16"), {"then": "volatile struct SCI_REGS *p = &SciaRegs; p->SCILBAUD.all = 53;"}),
+    (HIGH, LOW.replace("* 8", "* 16"), {"clocks": "SciaRegs.SCIFFCT.bit.CDC = 1;"}),
+    # No divider is nearer; the name is that of a divider.
+    (HIGH, LOW, {"baud": "2500000UL"}),
+    ("SciaRegs.SCIHBAUD.all = 0;", "SciaRegs.SCILBAUD.all = 53000UL / BAUD;", {"baud": "1000"}),
+])  # fmt: skip
+def test_a_divider_whose_name_states_its_bit_rate_is_not_told(
+    tmp_path: Path, high: str, low: str, given: dict[str, Any]
+) -> None:
+    found = [each for each in serial(tmp_path, high, low, **given) if "SciaRegs" in each[0]]
+    assert not found
