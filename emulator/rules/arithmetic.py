@@ -100,6 +100,9 @@ A test says which values are meant. So `if (n <= 100000L) period = (Uint16) n;` 
 test lets more through than the type holds. So is `if (n > 99999L) return;` before the conversion. It is not reported if
 the value is used otherwise too, as for its upper word.
 
+A stamp of 16 bits of a clock of 32 is reported if it is subtracted from all of it: `if (millis - last >= PERIOD)`
+with `Uint16 last` is right for the first 65 seconds. `(Uint16)(millis - last)` is right for longer.
+
 **Fix:** make the object `long`, or limit the value before the assignment.
 """,
         "ISO C 6.3.1.3 p3",

@@ -235,7 +235,9 @@ class _Program:
             if any(assigned(other) is count for other in [*statements(block), *statements(behind)]):
                 continue
             used = any(text in _roots_of(p) for later in block[number + 1 :] for p in within([later]) if _passes(p))
-            used = used or (count not in self.counts and any(text in _roots_of(p) for p in within(behind)))
+            used = used or any(
+                text in _roots_of(p) for p in within(behind) if count not in self.counts or _passes(p)
+            )
             marks = any(
                 isinstance(other, Assign) and constant_of(other.value) not in (None, 0) and assigned(other) is not None
                 for other in block

@@ -32,6 +32,7 @@ from emulator.c28x.passes.masked import check_masked
 from emulator.c28x.passes.members import with_members
 from emulator.c28x.passes.messages import check_messages
 from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
+from emulator.c28x.passes.narrow_stamps import check_narrow_stamps
 from emulator.c28x.passes.never_back import check_never_back
 from emulator.c28x.passes.null_tests import NullTests
 from emulator.c28x.passes.off_by_one import check_off_by_one
@@ -143,6 +144,7 @@ def check(
     check_dropped(modules, reports)
     check_likes(modules, reports)
     check_messages(modules, reports)
+    check_narrow_stamps(modules, reports)
     check_quotients(reports, given)
     check_stated(reports, given)
     check_fraction_texts(reports, given)

@@ -126,6 +126,9 @@ def text(again: str = LENGTH + MARK, *, test: str = REFUSE, end: str = END, turn
 @pytest.mark.parametrize(("program", "line"), [
     (text(MARK), END),
     (text(MARK, test="Obey(order);"), END),
+    # A function that uses it by its name.
+    (text(MARK, test="Use();").replace("static void Obey", "static void Use(void);\nstatic void Obey")
+     + "static void Use(void) { Obey(order); }\n", END),
     # Only a line that is too long sets it back.
     (text(MARK, test="Obey(order);").replace("else tooLong = 1;", "else length = 0;"), END),
     (text(LENGTH), REFUSE),

@@ -358,3 +358,28 @@ void step(void)
 ])  # fmt: skip
 def test_a_state_that_goes_on_with_the_case_of_another(body: str, told: bool) -> None:
     assert [line for rule, line in findings_of(MACHINE % body) if rule == "case-falls"] == [7] * told
+
+
+STAMPS = """unsigned long millis;
+struct { unsigned last, period; } jobs[3];
+unsigned seen; unsigned long whole;
+void tick(void) { millis++; }
+unsigned long now_ms(void) { unsigned long ms; ms = millis; return ms; }
+void f(int i)
+{
+    unsigned long now = now_ms();
+%s
+}
+"""
+
+
+@pytest.mark.parametrize(("body", "line"), [
+    ("if (now - jobs[i].last > 9)\njobs[i].last = now;", 10), ("if (millis - seen > 9)\nseen = (unsigned)millis;", 10),
+    ("if (now_ms() - jobs[i].last >= jobs[i].period)\njobs[i].last += jobs[i].period;", 10),
+    # The difference has 16 bits too; the stamp is whole, is no time, or is not subtracted from one.
+    ("if ((unsigned)(now - seen) > 9)\nseen = now;", 0), ("unsigned age = now - seen;\nif (age > 9) seen = now;", 0),
+    ("if (now - whole > 9)\nwhole = now;", 0), ("if (now - jobs[i].period > 9)\njobs[i].last = now;", 0),
+    ("if (whole - seen > 9)\nseen = now;", 0), ("if (now - seen > 9)\nseen = 0;", 0),
+])  # fmt: skip
+def test_a_stamp_that_is_narrower_than_its_clock(body: str, line: int) -> None:
+    assert [at for rule, at in findings_of(STAMPS % body) if rule == "narrowed"] == [line] * bool(line)

@@ -1,0 +1,137 @@
+"""Static check of stamps that are narrower than their clock: `narrowed`.
+
+    Uint32 millis;  Uint16 last;
+    if (millis - last >= PERIOD_MS) { last = millis; ... }
+
+The difference is one of 32 bits, and `last` has lost the upper ones: from 65536 on it is far too large.  A difference
+that goes to 16 bits again (`(Uint16)(millis - last)`) is right.  The clock is an object that the program counts up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from emulator.c28x.ctypes import IntType
+from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    Assign,
+    Binary,
+    Call,
+    Convert,
+    Declare,
+    Expr,
+    Function,
+    Load,
+    LValue,
+    Return,
+    Stmt,
+    Variable,
+)
+from emulator.c28x.tree_queries import NamedScalar, bare, given_values, named_scalar, own_nodes, statements
+
+#: Clocks: objects, and the paths of functions that return their time.
+_Clocks = set[Variable | str]
+
+
+def check_narrow_stamps(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
+    """Report the stamps of a program that keep a part of their clock and are subtracted from all of it."""
+    functions = [(function, reports[module]) for module in modules for function in module.functions]
+    clocks: _Clocks = {c for function, _ in functions for s in statements(function.body) if (c := _counted(s))}
+    clocks |= {function.path for function, _ in functions if clocks and _gives_time(function, clocks)}
+    ages: dict[NamedScalar, Stmt] = {}
+    for function, _ in functions if clocks else ():
+        seen = clocks | _copies(function, clocks)
+        ages |= {stamp: s for s in statements(function.body) for stamp in _ages(s, seen)}
+    for function, report in functions if ages else ():
+        seen = clocks | _copies(function, clocks)
+        for s in statements(function.body):
+            match s:
+                case Assign(target=LValue(ctype=IntType(bits=16)) as target, value=value):
+                    use = ages.get(stamp) if (stamp := _stamp(target)) is not None else None
+                    if use is not None and (_reads(value, seen) or _steps(target, value)):
+                        message = (
+                            f"{target.text} keeps 16 bits of a time, and line {use.where.line} subtracts it from one "
+                            "of 32: the difference is wrong once the time is above 65535"
+                        )
+                        report.report(function, s.where, "narrowed", message, object=target.text)
+
+
+def _gives_time(function: Function, clocks: _Clocks) -> bool:
+    """Whether a function returns the time of a clock."""
+    returned = [s.value for s in statements(function.body) if isinstance(s, Return)]
+    seen = clocks | _copies(function, clocks)
+    return bool(returned) and all(value is not None and _reads(value, seen) for value in returned)
+
+
+def _copies(function: Function, clocks: _Clocks) -> set[Variable]:
+    """The locals of a function that get the time of a clock, and nothing else."""
+    given: dict[Variable, list[Expr]] = {}
+    for target, value in given_values(function.body):
+        if isinstance(target.root, Variable) and target.root.kind != "global" and not target.indices:
+            given.setdefault(target.root, []).append(value)
+    return {
+        local for local, values in given.items()
+        if isinstance(local.ctype, IntType) and local.ctype.bits == 32 and all(_reads(v, clocks) for v in values)
+    }  # fmt: skip
+
+
+def _counted(s: Stmt) -> Variable | None:
+    """The object of 32 bits at file scope to which a statement adds."""
+    match s:
+        case Assign(target=LValue(root=Variable(kind="global") as clock, indices=[], ctype=IntType(bits=32)) as target):
+            match bare(s.value):
+                case Binary(op="+", left=left):
+                    match bare(left):
+                        case Load(lvalue=same) if same == target:
+                            return clock
+    return None
+
+
+def _reads(e: Expr, clocks: _Clocks) -> bool:
+    """Whether an expression is the time of a clock."""
+    match bare(e):
+        case Load(lvalue=LValue(root=Variable() as root, indices=[])):
+            return root in clocks
+        case Call(function=function):
+            return function.path in clocks
+    return False
+
+
+def _stamp(lvalue: LValue) -> NamedScalar | None:
+    """The scalar that an lvalue names; of an array of structures, the member of all of them."""
+    if isinstance(lvalue.root, Variable) and lvalue.indices:
+        return lvalue.root, lvalue.words
+    return named_scalar(lvalue)
+
+
+def _steps(target: LValue, value: Expr) -> bool:
+    """Whether a statement adds to its target."""
+    match bare(value):
+        case Binary(op="+", left=left):
+            match bare(left):
+                case Load(lvalue=same):
+                    return same == target
+    return False
+
+
+def _ages(s: Stmt, clocks: _Clocks) -> Iterator[NamedScalar]:
+    """The stamps of 16 bits that a statement subtracts from a time, where the difference keeps 32."""
+    nodes = own_nodes(s)
+    cut = {id(e.operand) for e in nodes if isinstance(e, Convert) and _is_word(e)}
+    match s:
+        case Assign(target=LValue(ctype=IntType(bits=16)), value=value) | Declare(
+            variable=Variable(ctype=IntType(bits=16)), value=Expr() as value
+        ):  # fmt: skip
+            cut.add(id(value))
+    for e in nodes:
+        match e:
+            case Binary(op="-", left=left, right=right, ctype=IntType(bits=32)) if id(e) not in cut:
+                match bare(right):
+                    case Load(lvalue=LValue(ctype=IntType(bits=16)) as lvalue) if _reads(left, clocks):
+                        if (stamp := _stamp(lvalue)) is not None:
+                            yield stamp
+
+
+def _is_word(e: Expr) -> bool:
+    return isinstance(e.ctype, IntType) and e.ctype.bits == 16
