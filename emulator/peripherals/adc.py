@@ -573,6 +573,9 @@ class Adc:
         routine = self._left_by(n)
         if routine is None:
             cause = None if self._intflg.is_read else self._selected(n)
+            runs = self._routine(n)
+            if runs is not None and self._cpu.routine_at(runs) == self._findings.context():
+                message += f": {self._findings.context()} had not come to its clear, a conversion later"
             self._findings.report("flag-not-cleared", message, object=path, cause=cause)
         else:
             self._findings.report_at(

@@ -68,7 +68,8 @@ class HandleNames:
         for obj in self._linked.objects.values():
             leaf = next((leaf for leaf, value in enumerate(obj.data) if value is handle), None)
             if leaf is not None:
-                name = self._known[handle] = scalar_path(obj.declaration.name, obj.declaration.ctype, leaf)
+                declaration = obj.declaration
+                name = self._known[handle] = scalar_path(declaration.name, declaration.ctype, leaf, subscripts=True)
                 return name
         return str(getattr(handle, "name", handle))
 
@@ -180,12 +181,13 @@ def first_argument(call: Call) -> str | None:
     return None
 
 
-def scalar_path(path: str, ctype: CType, leaf: int) -> str:
-    """The path of the scalar number `leaf` of an object, without the subscripts of arrays."""
+def scalar_path(path: str, ctype: CType, leaf: int, *, subscripts: bool = False) -> str:
+    """The path of the scalar number `leaf` of an object, with or without the subscripts of arrays."""
     while True:
         if isinstance(ctype, ArrayType):
             ctype = ctype.element
-            leaf %= ctype.leaves
+            element, leaf = divmod(leaf, ctype.leaves)
+            path += f"[{element}]" if subscripts else ""
         elif isinstance(ctype, StructType) and ctype.members and not ctype.word_backed:
             first = leaf
             member = next(m for m in reversed(ctype.members) if m.leaf <= first)
