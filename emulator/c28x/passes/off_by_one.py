@@ -211,7 +211,8 @@ def _elements(gate: _Gate, body: list[Stmt], within: set[int], most: int) -> Ite
             if index.bound and index.bound <= reached and (before or _is(index.expr, gate.number)):
                 yield _Beyond(lvalue, index.bound, reached)
         for block in blocks(s):
-            yield from _elements(gate, block, within, most)
+            if block is not gate.body:  # behind the test the number is no larger than the limit
+                yield from _elements(gate, block, within, most)
         if _steps(s, gate.number):
             most = gate.limit + 1
         elif _sets(s, gate.number):

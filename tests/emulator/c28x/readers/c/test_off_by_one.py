@@ -46,6 +46,10 @@ def test_one_element_too_many_is_told(take: str, rest: str) -> None:
     ("take", "rest"),
     [
         ("if (n < 8) line[n++] = c;", ""),
+        ("if (n < 8) { line[n] = c; n++; }", ""),
+        ("if (n < 8) { if (c) { line[n] = c; n++; } }", ""),
+        ("if (in) { if (n < 8) { line[n] = c; n++; } }", ""),
+        ("if (n >= 8) { in = 0; } else { line[n] = c; n++; }", ""),
         ("if (n <= 7) line[n++] = c; else n = 0;", ""),
         ("if (n < 7) line[n++] = c;", "void End(void) { line[n] = 0; n = 0; Obey(); }"),
         ("if (n >= 8) n = 0; line[n++] = c;", ""),
