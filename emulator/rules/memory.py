@@ -73,6 +73,11 @@ A search in a constant table (`while (k < 9 && code > Codes[k]) k++;`) may end b
 needs a test of `k`, or a last element that no code is above (4095). It is not reported if something else tests the
 code, also in the caller.
 
+An index that the routine of an interrupt, or `main` in its last loop, only counts up (`ring[head] = c; head++;`) leaves
+its array sooner or later, if no statement sets it back. The test `head + 1 != tail` does not keep it within, if `tail`
+begins again at 0. It is not reported if anything else reads the index, or if the function tests an object of the
+program; nor with an interrupt that only comes for what the program asks (a bus, a DMA, an ADC).
+
 `events[next - back]` goes below the first element once `next` has begun again at 0; `events[(next + 8 - back) % 8]`
 does not.
 

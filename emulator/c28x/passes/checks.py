@@ -37,6 +37,7 @@ from emulator.c28x.passes.never_back import check_never_back
 from emulator.c28x.passes.null_tests import NullTests
 from emulator.c28x.passes.off_by_one import check_off_by_one
 from emulator.c28x.passes.one_sided import check_one_sided
+from emulator.c28x.passes.only_grows import check_only_grows
 from emulator.c28x.passes.open_integrals import check_open_integrals
 from emulator.c28x.passes.port_writes import check_port_writes
 from emulator.c28x.passes.published import check_published
@@ -131,6 +132,7 @@ def check(
     check_searches(reports, given)
     check_state_tables(whole, of_whole)
     check_off_by_one(whole, of_whole)
+    check_only_grows(whole, of_whole)
     sides = sides_of(modules, reports)
     if sides is not None:
         check_port_writes(sides)

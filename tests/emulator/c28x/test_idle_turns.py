@@ -281,7 +281,7 @@ WITHOUT_END = ("flagged", "scheduled", "let_in_for_a_moment", "searched")
 MAINS_SKIPPED = (*WITHOUT_END, "chosen_among", "ended")
 
 
-class _TimeUp(Exception):
+class _GapsOver(Exception):
     pass
 
 
@@ -305,7 +305,7 @@ def run_main(name: str, gaps: list[int], *, skips: bool, driven: bool, limit: in
         log.append((clock.now, firmware.findings.position.calls, left))
 
     def up() -> None:
-        raise _TimeUp
+        raise _GapsOver
 
     cpu.connect(13, routine)
     cpu.ier = 1 << 12
@@ -315,7 +315,7 @@ def run_main(name: str, gaps: list[int], *, skips: bool, driven: bool, limit: in
         at += gap
         clock.schedule(at, lambda: cpu.raise_line(13))
     clock.schedule(at + 300, up)
-    with pytest.raises((_TimeUp, EndlessPoll)) as why:
+    with pytest.raises((_GapsOver, EndlessPoll)) as why:
         firmware.call(name)
     found = [(finding.rule, finding.count, finding.time_cycles) for finding in firmware.findings]
     return (log, clock.now, found, why.type), clock.now - clock.waited

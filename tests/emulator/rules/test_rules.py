@@ -50,8 +50,8 @@ STATIC = (
             "drained", "dropped",
             "entrances", "event_masks", "flow", "formats", "fraction_texts", "likes", "lost_writes", "messages",
             "names", "narrow_stamps", "never_back",
-            "null_tests", "off_by_one", "one_sided", "published", "quotients", "released", "ring_back", "search_end",
-            "spans", "state_tables", "stated", "states", "stores", "tables", "undone", "unlimited_lines",
+            "null_tests", "off_by_one", "one_sided", "only_grows", "published", "quotients", "released", "ring_back",
+            "search_end", "spans", "state_tables", "stated", "states", "stores", "tables", "undone", "unlimited_lines",
             "unread_inputs", "values", "waiting",
         )
     ),
