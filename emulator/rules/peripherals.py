@@ -738,18 +738,23 @@ reset.
     _rule(
         "watchdog-in-vain",
         Severity.WARNING,
-        "An interrupt services the watchdog while the main program hangs.",
+        "The watchdog is serviced although a part of the program hangs.",
         """
-`main` hangs, and the watchdog does not reset the chip, because an interrupt routine still writes 0x55 and 0xAA to
-`WDKEY`. The watchdog exists for exactly this case.
+A part of the program hangs, and the watchdog does not reset the chip. The watchdog exists for exactly this case.
 
-`hil check FILE...` reports it at the end of a run in which `main` hangs in a loop (`endless-poll`). The place is the
-statement that services the watchdog.
+* `main` hangs, and an interrupt routine still writes 0x55 and 0xAA to `WDKEY`. `hil check FILE...` reports it at the
+  end of a run in which `main` hangs in a loop (`endless-poll`). The place is the statement that services the watchdog.
+* The watchdog is serviced on signs of life that nothing takes back. Tasks set their bits (`Alive |= CONTROL`), the
+  supervisor tests them (`if ((Alive & ALL) == ALL) ServiceDog();`), and no statement clears them: from the first time
+  on the test stays true. This is reported in the source of a whole program, at the test. One real sign of life beside
+  it is enough: then nothing is reported. Nor is a flag that only the start-up sets.
 
 **Fix:** service the watchdog in the loop of `main`. If an interrupt must do it, let `main` set a flag in each pass,
-and let the routine service the watchdog only if the flag is set, and then clear it.
+and let the routine service the watchdog only if the flag is set, and then clear it. A supervisor clears the signs of
+life that it has seen.
 """,
         "TRM system control: watchdog",
+        how="dynamic/static",
     ),
     _rule(
         "epwm-shadow-lost",

@@ -47,6 +47,7 @@ from emulator.c28x.passes.report import StaticFinding, StaticReport
 from emulator.c28x.passes.ring_back import check_ring_back
 from emulator.c28x.passes.search_end import check_searches
 from emulator.c28x.passes.sent_buffers import check_sent_buffers
+from emulator.c28x.passes.signs_of_life import check_signs_of_life
 from emulator.c28x.passes.small_functions import with_small_functions
 from emulator.c28x.passes.spans import check_spans
 from emulator.c28x.passes.stamps import Stamps
@@ -125,6 +126,7 @@ def check(
     check_begun_again(whole, of_whole)
     check_open_integrals(of_whole)
     check_one_sided(whole, of_whole)
+    check_signs_of_life(whole, of_whole)
     check_never_back(modules, reports)  # marks of data belong to their structures
     given = GivenValues(functions)
     check_tables(modules, reports, given)

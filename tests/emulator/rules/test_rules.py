@@ -51,8 +51,8 @@ STATIC = (
             "entrances", "event_masks", "flow", "formats", "fraction_texts", "likes", "lost_writes", "messages",
             "names", "narrow_stamps", "never_back",
             "null_tests", "off_by_one", "one_sided", "only_grows", "published", "quotients", "released", "ring_back",
-            "search_end", "spans", "state_tables", "stated", "states", "stores", "tables", "undone", "unlimited_lines",
-            "unread_inputs", "values", "waiting",
+            "search_end", "signs_of_life", "spans", "state_tables", "stated", "states", "stores", "tables", "undone",
+            "unlimited_lines", "unread_inputs", "values", "waiting",
         )
     ),
     "emulator/c28x/build/", "emulator/c28x/readers/",
