@@ -13,10 +13,11 @@ from typing import Final
 
 from hil.audit.compare.specimen import Specimen
 
-#: A compiled specimen that does not end by then, in valgrind or not, waits for something that a PC does not have.
-TIME_LIMIT_S: Final = 5.0
-#: What a tool gets to read a source, however busy the machine is.
-READING_LIMIT_S: Final = 60.0
+#: A compiled specimen that has not ended after so much CPU time, in valgrind or not, waits for something that a PC does
+#: not have.
+CPU_LIMIT_S: Final = 5
+#: What a command gets, however busy the machine is.
+TIME_LIMIT_S: Final = 60.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +47,9 @@ class Tool:
         for command in self.commands:
             words = [word.format(source=source, program=program) for word in command]
             runs_it = words[-1] == str(program) and "-o" not in words
-            limit_s = TIME_LIMIT_S if runs_it else READING_LIMIT_S
-            if pattern.search(_output(words, folder, self.environment, limit_s)):
+            if runs_it:
+                words = ["sh", "-c", f'ulimit -t {CPU_LIMIT_S}; exec "$@"', "sh", *words]
+            if pattern.search(_output(words, folder, self.environment)):
                 return True
         return False
 
@@ -59,13 +61,11 @@ def versions(tools: Iterable[Tool]) -> dict[str, str]:
     return {program: match[0] if match else "?" for program, match in found.items()}
 
 
-def _output(
-    words: Sequence[str], folder: Path, environment: dict[str, str], limit_s: float = READING_LIMIT_S
-) -> str:  # fmt: skip
+def _output(words: Sequence[str], folder: Path, environment: dict[str, str]) -> str:
     """What a command prints, on both streams, in English."""
     try:
         done = subprocess.run(
-            words, cwd=folder, capture_output=True, text=True, errors="replace", timeout=limit_s,
+            words, cwd=folder, capture_output=True, text=True, errors="replace", timeout=TIME_LIMIT_S,
             env={**os.environ, "LC_ALL": "C", **environment}, stdin=subprocess.DEVNULL,
         )  # fmt: skip
     except subprocess.TimeoutExpired as late:
