@@ -95,8 +95,6 @@ MIN_EDGES: Final = 8
 NO_CHANGE: Final = 3
 #: Value of LOADAMODE: the active register is never loaded from the shadow register.
 FREEZE: Final = 3
-#: A program that reads a counter so often wants to know a time.
-_TIMES: Final = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -922,12 +920,9 @@ class Connections:
     def _time_bases(self) -> None:
         """CPU timers of which the program reads the time, and which stand."""
         for n, timer in enumerate(self._chip.timers):
-            name = f"CpuTimer{n}Regs"
-            reads = [by for _, by in timer.read_standing if by is not None]
-            if timer.used or len(reads) < _TIMES:
-                continue
-            path = self._chip.findings.path(reads[-1].at, reads[-1].calls)
-            if path and self._stuck(f"{name}.TCR", "TSS", lambda stopped: not stopped):
+            name, reader = f"CpuTimer{n}Regs", timer.read_in_vain
+            path = self._chip.findings.path(reader.at, reader.calls) if reader is not None else ()
+            if path and self._stuck(f"{name}.TCR", "TSS", not_):
                 missing = MissingLink(f"{name}.TCR.TSS = 1: it does not count", f"{name}.TCR", "TSS")
                 self._report(path[0], f"{path[0].function} reads {name}.TIM again and again", missing, name)
 
@@ -958,7 +953,7 @@ class Connections:
                 )  # fmt: skip
             elif self._chip.cpu.lines_taken & bit:
                 pass  # the program has stopped it after its last interrupt
-            elif enabled and wanted and self._stuck(f"{name}.TCR", "TSS", lambda stopped: not stopped):
+            elif enabled and wanted and self._stuck(f"{name}.TCR", "TSS", not_):
                 self.silent.add(routine)
                 missing = MissingLink(f"{name}.TCR.TSS = 1: it does not run", f"{name}.TCR", "TSS")
                 self._report(place, f"{routine} waits for CPU timer {n}, which is stopped", missing, name)

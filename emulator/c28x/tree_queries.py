@@ -380,6 +380,18 @@ def gives(s: Stmt) -> tuple[LValue, Expr] | None:
     return None
 
 
+def added(s: Stmt) -> Expr | None:
+    """What a statement adds to its own target (`x += y`); None: it does something else."""
+    match s:
+        case Assign(target=LValue() as target, value=value):
+            match bare(value):
+                case Binary(op="+", left=left, right=right):
+                    match bare(left):
+                        case Load(lvalue=same) if same == target:
+                            return right
+    return None
+
+
 def given_values(body: Iterable[Stmt]) -> Iterator[tuple[LValue, Expr]]:
     """What `gives` finds in statements."""
     return (given for s in statements(body) if (given := gives(s)) is not None)

@@ -58,10 +58,12 @@ class CpuTimer:
         self._tick = 1
         #: The statement that has set the period; None: none.
         self.period_by: Cause | None = None
-        #: Whether it has run for the program, and the first reads of TIM before that: when, and the statements.
-        self.used = False
+        #: Whether it has run for the program; when it was started; the times of the first reads of TIM before that.
+        self._used = False
         self._started: int | None = None
-        self.read_standing: list[tuple[int, Cause | None]] = []
+        self._read_standing: list[int] = []
+        #: The statement that has read TIM again and again, of a timer that has never run for the program.
+        self.read_in_vain: Cause | None = None
         self.reset()
 
     def reset(self) -> None:
@@ -196,11 +198,17 @@ class CpuTimer:
 
     def _read_TIM(self) -> int:
         self._sync()
-        reads = self.read_standing
-        self.used = self.used or self._running()
-        if not self.used and len(reads) < _READS and (not reads or reads[-1][0] != self._clock.now):
-            reads.append((self._clock.now, self._cpu.findings.mark()))
+        if self._running():
+            self._use()
+        elif not self._used and self._clock.now not in self._read_standing[-1:] and self.read_in_vain is None:
+            self._read_standing.append(self._clock.now)
+            if len(self._read_standing) == _READS:
+                self.read_in_vain = self._cpu.findings.mark()
         return self._tim.value
+
+    def _use(self) -> None:
+        """It runs, or has run, for the program."""
+        self._used, self.read_in_vain = True, None
 
     def _write_TIM(self, word: int, lanes: int = ALL) -> None:
         self._sync()
@@ -240,7 +248,7 @@ class CpuTimer:
         running = self._running()
         self._tcr.store(word, lanes & LOW)
         if self._started is not None and self._clock.now - self._started > _MOMENT_CYCLES:
-            self.used = True
+            self._use()
         self._started = None if self._tcr.value & TSS else self._clock.now
         if word & TRB or not self._tcr.value & TIF or self._running() is not running:
             # Else TIF is still the one that was seen: `TCR &= ~TIF` clears nothing.

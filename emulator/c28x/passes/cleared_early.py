@@ -5,7 +5,7 @@
 
 Other functions count the object up, and this one uses it only behind its own clear, in the same block and with nothing
 between that runs other functions.  Reported is a use as a factor, as a dividend, or in a comparison: whoever shows a
-count that was just cleared may mean the 0.
+count that was just cleared may mean the 0, and a loop may wait until it has been counted (`n = 0; while (n < 5);`).
 """
 
 from __future__ import annotations
@@ -14,8 +14,22 @@ from collections.abc import Iterable
 
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.symbols import Module
-from emulator.c28x.tree import Assign, Binary, Compare, Const, Declare, Expr, Function, Load, LValue, Stmt, Variable
-from emulator.c28x.tree_queries import all_blocks, assigned, bare, own_nodes, runs_function, statements
+from emulator.c28x.tree import (
+    Assign,
+    Binary,
+    Compare,
+    Const,
+    Declare,
+    Expr,
+    For,
+    Function,
+    Load,
+    LValue,
+    Stmt,
+    Variable,
+    While,
+)
+from emulator.c28x.tree_queries import added, all_blocks, assigned, bare, own_nodes, runs_function, statements
 
 
 def check_cleared_early(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
@@ -24,7 +38,8 @@ def check_cleared_early(modules: Iterable[Module], reports: dict[Module, StaticR
     for module in modules:
         for function in module.functions:
             for s in statements(function.body):
-                if (variable := _counts_up(s)) is not None:
+                variable = assigned(s) if added(s) is not None else None
+                if variable is not None and variable.kind == "global":
                     counted.setdefault(variable, set()).add(function.path)
     for module, report in reports.items():
         for function in module.functions:
@@ -50,23 +65,11 @@ def _check(function: Function, counts: set[Variable], report: StaticReport) -> N
                         report.report(function, use.where, "cleared-early", message, object=variable.declaration.path)
 
 
-def _counts_up(s: Stmt) -> Variable | None:
-    """The object at file scope to which a statement adds."""
-    match s:
-        case Assign(target=LValue(root=Variable(kind="global") as variable, indices=[]) as target, value=value):
-            match bare(value):
-                case Binary(op="+", left=left):
-                    match bare(left):
-                        case Load(lvalue=same) if same == target:
-                            return variable
-    return None
-
-
 def _use(behind: list[Stmt], variable: Variable) -> Stmt | None:
     """The first statement behind a clear, if nothing runs in between, that computes with the object."""
     for s in behind:
-        if runs_function(s):
-            return None
+        if isinstance(s, While | For) or runs_function(s):
+            return None  # it may wait for the count
         for part in own_nodes(s):
             match part:
                 case Binary(op="*", left=left, right=right) if _is(left, variable) or _is(right, variable):

@@ -15,6 +15,9 @@ Nor is a difference of unsigned numbers, which wraps.
 The assignment has no effect: the test has just found that value.  Reported only where the function tests for the same
 value elsewhere, and leaves it there, and where nothing beside the test gives the object another value: `state = IDLE;`
 in one of several cases says that the state stays.
+
+Comparisons of texts are looked at along `else if`, too (`text-compare`): one that is taken for yes or no, among others
+that are compared with 0.
 """
 
 from __future__ import annotations
@@ -157,7 +160,7 @@ def _finds(s: If) -> _Equal | None:
     return None
 
 
-def _gives(body: list[Stmt], name: str) -> set[float | None]:
+def _given(body: list[Stmt], name: str) -> set[float | None]:
     """What statements assign to an object; None: something else than a constant."""
     return {
         value.value if isinstance(value := bare(s.value), Const) else None
@@ -168,19 +171,19 @@ def _gives(body: list[Stmt], name: str) -> set[float | None]:
 def _check_kept(s: If, found: list[_Equal], function: Function, report: StaticReport) -> None:
     """Report an assignment of the value that the test of its `if` has just found."""
     own = _finds(s)
-    if own is None or _gives(s.otherwise, own.name) or any(_finds(other) for other in _chain(s) if other is not s):
+    if own is None or _given(s.otherwise, own.name) or any(_finds(other) for other in _chain(s) if other is not s):
         return
-    if not any(each.name == own.name and each.value == own.value and _gives(each.at.then, own.name) - {own.value}
+    if not any(each.name == own.name and each.value == own.value and _given(each.at.then, own.name) - {own.value}
                for each in found if each.at is not s):  # fmt: skip
         return
     for inner in s.then:
-        if isinstance(inner, Assign) and _gives([inner], own.name) == {own.value}:
+        if isinstance(inner, Assign) and _given([inner], own.name) == {own.value}:
             assert isinstance(inner.target, LValue)
             text = inner.target.text
             message = f"{text} is {source_text(inner.value)} here already: line {s.test.where.line} has tested it"
             report.report(function, inner.where, "self-assignment", message, object=text)
             return
-        if _gives([inner], own.name) or any(runs_function(each) for each in statements([inner])):
+        if _given([inner], own.name) or any(runs_function(each) for each in statements([inner])):
             return
 
 

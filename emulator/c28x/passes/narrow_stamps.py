@@ -4,7 +4,8 @@
     if (millis - last >= PERIOD_MS) { last = millis; ... }
 
 The difference is one of 32 bits, and `last` has lost the upper ones: from 65536 on it is far too large.  A difference
-that goes to 16 bits again (`(Uint16)(millis - last)`) is right.  The clock is an object that the program counts up.
+that goes to 16 bits again (`(Uint16)(millis - last)`) is right.  The clock is an object that the
+program only counts up: one that it sets back may never need its upper bits.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from emulator.c28x.tree import (
     Assign,
     Binary,
     Call,
+    Const,
     Convert,
     Declare,
     Expr,
@@ -28,7 +30,18 @@ from emulator.c28x.tree import (
     Stmt,
     Variable,
 )
-from emulator.c28x.tree_queries import NamedScalar, bare, given_values, named_scalar, own_nodes, statements
+from emulator.c28x.tree_queries import (
+    NamedScalar,
+    added,
+    addressed,
+    assigned,
+    bare,
+    given_values,
+    named_scalar,
+    own_nodes,
+    statements,
+    within,
+)
 
 #: Clocks: objects, and the paths of functions that return their time.
 _Clocks = set[Variable | str]
@@ -37,7 +50,7 @@ _Clocks = set[Variable | str]
 def check_narrow_stamps(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
     """Report the stamps of a program that keep a part of their clock and are subtracted from all of it."""
     functions = [(function, reports[module]) for module in modules for function in module.functions]
-    clocks: _Clocks = {c for function, _ in functions for s in statements(function.body) if (c := _counted(s))}
+    clocks: _Clocks = set(_counters(function for function, _ in functions))
     clocks |= {function.path for function, _ in functions if clocks and _gives_time(function, clocks)}
     ages: dict[NamedScalar, Stmt] = {}
     for function, _ in functions if clocks else ():
@@ -49,7 +62,7 @@ def check_narrow_stamps(modules: Iterable[Module], reports: dict[Module, StaticR
             match s:
                 case Assign(target=LValue(ctype=IntType(bits=16)) as target, value=value):
                     use = ages.get(stamp) if (stamp := _stamp(target)) is not None else None
-                    if use is not None and (_reads(value, seen) or _steps(target, value)):
+                    if use is not None and (_reads(value, seen) or added(s) is not None):
                         message = (
                             f"{target.text} keeps 16 bits of a time, and line {use.where.line} subtracts it from one "
                             "of 32: the difference is wrong once the time is above 65535"
@@ -76,16 +89,19 @@ def _copies(function: Function, clocks: _Clocks) -> set[Variable]:
     }  # fmt: skip
 
 
-def _counted(s: Stmt) -> Variable | None:
-    """The object of 32 bits at file scope to which a statement adds."""
-    match s:
-        case Assign(target=LValue(root=Variable(kind="global") as clock, indices=[], ctype=IntType(bits=32)) as target):
-            match bare(s.value):
-                case Binary(op="+", left=left):
-                    match bare(left):
-                        case Load(lvalue=same) if same == target:
-                            return clock
-    return None
+def _counters(functions: Iterable[Function]) -> set[Variable]:
+    """The objects of 32 bits at file scope to which statements add constants, and which nothing else changes."""
+    counted: set[Variable] = set()
+    others: set[Variable] = set()
+    for function in functions:
+        others |= addressed(within(function.body))
+        for s in statements(function.body):
+            variable, step = assigned(s), added(s)
+            if variable is not None:
+                (counted if step is not None and isinstance(bare(step), Const) else others).add(variable)
+    return {
+        v for v in counted - others if v.kind == "global" and isinstance(v.ctype, IntType) and v.ctype.bits == 32
+    }  # fmt: skip
 
 
 def _reads(e: Expr, clocks: _Clocks) -> bool:
@@ -103,16 +119,6 @@ def _stamp(lvalue: LValue) -> NamedScalar | None:
     if isinstance(lvalue.root, Variable) and lvalue.indices:
         return lvalue.root, lvalue.words
     return named_scalar(lvalue)
-
-
-def _steps(target: LValue, value: Expr) -> bool:
-    """Whether a statement adds to its target."""
-    match bare(value):
-        case Binary(op="+", left=left):
-            match bare(left):
-                case Load(lvalue=same):
-                    return same == target
-    return False
 
 
 def _ages(s: Stmt, clocks: _Clocks) -> Iterator[NamedScalar]:

@@ -56,7 +56,7 @@ def check_stores(function: Function, report: StaticReport) -> None:
                     if not end.said:
                         only = len(falling) == 1 and ended > LEAST_ENDED
                         told |= _check_fall_through(function, body[:-1], following, report, only=only)
-                        told = told or _check_next_state(function, s, body[:-1], labels, report)
+                        told = told or _check_next_state(function, s, body[:-1], labels or [], following, report)
                         if only and not told and body[:-1]:
                             message = "this case goes on with the next one, and no comment says so; all others end"
                             report.report(function, statements(body[:-1])[-1].where, "case-goes-on", message)
@@ -140,17 +140,19 @@ def _check_fall_through(
 
 
 def _check_next_state(
-    function: Function, switch: Switch, body: list[Stmt], labels: list[int] | None, report: StaticReport
-) -> bool:
-    """Report a case of a state machine that gives a state and goes on with the case of another one."""
+    function: Function, switch: Switch, body: list[Stmt], labels: list[int], following: list[Stmt],
+    report: StaticReport,
+) -> bool:  # fmt: skip
+    """Report a case of a state machine that gives a state, and goes on with the case of another one, which does too."""
     match bare(switch.subject):
-        case Load(lvalue=state) if labels is not None:
+        case Load(lvalue=state) if labels:
             given = [
                 s for s in statements(body)
                 if isinstance(s, Assign) and s.target == state and isinstance(value := bare(s.value), Const)
-                and value.value not in (labels or ())
+                and value.value not in labels
             ]  # fmt: skip
-            if given and state.text:
+            again = any(isinstance(s, Assign) and s.target == state for s in statements(following))
+            if given and again and state.text:
                 message = f"{state.text} becomes {source_text(given[-1].value)}, and this case goes on with the next "
                 message += "one, which is for another state: a break is missing"
                 report.report(function, statements(body)[-1].where, "case-falls", message, object=state.text)

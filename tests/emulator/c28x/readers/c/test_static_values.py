@@ -330,6 +330,8 @@ def test_a_sum_that_gets_what_it_loses(body: str, line: int) -> None:
     ("edges = 0;\nedges++;\nrate = edges * 20;", 0),
     ("edges = 0;\nshow(1);\nrate = edges * 20;", 0), ("rate = edges;\nedges = 0;\nrate = edges * 20;", 0),
     ("edges = 1;\nrate = edges * 20;", 0),
+    # A loop waits until it has been counted.
+    ("edges = 0;\nwhile (edges < 5) ;\nrate = edges * 20;", 0), ("edges = 0;\nwhile (rate && edges < 5) ;", 0),
 ])  # fmt: skip
 def test_a_count_that_is_cleared_before_it_is_used(body: str, line: int) -> None:
     head = "int edges; long rate; void show(int n) { rate = n; }\nvoid count(void) { edges++; }\n"
@@ -354,7 +356,7 @@ void step(void)
 @pytest.mark.parametrize(("body", "told"), [
     ("state = OFF;", True), ("state = ALARM;", False), ("hot = 0;", False),
     ("state = OFF; } /* falls through */ {", False),
-    ("state = OFF; } break; {", False),
+    ("state = OFF; } break; {", False), ("state = WAIT; } hot = 2; {", True),
 ])  # fmt: skip
 def test_a_state_that_goes_on_with_the_case_of_another(body: str, told: bool) -> None:
     assert [line for rule, line in findings_of(MACHINE % body) if rule == "case-falls"] == [7] * told
@@ -379,6 +381,9 @@ void f(int i)
     # The difference has 16 bits too; the stamp is whole, is no time, or is not subtracted from one.
     ("if ((unsigned)(now - seen) > 9)\nseen = now;", 0), ("unsigned age = now - seen;\nif (age > 9) seen = now;", 0),
     ("if (now - whole > 9)\nwhole = now;", 0), ("if (now - jobs[i].period > 9)\njobs[i].last = now;", 0),
+    # A clock that is set back, or set.
+    ("if (now - seen > 9)\nseen = now;\nif (millis > 999) millis = 0;", 0),
+    ("if (now - seen > 9)\nseen = now;\nmillis += i;", 0),
     ("if (whole - seen > 9)\nseen = now;", 0), ("if (now - seen > 9)\nseen = 0;", 0),
 ])  # fmt: skip
 def test_a_stamp_that_is_narrower_than_its_clock(body: str, line: int) -> None:
