@@ -91,6 +91,8 @@ The first time all is well. The second time, the count goes on where it was, or 
 * A difference over some time (`if (ms >= 100) { speed = now - last; last = now; }`) is taken in each pass once the
   count has passed its limit: it is then that of one pass. Here the count may also be a local that its loop only counts
   up.
+* A sum is begun again after a number of values, and their count is not (`if (n == MANY) { mean = sum / n; sum = 0; }`):
+  it happens only once, or with `>=` for each value from then on. Here too the count may be a local of a loop.
 
 The check needs the source of a whole program. It knows counts that every statement only counts up, and flags that every
 statement sets to the same value. Not reported: a count that anything but such tests reads, as a clock is; a limit that

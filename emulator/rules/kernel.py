@@ -409,6 +409,11 @@ It is reported if one statement posts the semaphore several times while it is st
 blocks, and no task that pends on it has a loop behind the pend that would handle everything. A Clock that posts a
 binary semaphore in each period, or a task that sleeps between its posts, loses releases on purpose and is not reported.
 
+It is also reported, though no post was lost in the run, for the binary half of a pair that counts the places of a
+buffer: each post of it is behind a pend on a counting semaphore that began with several places, and each pend on it
+gives back one place. A lost post takes its place with it. Not reported: the task that pends has a higher priority than
+all that post, and waits for nothing else.
+
 **Fix:** a counting semaphore; or one post, and a loop in the task that continues until the queue is empty.
 """, "BIOS, Semaphore, Mode BINARY",
     ),
@@ -426,8 +431,8 @@ not reported: the next one comes.
 """, "TRM SPI, I2C, ADC, DMA: interrupts at the end of what was started",
     ),
     _rule(
-        "event-mask", Severity.WARNING, "A task waits until all events have come, and tests them one by one.", """
-The task wakes up only when the last of the events has come, or after its time-out.
+        "event-mask", Severity.WARNING, "A wait for events whose masks, or whose tests, do not fit them.", """
+The task wakes up only when the last of the events has come; or an event that has come is never handled.
 
 `Event_pend(event, andMask, orMask, timeout)` returns when all bits of `andMask` have been posted, or one of `orMask`.
 Behind a wait for all of them, each bit of the result is set: tests of single bits are always true. The masks are mostly
@@ -435,7 +440,12 @@ exchanged.
 
 It is reported where the result goes to a local, at least two parts of `andMask` are tested, and `orMask` is 0.
 
-**Fix:** give events of which one is enough in the second mask: `Event_pend(event, Event_Id_NONE, EVENTS, timeout)`.
+The wait also takes all the events that have come. In `if (events & TICK) ... else if (events & SECOND) ...` the second
+one is lost whenever both have come. It is reported where both come again and again: a Clock posts them in each of its
+calls, or a routine that reads results of an ADC, and nothing else does. An error or a key may rightly put others aside.
+
+**Fix:** give events of which one is enough in the second mask: `Event_pend(event, Event_Id_NONE, EVENTS, timeout)`;
+test each event with an `if` of its own.
 """, "BIOS, Event_pend: andMask, orMask", how="static",
     ),
     _rule(

@@ -182,7 +182,7 @@ _IN_CONTEXT: Final = {
     **{end: _BY_NAME[end] for end in ("s", "V", "A", "W", "cbar", "dbar", "cV", "cA")}, "C": _BY_NAME["degree Celsius"],
 }  # fmt: skip
 #: The words for `per`: the name of a rate.
-_PER: Final = frozenset(("per", "je", "pro", "por"))
+PER: Final = frozenset(("per", "je", "pro", "por"))
 #: Parts of a unit: how a comment or a name writes them.
 _PARTS: Final = {
     "tenth": 10.0, "tenths": 10.0, "hundredth": 100.0, "hundredths": 100.0, "thousandth": 1000.0,
@@ -219,7 +219,7 @@ def unit_of_name(name: str) -> PhysicalUnit | None:
         whole = part.lower() in _ENDS or part in ("kHz", "MHz", "mHz", "mA", "mC", "dC")
         words += [part] if whole else _HUMPS.findall(part)
     small = [word.lower() for word in words]
-    if not _PER.isdisjoint(small) or not small:
+    if not PER.isdisjoint(small) or not small:
         return None
     if len(written) > 1 and written[-1] in _SPELLED:
         return _SPELLED[written[-1]]
@@ -254,7 +254,7 @@ def unit_in_context(name: str) -> PhysicalUnit | None:
     """The unit that the end of an identifier may state, where another unit shows the quantity; None: none."""
     *before, end = name.split("_")
     unit = _IN_CONTEXT.get(end) or (_IN_CONTEXT.get(end.lower()) if name.isupper() else None)
-    if not before or len(before[-1]) < 2 or _whole_word(before[-1]) is not None or not _PER.isdisjoint(words_of(name)):
+    if not before or len(before[-1]) < 2 or _whole_word(before[-1]) is not None or not PER.isdisjoint(words_of(name)):
         return None  # a rate, or an index of one letter
     return unit
 
@@ -262,7 +262,7 @@ def unit_in_context(name: str) -> PhysicalUnit | None:
 def unit_per(name: str) -> PhysicalUnit | None:
     """The unit of which the name of a factor says how many counts make one: `STEPS_PER_MM`, `PULSE_JE_ML`."""
     words = name.split("_")
-    if len(words) < 3 or words[-2].lower() not in _PER or any(_whole_word(word) is not None for word in words[:-2]):
+    if len(words) < 3 or words[-2].lower() not in PER or any(_whole_word(word) is not None for word in words[:-2]):
         return None
     return _whole_word(words[-1])
 

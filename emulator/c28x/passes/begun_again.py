@@ -1,13 +1,15 @@
 """Static check of counts and flags that are never begun again: `not-begun-again`.
 
 The check needs a whole program (one with a `main`), because it must see all statements.  It knows the integers at file
-scope (and `static` ones) that every statement only counts up, or only sets to one value.  Four uses of them are wrong
+scope (and `static` ones) that every statement only counts up, or only sets to one value.  Five uses of them are wrong
 from the second time on:
 
 * the time in a state, which the program can enter again (`if (stateMs > LIMIT) state = FAULT`);
 * the place where a text ends, in a function that ends one text after the other (`line[length] = 0`);
 * the mark that a buffer was too small, while its index begins again (`if (tooLong || ...) bad++; else ...`);
-* the time without a sign of life after which another count is set back (`if (quiet > LIMIT) length = 0;`).
+* the time without a sign of life after which another count is set back (`if (quiet > LIMIT) length = 0;`);
+* the number of values in a sum that is begun again without it (`if (count == N) { mean = sum / N; sum = 0; }`); here
+  the count may also be a local that an endless loop never sets back.
 
 Clocks (read by any other statement), numbers of events, delays after the start, and faults that are latched are not
 meant: the conditions stand at each use.
@@ -44,15 +46,19 @@ from emulator.c28x.tree import (
     Stmt,
     Switch,
     Variable,
+    While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
+    added,
     addressed,
+    all_blocks,
     assigned,
     bare,
     below,
     blocks,
     called,
     last_loop,
+    leaves,
     own_nodes,
     parts,
     reached,
@@ -60,6 +66,7 @@ from emulator.c28x.tree_queries import (
     runs_function,
     statements,
     within,
+    without_end,
 )
 
 #: Names and comments of flags that are meant to stay.
@@ -82,13 +89,13 @@ class _Program:
         self.reports = reports
         #: The assignments to each object.
         self.writes: dict[Variable, list[Stmt]] = {}
-        taken: set[Variable] = set()
+        self.taken: set[Variable] = set()
         for function in functions:
-            taken |= addressed(within(function.body))
+            self.taken |= addressed(within(function.body))
             for s in statements(function.body):
                 if (variable := assigned(s)) is not None:
                     self.writes.setdefault(variable, []).append(s)
-        plain = [v for v in self.writes if is_number(v) and v not in taken and not v.escapes]
+        plain = [v for v in self.writes if is_number(v) and v not in self.taken and not v.escapes]
         #: Those that are only counted up, and those that are only set to one value which they did not have.
         self.counts = {v for v in plain if all((step_of(s, v) or 0) > 0 for s in self.writes[v])}
         self.flags = {v for v in plain if self._only_set(v)}
@@ -148,6 +155,8 @@ class _Program:
                     self._too_small(s)
                 if isinstance(s, If) and self.counts:
                     self._set_back(function, s)
+            for block, again in _repeated(function):
+                self._sum_alone(function, block, again)
 
     # The time in a state
 
@@ -285,6 +294,39 @@ class _Program:
                     return None
         return found
 
+    # What is summed, and counted
+
+    def _sum_alone(self, function: Function, block: list[Stmt], again: list[Stmt]) -> None:
+        """Report a sum that is begun again after a number of values, but not the count of these.
+
+        `again` is what runs again while the locals of the function live.
+        """
+        sums = {v for s in block if added(s) is not None and (v := assigned(s)) is not None}
+        for s in block if sums else ():
+            count = _reaches(s.test) if isinstance(s, If) and not leaves(s.then) else None
+            if not isinstance(s, If) or count is None or not any(step_of(x, count) == 1 for x in block):
+                continue
+            writes = self.writes[count] if count.kind == "global" else again
+            if count in self.taken or not writes or self._tests(count) > 1:
+                continue  # `if (count < N)` around it: this happens once, and is meant to
+            back = [v for x in s.then if (v := assigned(x)) in sums and v is not count and _begins(x)]
+            only_up = all((step_of(x, count) or 0) > 0 for x in writes if assigned(x) is count)
+            if only_up and back and back[0] is not None:
+                name, total = count.declaration, back[0].declaration.name
+                once = isinstance(s.test, Compare) and s.test.op == "=="
+                later = "only once" if once else "for each value from then on"
+                message = f"nothing begins {name.name} again, though {total} is begun again here: {later}"
+                self.reports[function].report(
+                    function, s.where, "not-begun-again", message, object=name.path, declaration=name,
+                )  # fmt: skip
+
+    def _tests(self, v: Variable) -> int:
+        """The number of comparisons with an object."""
+        return sum(
+            isinstance(p, Compare) and any(_value_of(side) is v for side in (p.left, p.right))
+            for f in self.functions for p in within(f.body)
+        )  # fmt: skip
+
     # The mark that a buffer was too small
 
     def _too_small(self, s: If) -> None:
@@ -317,6 +359,15 @@ class _Program:
                         self.reports[function].report(
                             function, test.where, "not-begun-again", message, object=name.path, declaration=name,
                         )  # fmt: skip
+
+
+def _repeated(function: Function) -> Iterator[tuple[list[Stmt], list[Stmt]]]:
+    """Each list of statements of a function, with what runs again while its locals live: the endless loop around it."""
+    for s in function.body:
+        again = statements(s.body) if isinstance(s, While) and without_end(s) else []
+        for block in all_blocks([s]):
+            yield block, again
+    yield function.body, []
 
 
 def is_number(v: Variable) -> bool:
@@ -362,6 +413,25 @@ def _passed(s: If) -> Iterator[tuple[Variable, list[Stmt]]]:
             yield count, s.then
         elif falls and test is s.test:
             yield count, s.otherwise
+
+
+def _reaches(test: Expr) -> Variable | None:
+    """The integer of any kind that a test finds at or beyond a constant."""
+    match test:
+        case (
+            Compare(op="==" | ">" | ">=", left=side, right=limit)
+            | Compare(op="==" | "<" | "<=", right=side, left=limit)
+        ):
+            return _value_of(side) if constant_of(limit) is not None else None
+    return None
+
+
+def _value_of(e: Expr) -> Variable | None:
+    """The integer of any kind of which an expression is just the value."""
+    match bare(e):
+        case Load(lvalue=LValue(root=Variable(ctype=IntType()) as v, indices=[])):
+            return v
+    return None
 
 
 def _roots_of(e: Any) -> set[Variable]:

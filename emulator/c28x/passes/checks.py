@@ -19,7 +19,7 @@ from emulator.c28x.passes.decided import check_decided
 from emulator.c28x.passes.drained import check_drained
 from emulator.c28x.passes.dropped import check_dropped
 from emulator.c28x.passes.entrances import check_entrances
-from emulator.c28x.passes.event_masks import check_event_masks
+from emulator.c28x.passes.event_masks import check_event_masks, check_lost_events
 from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.fraction_texts import check_fraction_texts
 from emulator.c28x.passes.future_stamps import unreachable_exits
@@ -146,6 +146,7 @@ def check(
         check_lost_writes(sides)
     check_cleared_early(modules, reports)
     check_dropped(modules, reports)
+    check_lost_events(reports)
     check_likes(modules, reports)
     check_messages(modules, reports)
     check_narrow_stamps(modules, reports)

@@ -127,6 +127,7 @@ class KernelWatch:
         """Report what shows at the end of a run: unused gates, and tasks that still wait or wait for ever."""
         self.gates.finish()
         self.standstill.finish()
+        self.lost_posts.finish()
         self.starvation.finish()
         self.waits.finish()
 

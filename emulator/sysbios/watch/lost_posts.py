@@ -3,6 +3,11 @@
 A binary semaphore keeps one post.  Posts beyond it are lost.  This is reported where each post matters: one statement
 posts several times before its thread ends or blocks, and the task does one thing for each pend, without a loop that
 would empty a queue.  A task that posts once in each turn, as it sleeps between them, only says that there is news.
+
+It is also reported where a binary semaphore is the one half of a pair that counts the places of a buffer: it is posted
+only behind a pend on a counting semaphore which began with several places, and each pend on it gives back one of them.
+Places are lost for good as soon as two posts come before the pend.  If the task that pends has the higher priority, and
+waits nowhere else, they cannot.
 """
 
 from __future__ import annotations
@@ -14,10 +19,10 @@ from typing import Final, NamedTuple
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked
 from emulator.c28x.tree import Call, For, Function, Stmt, While
-from emulator.c28x.tree_queries import blocks, own_nodes, statements
+from emulator.c28x.tree_queries import all_blocks, blocks, own_nodes, statements
 from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.watch.calls import Calls
-from emulator.sysbios.watch.names import HandleNames, first_argument
+from emulator.sysbios.watch.names import HandleNames, calls_before, first_argument
 from emulator.sysbios.watch.statements import Call as RunningCall
 from emulator.sysbios.watch.statements import StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import Thread, ThreadWatch
@@ -55,13 +60,26 @@ class LostPosts:
         #: How often each thread has called a function that may block.
         self._blocked: Counter[Thread] = Counter()
         self._reported: set[Semaphore] = set()
+        #: The count of each semaphore when it was first used.
+        self._began: dict[Semaphore, int] = {}
+        #: The highest level from which each semaphore was posted.
+        self._level: dict[Semaphore, int] = {}
+        #: How often each thread has pended on each semaphore.
+        self._taken: dict[Semaphore, Counter[Thread]] = {}
         calls.before("Semaphore_post", callback=self._posting)
+        calls.before("Semaphore_pend", callback=self._pending)
         calls.before(*_BLOCKING, callback=self._blocking)
 
     def _blocking(self, *_arguments: object) -> None:
         self._blocked[self._threads.current] += 1
 
+    def _pending(self, semaphore: Semaphore, _timeout: int) -> None:
+        self._began.setdefault(semaphore, semaphore.count)
+        self._taken.setdefault(semaphore, Counter())[self._threads.current] += 1
+
     def _posting(self, semaphore: Semaphore) -> None:
+        self._began.setdefault(semaphore, semaphore.count)
+        self._level[semaphore] = max(self._level.get(semaphore, 0), self._threads.current.level)
         if not semaphore.mode & _BINARY:
             return
         statement = self._locator.here()
@@ -85,6 +103,47 @@ class LostPosts:
                 how="dynamic",
             )  # fmt: skip
 
+    def finish(self) -> None:
+        """Report binary semaphores that should count, beside others that count the places of a buffer."""
+        for semaphore, (post, _) in self._last.items():
+            place = self._locator.place(post.statement)
+            if place is None or semaphore in self._reported or not self._names.whole or self._is_prompt(semaphore):
+                continue
+            for places, count in self._began.items():
+                if count > 1 and not places.mode & _BINARY and self._are_pair(semaphore, places):
+                    name, other = self._names.of(semaphore), self._names.of(places)
+                    self._findings.report_at(
+                        place, "post-lost", f"{name} is a binary semaphore, and {other} lets {count} posts come here "
+                        f"before one is taken: each post that is lost takes a place of {other} with it", object=name,
+                        how="dynamic",
+                    )  # fmt: skip
+                    break
+
+    def _is_prompt(self, semaphore: Semaphore) -> bool:
+        """Whether what pends on a semaphore runs at once after each post of it: it has the priority, and waits here."""
+        takers = self._taken.get(semaphore, Counter[Thread]())
+        return all(t.level > self._level[semaphore] and self._blocked[t] == pends for t, pends in takers.items())
+
+    def _are_pair(self, semaphore: Semaphore, places: Semaphore) -> bool:
+        """Whether each post of `semaphore` is behind a pend on `places`, and each pend on it gives one place back."""
+        posts, pends = self._names.objects(semaphore), self._names.objects(places)
+        given = taken = False
+        for function in self._names.functions:
+            for call, before in calls_before(function.body, "Semaphore_post", "Semaphore_pend"):
+                match first_argument(call):
+                    case None:
+                        return False
+                    case path if path in posts:
+                        given = True
+                        if not any(first_argument(pend) in pends for pend in before):
+                            return False
+                    case path if path in pends:
+                        taken = True
+                        on_it = [pend for pend in before if first_argument(pend) in posts]
+                        if not on_it or not _beside(function.body, call, on_it[-1]):
+                            return False
+        return given and taken
+
     def _pends(self) -> Iterator[tuple[str | None, bool]]:
         """The pends of the source: the object that holds the semaphore, and whether a loop may take several things."""
         own = {
@@ -101,6 +160,14 @@ def _in(body: list[Stmt], around: Stmt | None, own: dict[str, Function]) -> Iter
                 yield first_argument(call), around is None or _loops(around, own)
         for block in blocks(statement):
             yield from _in(block, statement if isinstance(statement, While | For) else around, own)
+
+
+def _beside(body: list[Stmt], one: Call, other: Call) -> bool:
+    """Whether two calls are in the statements of one block, so that both run equally often."""
+    return any(
+        {id(one), id(other)} <= {id(part) for statement in block for part in own_nodes(statement)}
+        for block in all_blocks(body)
+    )
 
 
 def _loops(loop: Stmt, own: dict[str, Function]) -> bool:

@@ -9,7 +9,7 @@ from emulator.c28x.ctypes import ArrayType, CType, StructType
 from emulator.c28x.link import Linked
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Call, Const, Convert, Evaluate, Function, FunctionRef, Load, LValue, Stmt, Variable
-from emulator.c28x.tree_queries import bare, different, parts, statements, within
+from emulator.c28x.tree_queries import bare, blocks, different, own_nodes, parts, statements, within
 
 #: Paths of file-scope objects.  None stands for objects that the source does not name.
 Paths = set[str | None]
@@ -167,6 +167,20 @@ class HandleNames:
 def calls(body: list[Stmt]) -> Iterator[Call]:
     """The calls in a function's body."""
     return (part for part in within(body) if isinstance(part, Call))
+
+
+def calls_before(body: list[Stmt], name: str, earlier: str) -> Iterator[tuple[Call, list[Call]]]:
+    """The calls of `name`, each with the calls of `earlier` that come before it in its block or in those around it."""
+
+    def inside(block: list[Stmt], before: list[Call]) -> Iterator[tuple[Call, list[Call]]]:
+        for s in block:
+            own = [node for node in own_nodes(s) if isinstance(node, Call)]
+            yield from ((call, before) for call in own if call.function.name == name)
+            before = before + [call for call in own if call.function.name == earlier]
+            for inner in blocks(s):
+                yield from inside(inner, before)
+
+    return inside(body, [])
 
 
 def first_argument(call: Call) -> str | None:

@@ -11,15 +11,12 @@ ended by a post.  Part of a program, without its `main`, gets no such finding: t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import partial
 from typing import Any, Final
 
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked
 from emulator.c28x.sites import Place
-from emulator.c28x.tree import Call, Stmt
-from emulator.c28x.tree_queries import blocks, own_nodes
 from emulator.sysbios.clock import ClockObject
 from emulator.sysbios.core import WAIT_FOREVER
 from emulator.sysbios.event import Event
@@ -28,7 +25,7 @@ from emulator.sysbios.semaphore import Semaphore
 from emulator.sysbios.swi import Swi
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
-from emulator.sysbios.watch.names import HandleNames, first_argument
+from emulator.sysbios.watch.names import HandleNames, calls_before, first_argument
 from emulator.sysbios.watch.posters import Posters
 from emulator.sysbios.watch.statements import StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import Gate, Thread, ThreadWatch
@@ -267,7 +264,7 @@ class Standstill:
         paths = {what: self._names.objects(what) for what in waited}
         bodies = {function.path: function.body for function in self._names.functions}
         for path in self._names.callers("Semaphore_post", semaphore):
-            for post, before in _calls_before(bodies[path], "Semaphore_post", "Semaphore_pend"):
+            for post, before in calls_before(bodies[path], "Semaphore_post", "Semaphore_pend"):
                 if first_argument(post) not in {None, *paths[semaphore]}:
                     continue
                 of = {first_argument(wait) for wait in before}
@@ -320,17 +317,3 @@ class Standstill:
             f"post {awaited}, waits for {held}: neither runs again", object=held, how="dynamic", task=consumer.name,
             details=(f"{producer} waits in {self._locator.text(self._gates.statement(producer))}",),
         )  # fmt: skip
-
-
-def _calls_before(body: list[Stmt], name: str, earlier: str) -> Iterator[tuple[Call, list[Call]]]:
-    """The calls of `name`, each with the calls of `earlier` that come before it in its block or in those around it."""
-
-    def inside(block: list[Stmt], before: list[Call]) -> Iterator[tuple[Call, list[Call]]]:
-        for s in block:
-            own = [node for node in own_nodes(s) if isinstance(node, Call)]
-            yield from ((call, before) for call in own if call.function.name == name)
-            before = before + [call for call in own if call.function.name == earlier]
-            for inner in blocks(s):
-                yield from inside(inner, before)
-
-    return inside(body, [])

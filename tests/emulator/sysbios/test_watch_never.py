@@ -324,6 +324,37 @@ def test_semaphores_that_are_posted_only_behind_each_other_are_told(
     assert in_a_ring(tmp_path, text) == found
 
 
+#: The half of the ring that counts what is used keeps one post only.
+BINARY = """Semaphore_Params one;
+    Semaphore_Params_init(&one);
+    one.mode = Semaphore_Mode_BINARY;
+    used = Semaphore_create(0, &one, NULL);"""
+PROMPT = {"Task_create(writer, &t, NULL);": "Task_create(writer, &t, NULL);\n t.priority = 3;"}
+
+
+@pytest.mark.parametrize(("changes", "found"), [
+    ({}, True), (PROMPT, True), ({"Taken = Slots[Got];": "Taken = Slots[Got];\n Task_sleep(3);"}, True),
+    # One place: there is never more than one post.
+    ({"create(4": "create(1"}, False),
+    # The reader empties the ring for each post; the writer posts without a place.
+    ({"        Semaphore_post(unused);": "while (Taken > 0) { Taken--; Semaphore_post(unused); }"}, False),
+    ({"    if (!Semaphore_pend(unused, 5)) {\n        return;\n    }\n": ""}, False),
+    # The reader runs at once after each post, and waits for nothing else.
+    ({**PROMPT, "        Semaphore_pend(lock, BIOS_WAIT_FOREVER);\n        Taken": "        Taken",
+      "        Semaphore_post(lock);\n        Sem": "        Sem"}, False),
+])  # fmt: skip
+def test_a_binary_semaphore_beside_one_that_counts_places_is_told(
+    tmp_path: Path, changes: dict[str, str], found: bool
+) -> None:
+    text = RING.replace("used = Semaphore_create(0, NULL, NULL);", BINARY)
+    for was, now in changes.items():
+        assert text.count(was) == 1
+        text = text.replace(was, now)
+    assert in_a_ring(tmp_path, text) == [("post-lost", "Semaphore_post(used);", 0)] * found
+    if not changes:
+        assert in_a_ring(tmp_path, RING) == []
+
+
 EVENTS = """#include <xdc/std.h>
 #include <ti/sysbios/BIOS.h>
 #include <ti/sysbios/knl/Event.h>
@@ -364,3 +395,81 @@ def test_events_that_must_all_come_and_are_tested_one_by_one_are_told(
     (tmp_path / "drv.c").write_text(text, encoding="utf-8")
     checked = check_files(DriverFiles([tmp_path / "drv.c"], calls=0, board=load("bare"), seconds=0.001))
     assert [f.place.line for f in checked.findings if f.rule == "event-mask" and f.place] == [13] * found
+
+
+#: A task of three sources: two Clocks, and a key.
+SOURCES = """#include <xdc/std.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/knl/Clock.h>
+#include <ti/sysbios/knl/Event.h>
+#include <ti/sysbios/knl/Task.h>
+#define FAST Event_Id_00
+#define SLOW Event_Id_01
+#define KEY Event_Id_02
+Event_Handle event;
+Int Fasts, Slows, Keys;
+Void fast(UArg a) { Event_post(event, FAST); }
+Void slow(UArg a) { Event_post(event, SLOW); }
+Void key(UArg a) { if (Slows == 9) Event_post(event, KEY); }
+static Void every(Clock_FuncPtr f, UInt ticks)
+{
+    Clock_Params c;
+    Clock_Params_init(&c);
+    c.period = ticks;
+    c.startFlag = TRUE;
+    Clock_create(f, ticks, &c, NULL);
+}
+Void machine(UArg a, UArg b)
+{
+    for (;;) {
+        UInt events = Event_pend(event, Event_Id_NONE, FAST | SLOW | KEY, BIOS_WAIT_FOREVER);
+        if (events & KEY) {
+            Keys++;
+        }
+        if (events & FAST) {
+            Fasts++;
+        }
+        else if (events & SLOW) {
+            Slows++;
+        }
+    }
+}
+Int main(Void)
+{
+    Task_Params t;
+    event = Event_create(NULL, NULL);
+    every(fast, 2);
+    every(slow, 10);
+    every(key, 7);
+    Task_Params_init(&t);
+    Task_create(machine, &t, NULL);
+    BIOS_start();
+    return 0;
+}
+"""
+
+
+@pytest.mark.parametrize(("changes", "found"), [
+    ({}, True), ({"if (events & FAST)": "if ((events & FAST) == FAST)"}, True),
+    ({"every(slow, 10);": "Clock_create(slow, 10, NULL, NULL);"}, True),
+    # Both are looked at.
+    ({"else if (events & SLOW)": "if (events & SLOW)"}, False),
+    # A key that comes now and then may rightly come first, and what is put aside may be posted again.
+    ({"if (events & FAST)": "if (events & KEY)", "if (events & KEY)": "if (events & FAST)"}, False),
+    ({"Slows == 9) Event_post(event, KEY)": "Slows == 9) Event_post(event, SLOW)"}, False),
+    # The bits that were not looked at are kept.
+    ({"UInt events =": "static UInt events = 0; events = events |"}, False),
+    ({"if (events & FAST)": "if (events & (FAST | KEY))"}, False),
+])  # fmt: skip
+def test_a_regular_event_that_another_one_hides_is_told(
+    tmp_path: Path, changes: dict[str, str], found: bool
+) -> None:
+    text = SOURCES
+    for was, now in changes.items():
+        assert text.count(was) >= 1
+        text = text.replace(was, now, 1)
+    (tmp_path / "drv.c").write_text(text, encoding="utf-8")
+    checked = check_files(DriverFiles([tmp_path / "drv.c"], calls=0, board=load("bare"), seconds=0.001))
+    lines = text.splitlines()
+    at = [lines[f.place.line - 1].strip() for f in checked.findings if f.rule == "event-mask" and f.place]
+    assert at == ["else if (events & SLOW) {"] * found

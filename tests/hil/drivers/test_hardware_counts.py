@@ -90,6 +90,8 @@ def test_turns_a_second_for_turns_a_minute_are_a_note(tmp_path: Path) -> None:
     ("CYCLES_PER_US 100UL", "other = cap / CYCLES_PER_US;", "100"),
     ("TICKS_PER_MS 150000UL", "other = cap * 10 / TICKS_PER_MS;", "150"),
     ("TIMER_HZ 100000000.0f", "seconds = cap / TIMER_HZ;", "100"),
+    ("TAKTE_PRO_US 100UL", "other = cap / TAKTE_PRO_US;", "100"),
+    ("CICLOS_POR_MS 150000UL", "other = cap * 10 / CICLOS_POR_MS;", "150"),
     ("SYSCLK_MHZ 100", "other = (cap >> 1) + cap / SYSCLK_MHZ;", "100"),
     ("CPU_HZ 90000000UL", "if (cap > 0) other = 60 * CPU_HZ / cap;", "90"),
 ])  # fmt: skip
@@ -108,6 +110,8 @@ def test_a_constant_that_states_another_clock_is_told(tmp_path: Path, define: st
     # Half of a path, or a part of it; another factor; no time; other values too.
     ("pulse_us = cap / (HALF * CYCLES_PER_US); pulse_us = cap / 400;", {}),
     ("other = cap * CUBES_PER_US; other = cap / GAP_US;", {"define": "CUBES_PER_US 3"}),
+    ("other = cap * WEG_PRO_US; other = cap / GAP_US;", {"define": "WEG_PRO_US 3"}),
+    ("other = cap / TAKTE_PRO_US;", {"define": "TAKTE_PRO_US 200UL"}),
     ("if (Mixed > GAP_US) Long++;", {}),
     ("other = Long / CYCLES_PER_US;", {"define": "CYCLES_PER_US 100UL"}),
     # Turns a minute; rates; a wheel with four pulses, one with sixty teeth.

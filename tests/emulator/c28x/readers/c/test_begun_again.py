@@ -211,3 +211,51 @@ def test_a_count_that_is_set_back_in_each_pass_is_told(old: str) -> None:
 ])  # fmt: skip
 def test_a_count_that_is_set_back_now_and_then_is_silent(old: str, taken: str) -> None:
     assert told(CODE.format(taken=taken, old=old)) == []
+
+
+MEAN = """typedef unsigned int Uint16;
+Uint16 Reading = 0, Shown = 0;
+static Uint16 number = 0;
+static unsigned long total = 0;
+static void Take(Uint16 value)
+{{
+    {take}
+}}
+int main(void)
+{{
+    Uint16 turns = 0;
+    unsigned long all = 0;
+    for (;;) {{ Take(Reading); {turn} }}
+}}
+"""
+FULL = "total += value; number++; if (number {} 8) {{ Shown = total / 8; total = 0; {} }}"
+LOCAL = "all += Reading; turns++; if (turns == 10) {{ Shown = all / 10; all = 0; {} }} {}"
+
+
+@pytest.mark.parametrize(("take", "turn"), [
+    (FULL.format("==", ""), ""), (FULL.format(">=", "Reading++;"), ""), ("", LOCAL.format("", "")),
+    ("number++; total = total + value; if (8 <= number) { total = 0; Shown++; }", ""),
+])  # fmt: skip
+def test_a_sum_that_is_begun_again_without_its_count_is_told(take: str, turn: str) -> None:
+    (line,) = told(MEAN.format(take=take, turn=turn))
+    assert line in (take, f"for (;;) {{ Take(Reading); {turn} }}")
+
+
+@pytest.mark.parametrize(("take", "turn"), [
+    (FULL.format("==", "number = 0;"), LOCAL.format("turns = 0;", "")),
+    # The count is begun again elsewhere, or goes round.
+    (FULL.format("==", ""), "if (Reading > 9) number = 0;"), ("", LOCAL.format("", "if (Shown) turns = 0;")),
+    (FULL.format("==", "").replace("number++", "number = (number + 1) % 9"), ""),
+    # It happens once, and is meant to: the first values are summed, and no others.
+    ("if (number < 8) { " + FULL.format("==", "") + " }", ""),
+    ("if (number >= 8) return; " + FULL.format("==", ""), ""),
+    ("number++; if (number == 8) { Shown = total; total = 0; } else total += value;", ""),
+    # The loop ends, or each call begins with a count of its own.
+    ("", LOCAL.format("break;", "")),
+    ("Uint16 n; for (n = 0; n < 9; n++) { total += value; if (n == 8) { Shown = total; total = 0; } }", ""),
+    # No sum: what is set back is only counted elsewhere, or given a value.
+    ("number++; if (number == 8) { Shown = 1; total = 0; }", "total++;"),
+    ("number++; total = value; if (number == 8) { Shown = 1; total = 0; }", ""),
+])  # fmt: skip
+def test_a_sum_with_its_count_or_of_the_first_values_is_silent(take: str, turn: str) -> None:
+    assert told(MEAN.format(take=take, turn=turn)) == []
