@@ -402,6 +402,18 @@ unused than it uses.
         how="static",
     ),
     _rule(
+        "no-hysteresis", Severity.WARNING, "The two limits that a hysteresis should part are one.", """
+The output chatters: it is switched on and off at the same value.
+
+A function compares a value with the same limit in both directions, in two tests:
+`if (celsius < SET - HYST) heater = 1;` and `if (celsius > SET - HYST) heater = 0;`. That can be right, but here the
+limit is a sum or a difference with a constant or an object that its name calls a hysteresis or a dead band.
+
+**Fix:** the other sign in one of the two limits.
+""",
+        how="static",
+    ),
+    _rule(
         "step-away", Severity.WARNING, "A value that follows another one steps away from it.", """
 A ramp or a limiter runs away: once its target is on one side, each step increases the distance.
 
