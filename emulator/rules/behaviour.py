@@ -249,17 +249,21 @@ A pulse, a distance or a time-out is wrong by one factor: the counter counts fas
 The value is a count of a CPU timer (`CpuTimer1Regs.TIM`), of an eCAP (`ECap1Regs.CAP2`), of the capture unit of an eQEP
 (`EQep1Regs.QCPRD`), or a difference of such counts, also through objects, parameters and functions. How long a count
 lasts, the registers say at the end of the run: the prescaler of the timer or of an eQEP's capture unit, SYSCLK for an
-eCAP, TBCLK for an ePWM. Four uses are reported:
+eCAP, TBCLK for an ePWM. Five uses are reported:
 
 * the count goes where a name or a comment states a time (`width > GAP_US`), and a count does not last so long;
 * it is divided by, or multiplied with, a constant whose name says how fast the counter counts (`CYCLES_PER_US`,
   `TICKS_PER_MS`, `TIMER_HZ`), and it counts with another frequency;
 * a number divided by it goes where a name states a rate that is wrong by 1000 or more;
 * a time by its name goes as it is to a register that makes a time of a count, and a count lasts another time:
-  `CMPA`, `TBPRD`, `DBRED` of an ePWM, `PRD` of a timer, `CAP1` of an eCAP (`EPwm1Regs.CMPA.bit.CMPA = pulse_us`).
+  `CMPA`, `TBPRD`, `DBRED` of an ePWM, `PRD` of a timer, `CAP1` of an eCAP (`EPwm1Regs.CMPA.bit.CMPA = pulse_us`);
+* a period is made of an object and of a constant whose name says how fast the counter counts (`PRD = SYSCLK_HZ / speed -
+  1`, `TBPRD = period_us * TBCLK_MHZ`), and it counts with another frequency.
 
-Nothing is reported about a counter that stands, an eCAP that prescales its edges, an object that holds other values
-too, or another factor: half of an echo is a distance, too.
+Nothing is reported about a counter that stands and that no statement starts, an eCAP that prescales its edges, an
+object that holds other values too, or another factor: half of an echo is a distance, too. Nor is a period that counts
+up and down, one with several clocks, or one of an object without a unit that may be in tenths or have bits of a
+fraction: there a prescaler of 10 or of 256 can be meant.
 
 **Fix:** compute the prescaler or the constant from SYSCLK, which has 200 MHz.
 """,

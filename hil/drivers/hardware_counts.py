@@ -4,7 +4,8 @@
     uint32_t width = now - last;                // so is the difference of two of them
 
 Which values those are, the source says (`HardwareCounts`).  How long one lasts, the registers say at the end of a run
-(`tick_seconds`).  The same holds for the registers that make a time of a count (`TimeRegister`).
+(`tick_seconds`).  The same holds for the registers that make a time of a count (`TimeRegister`).  A CPU timer that the
+program starts may stand at the end: a motor then waits for its next move.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from emulator.c28x.ctypes import FloatType, IntType
 from emulator.c28x.passes.stamps import Key, Stamps, key_of
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
+    Assign,
     Binary,
     Call,
     Conditional,
@@ -28,7 +30,7 @@ from emulator.c28x.tree import (
     RegisterRef,
     Unary,
 )  # fmt: skip
-from emulator.c28x.tree_queries import bare
+from emulator.c28x.tree_queries import bare, own_nodes, statements
 from emulator.chip import Chip
 from emulator.clock import SYSCLK_HZ
 from emulator.peripherals.cpu_timer import TSS
@@ -62,6 +64,8 @@ _SETTERS: Final = {
     "EPWM_setFallingEdgeDelayCount": ("EPwm", "DBFED"), "ECAP_setAPWMPeriod": ("ECap", "CAP1"),
     "ECAP_setAPWMCompare": ("ECap", "CAP2"),
 }  # fmt: skip
+#: Functions of driverlib that start a CPU timer.
+_STARTS: Final = frozenset({"CPUTimer_startTimer", "CPUTimer_resumeTimer"})
 #: Something else than a count.
 OTHER: Final = ""
 _ECCTL1_PRESCALE: Final = 0x3E00
@@ -150,7 +154,7 @@ class TimeRegister(NamedTuple):
     counter: str
     name: str
 
-    def tick_seconds(self, chip: Chip) -> float | None:
+    def tick_seconds(self, chip: Chip, started: frozenset[str]) -> float | None:
         """How long one count of it lasts, in seconds; None: its counter stands, or it makes another time.
 
         Up and down, a compare value is half of a pulse, or of a pause.
@@ -161,7 +165,7 @@ class TimeRegister(NamedTuple):
             of_band = self.name in ("DBRED", "DBFED")
             if mode == STOPPED or (of_band and field(band, DBCTL.HALFCYCLE)) or (mode == UP_DOWN and not of_band):
                 return None
-        return tick_seconds(chip, self.counter)
+        return tick_seconds(chip, self.counter, started)
 
 
 def time_register(register: RegisterRef) -> TimeRegister | None:
@@ -186,11 +190,32 @@ def set_by_call(function: Function, arguments: list[Expr]) -> TimeRegister | Non
     return TimeRegister(counter, name) if counter else None
 
 
-def tick_seconds(chip: Chip, counter: str) -> float | None:
-    """How long one count lasts, in seconds; None: the counter stands, or counts something else."""
+def started_timers(modules: Iterable[Module]) -> frozenset[str]:
+    """The CPU timers that statements of a program start; one of them may only pause at the end of the run."""
+    found: set[str] = set()
+    for s in (s for module in modules for function in module.functions for s in statements(function.body)):
+        match s:
+            case Assign(target=RegisterRef(block=block, register="TCR", field=part), value=value):
+                given = bare(value)
+                starts = isinstance(given, Const) and not int(given.value) & (TSS if part is None else 1)
+                if starts and (part is None or part.name == "TSS"):
+                    found.add(block.removesuffix("Regs"))
+        for p in own_nodes(s):
+            if isinstance(p, Call) and p.function.name in _STARTS and p.arguments:
+                address = bare(p.arguments[0])
+                if isinstance(address, Const) and isinstance(address.value, int):
+                    found.add(counter_at("CpuTimer", address.value))
+    return frozenset(found)
+
+
+def tick_seconds(chip: Chip, counter: str, started: frozenset[str] = frozenset()) -> float | None:
+    """How long one count lasts, in seconds; None: the counter stands, or counts something else.
+
+    `started`: timers that count whether they stand now or not.
+    """
     block = f"{counter}Regs"
     if counter.startswith("CpuTimer"):
-        if chip.register(block, "TCR").value & TSS:
+        if chip.register(block, "TCR").value & TSS and counter not in started:
             return None
         if counter == "CpuTimer2" and chip.register("CpuSysRegs", "TMR2CLKCTL").value:
             return None

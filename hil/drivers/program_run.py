@@ -23,6 +23,7 @@ from hil.drivers.face_zero import FaceZeros
 from hil.drivers.identities import wrong_identities
 from hil.drivers.least_pulses import swallowed_pulses
 from hil.drivers.other_messages import OTHERS, OtherMessages, other_messages
+from hil.drivers.period_clocks import misreckoned_periods
 from hil.drivers.periods import RoutinePeriods, wrong_periods, wrong_timers
 from hil.drivers.places import anchored, mentions_gyro, of_open_trip, of_unused_part
 from hil.drivers.roles import Roles
@@ -270,7 +271,8 @@ def _run(
     told = (
         *((*wrong_periods(build.modules, routines.periods()), *times.wrong()) if known else ()), *scales.wrong(),
         *zeros.wrong(),
-        *(misread_counts(build.modules, tick_us, image.board) if known else ()),
+        *((*misread_counts(build.modules, tick_us, image.board),
+           *misreckoned_periods(build.modules, image.board)) if known else ()),
         *wrong_rates(build.modules, image.board, tick_us, peer_known=board_named),
         *wrong_timers(build.modules, image.board),
         *swallowed_pulses(build.modules, image.board),

@@ -64,7 +64,14 @@ from emulator.c28x.tree_queries import assigned, bare, own_nodes, parts, roots, 
 from emulator.chip import Chip
 from hil.drivers.clock_names import clock_by_name, factors
 from hil.drivers.counted import counted
-from hil.drivers.hardware_counts import HardwareCounts, TimeRegister, set_by_call, tick_seconds, time_register
+from hil.drivers.hardware_counts import (
+    HardwareCounts,
+    TimeRegister,
+    set_by_call,
+    started_timers,
+    tick_seconds,
+    time_register,
+)
 from hil.drivers.raw_values import RawValues
 from hil.drivers.stated_units import (
     Measured,
@@ -161,7 +168,7 @@ def mixed_units(modules: Iterable[Module], tick_us: int) -> list[UnitMismatch]:
 def misread_counts(modules: Iterable[Module], tick_us: int, chip: Chip) -> list[UnitMismatch]:
     """The places where counts of the chip's counters are taken for what they are not, after a run of the program."""
     modules = list(modules)
-    units = _Units(modules, tick_us, _Counters(HardwareCounts(modules), chip))
+    units = _Units(modules, tick_us, _Counters(HardwareCounts(modules), chip, started_timers(modules)))
     return [found for found in _of_all(units, modules) if found.rule in ("count-by-name", "turns-by-name")]
 
 
@@ -173,16 +180,17 @@ def _of_all(units: _Units, modules: list[Module]) -> list[UnitMismatch]:
 class _Counters:
     """The units of counts: what one of them lasts is what the registers say now."""
 
-    def __init__(self, counts: HardwareCounts, chip: Chip) -> None:
+    def __init__(self, counts: HardwareCounts, chip: Chip, started: frozenset[str]) -> None:
         self._counts = counts
         self._chip = chip
+        self._started = started
         self._units: dict[str, Measured | None] = {"": None}
 
     def unit_of(self, e: Expr) -> Measured | None:
         """The unit of a count; None: the value is none, or the counter stands."""
         counter = self._counts.counter_of(e)
         if counter not in self._units:
-            tick = tick_seconds(self._chip, counter)
+            tick = tick_seconds(self._chip, counter, self._started)
             self._units[counter] = None
             if tick is not None:
                 name = f"counts of {tick * 1e9:g} ns of {counter}"
@@ -191,7 +199,7 @@ class _Counters:
 
     def unit_of_time(self, register: TimeRegister | None) -> Measured | None:
         """The unit in which a register makes a time of a count; None: it makes none."""
-        tick = register.tick_seconds(self._chip) if register is not None else None
+        tick = register.tick_seconds(self._chip, self._started) if register is not None else None
         if register is None or tick is None:
             return None
         name = f"counts of {tick * 1e9:g} ns"

@@ -166,6 +166,10 @@ def told_of_a_servo(folder: Path, *, set: str = PLAIN, use: str = "", divider: i
      "dead_ns is in ns by its name, DBRED of EPwm1 in counts of 10 ns"),
     ({"set": "", "use": "CpuTimer1Regs.PRD.all = wanted_us;"},
      "wanted_us is in us by its name, PRD of CpuTimer1 in counts of 5 ns"),
+    # A timer that pauses at the end, as between two moves of a motor.
+    ({"set": "CpuTimer1Regs.TCR.bit.TSS = 1; CpuTimer1Regs.PRD.all = us - 1;",
+      "use": "CpuTimer1Regs.TCR.all = 0x4000; StopCpuTimer1();"},
+     "us - 1 is in us by its name, PRD of CpuTimer1 in counts of 5 ns"),
 ])  # fmt: skip
 def test_a_time_that_goes_to_a_register_as_it_is_is_told(tmp_path: Path, given: dict[str, Any], message: str) -> None:
     start = "InitCpuTimers(); StartCpuTimer1(); " if "CpuTimer1" in message else ""
@@ -181,6 +185,10 @@ def test_a_time_that_goes_to_a_register_as_it_is_is_told(tmp_path: Path, given: 
     # Up and down, a pulse is twice as long; a counter that stands makes none.
     {"mode": 2}, {"mode": 3},
     {"set": "CpuTimer1Regs.TCR.bit.TSS = 1; CpuTimer1Regs.PRD.all = us;"},
+    {"set": "CpuTimer1Regs.TCR.all = 0x4010; CpuTimer1Regs.PRD.all = us;", "use": "StartCpuTimer0();"},
+    # A timer that pauses, and of which a count is a microsecond.
+    {"set": "CpuTimer1Regs.TPR.all = 199; CpuTimer1Regs.PRD.all = us - 1;",
+     "use": "StartCpuTimer1(); StopCpuTimer1();"},
     # The bits of the high resolution are no count; nor is another field.
     {"set": "EPwm1Regs.CMPA.all = (Uint32)us << 16;"}, {"set": "EPwm1Regs.CMPA.bit.CMPAHR = us;"},
     {"set": "EPwm1Regs.ETPS.bit.INTPRD = us;"},
