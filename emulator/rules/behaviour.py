@@ -278,6 +278,8 @@ set it:
 
 * a comment there, or beside a definition that the value uses (`// 200 MHz / 25000 = 8 kHz`, `/* 1 ms */`): what is
   behind the last `=` counts;
+* a comment beside or above the definition of the period that says how long its counts last (`// 62500 counts are 20 ms
+  (50 Hz)`), or how long a period does (`20 ms per period`);
 * the name of a constant from which the count is computed (`TBCLK_HZ / CARRIER_HZ - 1`, `PERIOD_US * 200`).
 
 So is the bit rate of an SCI with a comment beside the statements that set `SCIHBAUD` and `SCILBAUD`, above them, or
@@ -296,7 +298,7 @@ A call of `SCI_setConfig` or `SPI_setConfig` is reported if it is told another f
 
 A period is reported if the two rates differ by a power of two or of ten. Every rate of the ePWM counts: that of its
 counter, its interrupts, its triggers (every third event, both ends of the period), and of a pin that toggles.
-Comments about counts, pulses, limits or delays are not meant, nor a period that two statements set, nor a count with a
+Comments about other counts, pulses, limits or delays are not meant, nor a period that two statements set, nor a count with a
 factor of its own (`CLOCK_HZ / (2 * BLINK_HZ)`).
 
 **Fix:** compute the period from the clock that is set; or correct the comment or the name.

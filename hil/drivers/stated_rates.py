@@ -7,6 +7,11 @@ A comment beside the statement that sets a period, or beside a definition that i
 of a constant in it.  The rate that counts is the one behind the last `=`.  It is told if it is none of those that the
 hardware has then: that of the counter, of its interrupts and triggers, of a pin that toggles.
 
+    // Servo: 62500 counts are 20 ms (50 Hz)
+    #define SERVO_PERIOD 62500
+
+A comment beside or above a definition may also say how long the defined number of counts lasts, or a period.
+
 The clock of a program that makes it from a crystal can be slower on its board; then both rates are right.
 
 So does a comment about a bit rate, beside the statements that set the divider of an SCI, above them, or above their
@@ -43,6 +48,7 @@ from emulator.c28x.tree import (
     RegisterRef,
     Stmt,
     Variable,
+    Where,
     While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import assigned, bare, gives, own_nodes, parts, statements, without_end
@@ -65,6 +71,15 @@ _BAUD: Final = re.compile(
     r"|(9600|19200|38400|57600|115200|230400))\b(?![.,]\d)",
     re.IGNORECASE,
 )  # fmt: skip
+_TIME: Final = r"(?<![\w.,])(?P<{0}>\d+(?:\.\d+)?) ?(?P<{0}_unit>[kM]?Hz|khz|hz|mhz|us|µs|ms|ns|s)\b(?!\w)"
+#: How long a number of counts, or a period, lasts, and the rate in parentheses behind it.
+_LASTING: Final = re.compile(
+    r"(?:(?<![\w.,])(?P<counts>\d+) (?:counts?|ticks?|cuentas|ciclos|takte|zählerschritte|zaehlerschritte) "
+    rf"(?:are|is|=|make|last|take|son|duran|sind|dauern|ergeben) {_TIME.format('time')}"
+    rf"|{_TIME.format('whole')} (?:per|each|por|pro|je) (?:period|periodo|periode)\b)"
+    rf"(?: ?\(= ?{_TIME.format('equal')}\)| ?\({_TIME.format('rate')}\))?",
+    re.IGNORECASE,
+)
 _OPERATORS: Final[dict[str, Callable[[int, int], int]]] = {
     "+": add, "-": sub, "*": mul, "/": floordiv, "&": and_, ">>": rshift,
 }  # fmt: skip
@@ -160,7 +175,9 @@ def wrong_rates(modules: Iterable[Module], chip: Chip, tick_us: int, *, peer_kno
         slower = chip.sysctrl.sysclk_shares
         if rates is None or not _holds(each, rates):
             continue
-        stated = _stated(each, replace(rates, others=frozenset(r * x for r in rates.all for x in slower)))
+        stated = _stated(each, replace(rates, others=frozenset(r * x for r in rates.all for x in slower))) or (
+            _lasting(each, rates, settings)
+        )
         if stated is not None and any(isclose(stated[1] / rates.own, slip, rel_tol=_EQUAL) for slip in _SLIPS):
             text, rate = stated
             message = f"{text} states {_hz(rate)}, and {each.counter} counts its period {_hz(rates.own)}"
@@ -284,18 +301,55 @@ def _stated(each: _Setting, rates: _Rates) -> tuple[str, float] | None:
     return said[0] if said and not any(rates.has(rate) for _, rate in said) else None
 
 
+def _lasting(each: _Setting, rates: _Rates, settings: list[_Setting]) -> tuple[str, float] | None:
+    """What a comment at the definition of a period says of its counts that they do not last, with its text."""
+    for p in _leaves(each.value) if each.counted else ():
+        if not isinstance(p, Const) or not defined_number(p)[0] or p.value not in (rates.period, rates.period + 1):
+            continue
+        counters = {other.counter for other in settings if p.where.macro in _macros(other.value)}
+        for comment in _at_definition(p.where.macro) if p.where.macro is not None and len(counters) == 1 else ():
+            for match in _LASTING.finditer(" ".join(comment.split())):
+                rate = _rate(match["time"] or match["whole"], match["time_unit"] or match["whole_unit"])
+                beside = _rate(match["rate"] or match["equal"], match["rate_unit"] or match["equal_unit"]) or rate
+                other = match["counts"] is not None and int(match["counts"]) != p.value
+                # Up and down, the counts of the number last half a period.
+                real = [*rates.all, *([2 * rates.own] if rates.up_down else [])]
+                if rate and isclose(rate, beside, rel_tol=_EQUAL) and not other and (
+                    not any(isclose(rate, one, rel_tol=_EQUAL) for one in real)
+                ):  # fmt: skip
+                    return f"the comment {comment!r}", rate
+    return None
+
+
+def _macros(e: Expr) -> set[Where | None]:
+    """The definitions that a value uses."""
+    return {p.where.macro for p in _leaves(e)}
+
+
+def _at_definition(where: Where) -> list[str]:
+    """The comments beside a definition, and in the line above it."""
+    lines = lines_with_comments(where.file)
+    above = lines[where.line - 2] if 2 <= where.line <= len(lines) else ("", "")
+    return [lines[where.line - 1][1], *([above[1]] if not above[0].strip() else [])]
+
+
+def _rate(number: str | None, unit_text: str | None) -> float:
+    """The rate in Hz that an amount is, or that a time has; 0: it is none."""
+    unit = unit_of_text(unit_text) if unit_text else None
+    amount = float(number) * unit.scale if number and unit is not None else 0.0
+    if unit is None or not amount:
+        return 0.0
+    return amount if unit.quantity == "frequency" else 1 / amount
+
+
 def _in_comment(comment: str) -> Iterator[float]:
     """The rates in Hz that a comment states of a period."""
     result = comment.rpartition("=")[2]
     if _ELSE.search(result):
         return
     for number, unit_text in _AMOUNT.findall(result):
-        unit = unit_of_text(unit_text)
-        amount = float(number) * unit.scale if unit is not None else 0.0
-        if unit is not None and amount:
-            rate = amount if unit.quantity == "frequency" else 1 / amount
-            if rate < _CLOCK_HZ:
-                yield rate
+        if 0 < (rate := _rate(number, unit_text)) < _CLOCK_HZ:
+            yield rate
 
 
 def _by_names(each: _Setting, named: list[Const], rates: _Rates) -> Iterator[tuple[str, float]]:

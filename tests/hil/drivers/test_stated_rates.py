@@ -198,3 +198,38 @@ def test_a_divider_whose_name_states_its_bit_rate_is_not_told(
 ) -> None:
     found = [each for each in serial(tmp_path, high, low, **given) if "SciaRegs" in each[0]]
     assert not found
+
+
+#: TBCLK has 50 MHz.
+HALVED = "EPwm1Regs.TBCTL.bit.HSPCLKDIV = TB_DIV2; EPwm1Regs.TBPRD = PERIOD - 1;"
+
+
+@pytest.mark.parametrize(("define", "rate", "real"), [
+    ("// Servo: 100 MHz, 50000 counts are 0.5 ms (2 kHz)\n#define PERIOD 50000U", "2 kHz", "1 kHz"),
+    ("#define PERIOD 50000U  // 50000 counts are 0.5 ms", "2 kHz", "1 kHz"),
+    ("// 50000 cuentas son 500 us\n#define PERIOD 50000U", "2 kHz", "1 kHz"),
+    ("#define PERIOD 50000U  // 0.5 ms per period (= 2 kHz)", "2 kHz", "1 kHz"),
+    ("#define PERIOD 25000U  /* 25000 Takte dauern 5 ms (200 Hz) */", "200 Hz", "2 kHz"),
+])  # fmt: skip
+def test_counts_that_last_another_time_are_told(tmp_path: Path, define: str, rate: str, real: str) -> None:
+    comment = define.partition("#")[0].strip() or define.partition("U")[2].strip()
+    assert told(tmp_path, HALVED, define=define) == [(
+        HALVED, f"the comment {comment.strip('/* ')!r} states {rate}, and EPwm1 counts its period {real}",
+    )]  # fmt: skip
+
+
+@pytest.mark.parametrize(("define", "given"), [
+    # Both agree with the hardware: the period, and half of it, up and down.
+    ("// 50 MHz: 50000 counts are 1 ms (1 kHz)\n#define PERIOD 50000U", {}),
+    ("#define PERIOD 50000U  // 1 ms per period", {}),
+    ("#define PERIOD 50001U  // 50001 counts are 1 ms; 2 ms per period", {"mode": "TB_COUNT_UPDOWN"}),
+    # A part of the period; a rate that is not that of the time; code between them.
+    ("// 2500 counts are 0.1 ms\n#define PERIOD 50000U", {}),
+    ("// 50000 counts are 0.5 ms (1 kHz)\n#define PERIOD 50000U", {}),
+    ("// 50000 counts are 0.5 ms\n#define OTHER 50000U\n#define PERIOD 50000U", {}),
+    # The comment is right for another counter with the same number, or for a number of which this is a part.
+    ("// 50000 counts are 250 us\n#define PERIOD 50000U", {"then": f"CpuTimer0Regs.PRD.all = PERIOD - 1; {START}"}),
+    ("// 100000 counts are 1 ms\n#define WHOLE 100000UL\n#define PERIOD (WHOLE / 2)", {}),
+])  # fmt: skip
+def test_counts_that_last_the_stated_time_are_not_told(tmp_path: Path, define: str, given: dict[str, str]) -> None:
+    assert told(tmp_path, HALVED, define=define, **given) == []
