@@ -257,8 +257,8 @@ eCAP, TBCLK for an ePWM. Five uses are reported:
 * a number divided by it goes where a name states a rate that is wrong by 1000 or more;
 * a time by its name goes as it is to a register that makes a time of a count, and a count lasts another time:
   `CMPA`, `TBPRD`, `DBRED` of an ePWM, `PRD` of a timer, `CAP1` of an eCAP (`EPwm1Regs.CMPA.bit.CMPA = pulse_us`);
-* a period is made of an object and of a constant whose name says how fast the counter counts (`PRD = SYSCLK_HZ / speed -
-  1`, `TBPRD = period_us * TBCLK_MHZ`), and it counts with another frequency.
+* a period is made of an object and of a constant whose name says how fast the counter counts (`PRD = SYSCLK_HZ /
+  speed - 1`, `TBPRD = period_us * TBCLK_MHZ`), and it counts with another frequency.
 
 Nothing is reported about a counter that stands and that no statement starts, an eCAP that prescales its edges, an
 object that holds other values too, or another factor: half of an echo is a distance, too. Nor is a period that counts
@@ -298,8 +298,8 @@ A call of `SCI_setConfig` or `SPI_setConfig` is reported if it is told another f
 
 A period is reported if the two rates differ by a power of two or of ten. Every rate of the ePWM counts: that of its
 counter, its interrupts, its triggers (every third event, both ends of the period), and of a pin that toggles.
-Comments about other counts, pulses, limits or delays are not meant, nor a period that two statements set, nor a count with a
-factor of its own (`CLOCK_HZ / (2 * BLINK_HZ)`).
+Comments about other counts, pulses, limits or delays are not meant, nor a period that two statements set, nor a count
+with a factor of its own (`CLOCK_HZ / (2 * BLINK_HZ)`).
 
 **Fix:** compute the period from the clock that is set; or correct the comment or the name.
 """,

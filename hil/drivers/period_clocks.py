@@ -22,6 +22,7 @@ from emulator.chip import Chip
 from hil.drivers.clock_names import clock_by_name
 from hil.drivers.hardware_counts import HardwareCounts, TimeRegister, set_by_call, started_timers, time_register
 from hil.drivers.stated_units import as_written, comment_beside, stated
+from hil.drivers.unit_names import PhysicalUnit
 from hil.drivers.units import UnitMismatch
 
 #: The registers that hold the period of a counter.
@@ -72,8 +73,8 @@ def misreckoned_periods(modules: Iterable[Module], chip: Chip) -> Iterator[UnitM
         if isclose(ratio, 1.0, rel_tol=_ALMOST) or (not found.certain and _may_be_a_scale(ratio)):
             continue
         message = (
-            f"{each.register.name} is reckoned with {found.name}, {found.clock_hz / 1e6:g} million counts a second, and "
-            f"{each.register.counter} counts {real / 1e6:g} million times"
+            f"{each.register.name} is reckoned with {found.name}, {found.clock_hz / 1e6:g} million counts a second, "
+            f"and {each.register.counter} counts {real / 1e6:g} million times"
         )
         function, s = each.function, each.statement
         place = Place(function.where.file, s.where.line, function.name, function.c_file, s.where.column)
@@ -98,11 +99,10 @@ _Given = list[tuple[tuple[object, ...], Expr]]
 def _reckoned(e: Expr, given: _Given, deep: int = _DEPTH) -> _Reckoned | None:
     """The clock from which an object makes a period; None: it is made of something else too."""
     e = _without_one(e)
-    if isinstance(e, Load) and deep:
-        key = key_of(e.lvalue)
-        values = [value for other, value in given if other == key]
-        return _reckoned(values[0], given, deep - 1) if key is not None and len(values) == 1 else None
-    clocks: list[tuple[str, float, float]] = []
+    if isinstance(e, Load):
+        values = [value for other, value in given if other == key_of(e.lvalue)]
+        return _reckoned(values[0], given, deep - 1) if deep and len(values) == 1 else None
+    clocks: list[tuple[str, float, float]] = []  # with the number itself
     objects: list[tuple[Load, bool]] = []
     for factor, divides in _factors(e):
         number = as_written(factor)
@@ -115,21 +115,26 @@ def _reckoned(e: Expr, given: _Given, deep: int = _DEPTH) -> _Reckoned | None:
             return None
     if len(clocks) != 1 or len(objects) != 1:
         return None
-    (name, hz, number_of_clock), (load, divides) = clocks[0], objects[0]
+    (name, hz, stated_number), (load, divides) = clocks[0], objects[0]
+    scale = hz / stated_number  # 1e6 of a clock in MHz
+    unit = _unit(load)
+    if unit is None:
+        sources = [value for other, value in given if other == key_of(load.lvalue)]
+        right = divides and scale == 1.0 and not any(map(_has_factor, sources))
+    else:
+        quantity, size = ("frequency", scale) if divides else ("time", 1 / scale)
+        right = unit.quantity == quantity and isclose(unit.scale, size)
+    return _Reckoned(name, hz, unit is not None) if right else None
+
+
+def _unit(load: Load) -> PhysicalUnit | None:
+    """The unit of an object by its name or its comment."""
     root = load.lvalue.root
-    whole = isinstance(root, Variable) and not load.lvalue.indices
-    declared = root.declaration if isinstance(root, Variable) and whole else None
-    unit = stated(declared.name, comment_beside(declared.where, declared.name)) if declared is not None else None
-    scale = hz / number_of_clock  # 1e6 of a clock in MHz
-    if unit is not None:
-        right = ("frequency", scale) if divides else ("time", 1 / scale)
-        if unit.unit.quantity != right[0] or not isclose(unit.unit.scale, right[1]):
-            return None
-    elif not divides or scale != 1.0:
+    if not isinstance(root, Variable) or load.lvalue.indices:
         return None
-    elif any(_has_factor(value) for other, value in given if other == key_of(load.lvalue)):
-        return None
-    return _Reckoned(name, hz, unit is not None)
+    declared = root.declaration
+    found = stated(declared.name, comment_beside(declared.where, declared.name))
+    return found.unit if found is not None else None
 
 
 def _without_one(e: Expr) -> Expr:
@@ -161,6 +166,6 @@ def _has_factor(e: Expr) -> bool:
 
 def _may_be_a_scale(ratio: float) -> bool:
     """Whether an object can be so many times what its counter makes of it."""
-    return ratio >= _LEAST_SCALE * (1 - _FRACTION) and (
-        isclose(frexp(ratio)[0], 0.5, rel_tol=_FRACTION) or isclose(log10(ratio), round(log10(ratio)), abs_tol=_FRACTION)
-    )
+    power_of_two = isclose(frexp(ratio)[0], 0.5, rel_tol=_FRACTION)
+    power_of_ten = isclose(log10(ratio), round(log10(ratio)), abs_tol=_FRACTION)
+    return ratio >= _LEAST_SCALE * (1 - _FRACTION) and (power_of_two or power_of_ten)
