@@ -93,6 +93,11 @@ The first time all is well. The second time, the count goes on where it was, or 
   up.
 * A sum is begun again after a number of values, and their count is not (`if (n == MANY) { mean = sum / n; sum = 0; }`):
   it happens only once, or with `>=` for each value from then on. Here too the count may be a local of a loop.
+* The count of such a sum is begun again, and the sum is not: each mean has all values since the start.
+* Readings that differ from a level are counted, and the level follows them when they are enough. A reading that does
+  not differ leaves the count as it is: bounces add up.
+* A test asks whether some time is over since the last time (`if (ms - last >= PERIOD) Run();`), and no statement sets
+  `last` again: from then on it runs in each pass.
 
 The check needs the source of a whole program. It knows counts that every statement only counts up, and flags that every
 statement sets to the same value. Not reported: a count that anything but such tests reads, as a clock is; a limit that

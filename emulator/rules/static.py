@@ -252,6 +252,34 @@ remainder and the quotient then becomes a float, or if the quotient of two const
         "ISO C 6.5.5 p6",
     ),
     _rule(
+        "limits-crossed",
+        Severity.WARNING,
+        "Two limits of a value leave nothing between them.",
+        """
+The value is always one of the two limits: an integral that jumps from one end to the other.
+
+`if (x > MOST) x = MOST;` and `if (x < MOST) x = -MOST;` follow each other: the second test lacks a minus, or two names
+are exchanged. It is reported if the limits are constants, the lower one is not below the upper one, and one of
+them is what the value becomes. `if (x > 0) x = 1; if (x < 0) x = -1;` is a sign, and is not reported.
+
+**Fix:** the lower limit in the second test.
+""",
+    ),
+    _rule(
+        "digit-code",
+        Severity.WARNING,
+        "A digit of a text is added with its code, and not with its value.",
+        """
+The number that is read is wrong: "7" gives 55.
+
+`value * 10 + c` adds the code of the character, which is 48 for '0'. It is reported if the function compares the same
+character with '0' and with '9', so that it is a digit, and subtracts '0' from nothing else.
+
+**Fix:** `value * 10 + (c - '0')`.
+""",
+        "ISO C 5.2.1 p3",
+    ),
+    _rule(
         "poll-not-volatile",
         Severity.WARNING,
         "A loop polls an object that another thread writes, and the object is not volatile.",

@@ -1,7 +1,7 @@
 """Static check of counts and flags that are never begun again: `not-begun-again`.
 
 The check needs a whole program (one with a `main`), because it must see all statements.  It knows the integers at file
-scope (and `static` ones) that every statement only counts up, or only sets to one value.  Five uses of them are wrong
+scope (and `static` ones) that every statement only counts up, or only sets to one value.  Seven uses of them are wrong
 from the second time on:
 
 * the time in a state, which the program can enter again (`if (stateMs > LIMIT) state = FAULT`);
@@ -9,7 +9,10 @@ from the second time on:
 * the mark that a buffer was too small, while its index begins again (`if (tooLong || ...) bad++; else ...`);
 * the time without a sign of life after which another count is set back (`if (quiet > LIMIT) length = 0;`);
 * the number of values in a sum that is begun again without it (`if (count == N) { mean = sum / N; sum = 0; }`); here
-  the count may also be a local that an endless loop never sets back.
+  the count may also be a local that an endless loop never sets back;
+* the sum whose count is begun again without it (`if (count == N) { mean = sum / N; count = 0; }`), likewise;
+* the count of readings that differ from a level, which the next reading that does not differ leaves as it is
+  (`if (level != stable && ++different >= TIMES) { stable = level; different = 0; }`): bounces add up.
 
 Clocks (read by any other statement), numbers of events, delays after the start, and faults that are latched are not
 meant: the conditions stand at each use.
@@ -157,6 +160,7 @@ class _Program:
                     self._set_back(function, s)
             for block, again in _repeated(function):
                 self._sum_alone(function, block, again)
+                self._in_a_row(function, block)
 
     # The time in a state
 
@@ -297,7 +301,7 @@ class _Program:
     # What is summed, and counted
 
     def _sum_alone(self, function: Function, block: list[Stmt], again: list[Stmt]) -> None:
-        """Report a sum that is begun again after a number of values, but not the count of these.
+        """Report that after a number of values their sum is begun again, but not their count; or their count alone.
 
         `again` is what runs again while the locals of the function live.
         """
@@ -306,19 +310,30 @@ class _Program:
             count = _reaches(s.test) if isinstance(s, If) and not leaves(s.then) else None
             if not isinstance(s, If) or count is None or not any(step_of(x, count) == 1 for x in block):
                 continue
-            writes = self.writes[count] if count.kind == "global" else again
-            if count in self.taken or not writes or self._tests(count) > 1:
+            if self._tests(count) > 1:
                 continue  # `if (count < N)` around it: this happens once, and is meant to
-            back = [v for x in s.then if (v := assigned(x)) in sums and v is not count and _begins(x)]
-            only_up = all((step_of(x, count) or 0) > 0 for x in writes if assigned(x) is count)
-            if only_up and back and back[0] is not None:
-                name, total = count.declaration, back[0].declaration.name
+            begun = [v for x in s.then if (v := assigned(x)) is not None and _begins(x)]
+            totals = sums - {count}
+            for total in [v for v in begun if v in totals] if self._only_grows(count, again) else ():
                 once = isinstance(s.test, Compare) and s.test.op == "=="
                 later = "only once" if once else "for each value from then on"
-                message = f"nothing begins {name.name} again, though {total} is begun again here: {later}"
-                self.reports[function].report(
-                    function, s.where, "not-begun-again", message, object=name.path, declaration=name,
-                )  # fmt: skip
+                self._tell_sum(function, s, count, f"though {total.declaration.name} is begun again here: {later}")
+            for total in totals if count in begun else ():
+                if _mean_of(s, total) and self._only_grows(total, again):
+                    why = f"though {count.declaration.name} is begun again here: the next mean has all values"
+                    self._tell_sum(function, s, total, why)
+
+    def _only_grows(self, v: Variable, again: list[Stmt]) -> bool:
+        """Whether all that gives an object a value, while it lives, adds to it."""
+        writes = [s for s in (self.writes[v] if v.kind == "global" else again) if assigned(s) is v]
+        return v not in self.taken and bool(writes) and all(added(s) or (step_of(s, v) or 0) > 0 for s in writes)
+
+    def _tell_sum(self, function: Function, s: Stmt, v: Variable, why: str) -> None:
+        name = v.declaration
+        message = f"nothing begins {name.name} again, {why}"
+        self.reports[function].report(
+            function, s.where, "not-begun-again", message, object=name.path, declaration=name
+        )  # fmt: skip
 
     def _tests(self, v: Variable) -> int:
         """The number of comparisons with an object."""
@@ -326,6 +341,41 @@ class _Program:
             isinstance(p, Compare) and any(_value_of(side) is v for side in (p.left, p.right))
             for f in self.functions for p in within(f.body)
         )  # fmt: skip
+
+    # Readings in a row
+
+    def _in_a_row(self, function: Function, block: list[Stmt]) -> None:
+        """Report a count of readings that differ from a level, which a reading that does not differ leaves as it is."""
+        for number, s in enumerate(block):
+            match s:
+                case If(test=Compare(op="!=", left=left, right=right), then=differs, otherwise=same):
+                    pass
+                case If(test=Compare(op="==", left=left, right=right), then=same, otherwise=differs):
+                    if not differs and leaves(same):
+                        differs = block[number + 1 :]
+                case _:
+                    continue
+            inside = statements(differs)
+            for reading, level in ((left, right), (right, left)):
+                new, stable = _value_of(reading), _value_of(level)
+                if new is None or stable is None:
+                    continue
+                for x in inside:
+                    count = assigned(x)
+                    if count is None or count in self.taken or count.kind != "global" or step_of(x, count) != 1:
+                        continue
+                    within_it = set(map(id, inside))
+                    back = [w for w in self.writes[count] if _begins(w)]
+                    only_here = all(id(w) in within_it for w in self.writes[count])
+                    if back and only_here and self._tests(count) == 1 and _taken_over(differs, count, stable, new):
+                        name = count.declaration
+                        message = (
+                            f"{name.name} counts how often {new.declaration.name} differs from "
+                            f"{stable.declaration.name}, and is not begun again where it does not: bounces add up"
+                        )
+                        self.reports[function].report(
+                            function, s.where, "not-begun-again", message, object=name.path, declaration=name,
+                        )  # fmt: skip
 
     # The mark that a buffer was too small
 
@@ -432,6 +482,43 @@ def _value_of(e: Expr) -> Variable | None:
         case Load(lvalue=LValue(root=Variable(ctype=IntType()) as v, indices=[])):
             return v
     return None
+
+
+def _mean_of(s: If, total: Variable) -> bool:
+    """Whether a test of a count against a number divides a sum by this number."""
+    assert isinstance(s.test, Compare)
+    limit = constant_of(s.test.left) or constant_of(s.test.right)
+    for p in within(s.then):
+        match p:
+            case Binary(op="/" | ">>" as op, left=left, right=right) if _is_sum(left, total):
+                by = constant_of(right)
+                if by is not None and limit == (by if op == "/" else 1 << by):
+                    return True
+    return False
+
+
+def _is_sum(e: Expr, total: Variable) -> bool:
+    match bare(e):
+        case Load(lvalue=LValue(root=root, indices=[])):
+            return root is total
+    return False
+
+
+def _taken_over(differs: list[Stmt], count: Variable, level: Variable, reading: Variable) -> bool:
+    """Whether a level becomes the reading, and only where a count has passed a limit."""
+    for number, s in enumerate(differs):
+        match s:
+            case If(test=Compare(left=left, right=right), then=then) if count in (_value_of(left), _value_of(right)):
+                rest = differs[number + 1 :] if leaves(then) else then
+                return any(_copies(x, level, reading) for x in statements(rest))
+        if any(_copies(x, level, reading) for x in statements([s])):
+            return False
+    return False
+
+
+def _copies(s: Stmt, to: Variable, value: Variable) -> bool:
+    """Whether a statement gives one object the value of another."""
+    return isinstance(s, Assign) and assigned(s) is to and _value_of(s.value) is value
 
 
 def _roots_of(e: Any) -> set[Variable]:

@@ -12,10 +12,12 @@ from typing import Any
 from emulator.c28x.passes.admitted import check_admitted
 from emulator.c28x.passes.anew import check_begun_anew
 from emulator.c28x.passes.begun_again import check_begun_again
+from emulator.c28x.passes.clamps import check_clamps
 from emulator.c28x.passes.cleared import check_cleared
 from emulator.c28x.passes.cleared_early import check_cleared_early
 from emulator.c28x.passes.copies import check_copies
 from emulator.c28x.passes.decided import check_decided
+from emulator.c28x.passes.digits import check_digits
 from emulator.c28x.passes.drained import check_drained
 from emulator.c28x.passes.dropped import check_dropped
 from emulator.c28x.passes.entrances import check_entrances
@@ -169,6 +171,10 @@ def check(
         named = unset.declaration
         message = f"{source_text(since)}: no statement sets {named.name}: it is the time since the start, and wraps"
         owners[function].report(function, s.where, "stamp-compare", message, object=named.path)
+    for function, s, unset in stamps.never_renewed():
+        named = unset.declaration
+        message = f"no statement sets {named.name} again: once {source_text(s.test)}, it is so in each pass"
+        owners[function].report(function, s.where, "not-begun-again", message, object=named.path, declaration=named)
     for function, s, compare in stamps.ends():
         text = source_text(compare)
         message = f"{text}: the end of the time wraps before the counter does, and the comparison is wrong then"
@@ -198,5 +204,7 @@ def _of_function(function: Function) -> list[StaticFinding]:
     check_admitted(function, report)
     check_masked(function, report)
     check_event_masks(function, report)
+    check_clamps(function, report)
+    check_digits(function, report)
     NullTests(function, report).run()
     return found

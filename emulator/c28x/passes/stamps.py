@@ -17,6 +17,7 @@ The result are suspicions, by node.  The running code checks whether the counter
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from copy import copy
 from typing import Any, Final
@@ -44,19 +45,23 @@ from emulator.c28x.tree import (
     Stmt,
     Unary,
     Variable,
+    While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
     addressed,
     assigned,
     bare,
+    blocks,
     different,
     gives,
+    leaves,
     once,
     own_nodes,
     parts,
     roots,
     statements,
     within,
+    without_end,
 )
 
 #: The kinds of expressions: neither of the others; a stamp; a deadline, which is a stamp plus or minus something.
@@ -69,6 +74,8 @@ _REGISTERS: Final = frozenset({"TIM", "TSCTR", "IPCCOUNTERL", "IPCCOUNTERH"})
 CLOCKS: Final = frozenset({"Clock_getTicks", "Timestamp_get32"})
 #: The capture registers of the eCAPs.
 CAPTURES: Final = frozenset({"CAP1", "CAP2", "CAP3", "CAP4"})
+#: Names of stamps that are meant to be renewed: English, Spanish, German.
+_LAST: Final = re.compile(r"last|prev|ultim|anterior|letzt|vorher|alt(?![a-z])|alte", re.IGNORECASE)
 #: What can hold a stamp: a variable, a member of a structure type, the target of a parameter, the result of a function.
 Key = tuple[Any, ...]
 
@@ -252,6 +259,44 @@ class Stamps:
                             if plain and stamp not in set_ and self.kind(now) == STAMP and stamp.initial:
                                 yield function, s, p, stamp
 
+    def never_renewed(self) -> Iterator[tuple[Function, If, Variable]]:
+        """Tests whether a time is over since a stamp that only has its initial value, a constant: from then on, always.
+
+        Yields the function, the test and the object.  Call it after `suspicions`.  The object is at file scope, or in
+        front of an endless loop around the test.  It is meant to be renewed: it is called the last or previous one, or
+        the function renews another stamp behind such a test.  16-bit times are those of `never_set`.
+        """
+        if not self.kinds:
+            return
+        taken = addressed(p for function in self.functions for p in within(function.body))
+        given: dict[Variable, list[Stmt]] = {}
+        for function in self.functions:
+            for s in statements(function.body):
+                if (root := assigned(s)) is not None:
+                    given.setdefault(root, []).append(s)
+        for function in self.functions:
+            tests = [(test, loop, stamp) for s, loop in _with_loops(function.body) for test, stamp in self._since(s)]
+            renewed = any(assigned(other) is stamp for s, _, stamp in tests for other in statements(s.then))
+            for s, loop, stamp in tests:
+                writes = given.get(stamp, [])
+                if stamp in taken or stamp.constant or leaves(s.then):
+                    continue
+                in_front = loop is not None and not any(other is w for w in writes for other in statements(loop.body))
+                begun = stamp.kind == "local" and in_front and len(writes) == 1 and _is_number(writes[0])
+                meant = renewed or _LAST.search(stamp.declaration.name)
+                if meant and (begun or (stamp.kind == "global" and not writes)):
+                    yield function, s, stamp
+
+    def _since(self, s: Stmt) -> Iterator[tuple[If, Variable]]:
+        """A test that alone asks whether a constant time is over since a 32-bit stamp, and the object of this."""
+        match s:
+            case If(test=Compare(op=">" | ">=", left=left, right=limit)) as test if isinstance(bare(limit), Const):
+                match bare(left):
+                    case Binary(op="-", ctype=IntType(bits=32), left=now, right=right) if self.kind(now) == STAMP:
+                        match bare(right):
+                            case Load(lvalue=LValue(root=Variable(ctype=IntType()) as stamp, indices=[])):
+                                yield test, stamp
+
     # Suspicions
 
     def of_statement(self, s: Stmt) -> dict[int, str]:
@@ -339,6 +384,21 @@ def _cut(e: Any) -> Expr | None:
             return e.operand
         e = e.operand
     return None
+
+
+def _with_loops(body: list[Stmt], loop: While | None = None) -> Iterator[tuple[Stmt, While | None]]:
+    """Each statement, with the outermost endless loop around it."""
+    for s in body:
+        yield s, loop
+        inner = s if loop is None and isinstance(s, While) and without_end(s) else loop
+        for block in blocks(s):
+            yield from _with_loops(block, inner)
+
+
+def _is_number(s: Stmt) -> bool:
+    """Whether a statement gives an object a constant."""
+    given = gives(s)
+    return given is not None and isinstance(bare(given[1]), Const)
 
 
 def key_of(lvalue: LValue) -> Key | None:

@@ -46,8 +46,8 @@ STATIC = (
     *(
         f"emulator/c28x/passes/{name}.py"
         for name in (
-            "admitted", "anew", "begun_again", "blocks", "checks", "cleared", "cleared_early", "copies", "decided",
-            "drained", "dropped",
+            "admitted", "anew", "begun_again", "blocks", "checks", "clamps", "cleared", "cleared_early",
+            "copies", "decided", "digits", "drained", "dropped",
             "entrances", "event_masks", "flow", "formats", "fraction_texts", "likes", "lost_writes", "messages",
             "names", "narrow_stamps", "never_back",
             "null_tests", "off_by_one", "one_sided", "only_grows", "published", "quotients", "released", "ring_back",

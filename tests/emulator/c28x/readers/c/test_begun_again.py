@@ -259,3 +259,106 @@ def test_a_sum_that_is_begun_again_without_its_count_is_told(take: str, turn: st
 ])  # fmt: skip
 def test_a_sum_with_its_count_or_of_the_first_values_is_silent(take: str, turn: str) -> None:
     assert told(MEAN.format(take=take, turn=turn)) == []
+
+
+@pytest.mark.parametrize(("take", "turn"), [
+    ("total += value; number++; if (number == 8) { Shown = total / 8; number = 0; }", ""),
+    ("total += value; if (++number >= 8) { Shown = total >> 3; number = 0; }", ""),
+    ("", "all += Reading; turns++; if (turns == 10) { Shown = all / 10; turns = 0; }"),
+])  # fmt: skip
+def test_a_count_that_is_begun_again_without_its_sum_is_told(take: str, turn: str) -> None:
+    (line,) = told(MEAN.format(take=take, turn=turn))
+    assert line in (take, f"for (;;) {{ Take(Reading); {turn} }}")
+
+
+@pytest.mark.parametrize("take", [
+    # The sum of all values: an energy, which is shown now and then; or a mean of it all.
+    "total += value; number++; if (number == 8) { Shown = total; number = 0; }",
+    "total += value; number++; if (number == 8) { Shown = total / 100; number = 0; }",
+    # It is begun again elsewhere.
+    "total += value; number++; if (number == 8) { Shown = total / 8; number = 0; } if (number == 0) total = 0;",
+    "total += value; total -= total / 8; number++; if (number == 8) { Shown = total / 8; number = 0; }",
+])  # fmt: skip
+def test_a_sum_of_all_values_is_silent(take: str) -> None:
+    assert told(MEAN.format(take=take, turn="")) == []
+
+
+BOUNCES = """typedef unsigned int Uint16;
+Uint16 Pin = 0, Presses = 0;
+static Uint16 stable = 0, different = 0;
+static Uint16 Read(Uint16 level)
+{{
+    {body}
+    return 0;
+}}
+int main(void)
+{{
+    for (;;) {{ Read(Pin); {turn} }}
+}}
+"""
+TAKEN = "stable = level; different = 0; Presses++;"
+
+
+@pytest.mark.parametrize("body", [
+    "if (level != stable) { different++; if (different >= 20) { " + TAKEN + " } }",
+    "if (level == stable) return 0; different++; if (different < 20) return 0; " + TAKEN,
+    "if (stable == level) { Presses |= 1; } else if (++different > 20) { " + TAKEN + " }",
+])  # fmt: skip
+def test_readings_that_are_counted_though_not_in_a_row_are_told(body: str) -> None:
+    assert told(BOUNCES.format(body=body, turn="")) == [body]
+
+
+@pytest.mark.parametrize(("body", "turn"), [
+    ("if (level != stable) { different++; if (different >= 20) { " + TAKEN + " } } else { different = 0; }", ""),
+    ("if (level == stable) { different = 0; return 0; } different++; if (different < 20) return 0; " + TAKEN, ""),
+    # It counts down, or something else begins it again.
+    ("if (level == stable) { if (different) different--; } else if (++different > 20) { " + TAKEN + " }", ""),
+    ("if (level != stable) { different++; if (different >= 20) { " + TAKEN + " } }", "if (!Pin) different = 0;"),
+    # Changes are counted: each is taken at once.
+    ("if (level != stable) { stable = level; different++; if (different >= 20) { different = 0; } }", ""),
+    # What has been counted is only shown, or is the number of all.
+    ("if (level != stable) { different++; if (different >= 20) { Presses = 1; different = 0; } }", ""),
+    ("if (level != stable) { different++; if (different >= 20) { stable = level; } }", ""),
+])  # fmt: skip
+def test_readings_in_a_row_and_counts_of_all_are_silent(body: str, turn: str) -> None:
+    assert told(BOUNCES.format(body=body, turn=turn)) == []
+
+
+CLOCK = """typedef unsigned int Uint16;
+typedef unsigned long Uint32;
+volatile Uint32 Millis = 0;
+Uint16 Runs = 0, Ready = 0;
+{file_scope}
+static void Work(void) {{ Runs++; }}
+interrupt void Tick(void) {{ Millis++; }}
+void (*Vector)(void) = &Tick;
+int main(void)
+{{
+    Uint32 {local} = 0, lamp = 0;
+    for (;;)
+    {{
+        if (Millis - {stamp} >= 100) {{ {then} }}
+        {turn}
+    }}
+}}
+"""
+LAMP = "if (Millis - lamp >= 250) { lamp += 250; Ready ^= 1; }"
+
+
+@pytest.mark.parametrize(("stamp", "file_scope", "turn"), [
+    ("begun", "", LAMP), ("lastRun", "", ""), ("letzte", "static Uint32 letzte = 0;", ""),
+    ("since", "static Uint32 since = 0;", LAMP),
+])  # fmt: skip
+def test_a_time_since_a_stamp_that_is_not_renewed_is_told(stamp: str, file_scope: str, turn: str) -> None:
+    local = "other" if file_scope else stamp
+    text = CLOCK.format(local=local, stamp=stamp, file_scope=file_scope, then="Work();", turn=turn)
+    assert told(text) == [f"if (Millis - {stamp} >= 100) {{ Work(); }}"]
+
+
+@pytest.mark.parametrize(("stamp", "then", "turn"), [
+    ("lastRun", "lastRun += 100; Work();", LAMP), ("lastRun", "Work();", "if (Ready) lastRun = Millis;"),
+    # The time since the start, and nothing says that it is meant to be renewed; the loop ends.
+    ("start", "Ready = 1;", ""), ("lastRun", "break;", ""),
+])  # fmt: skip
+def test_a_time_since_a_stamp_that_is_renewed_or_the_start_is_silent(stamp: str, then: str, turn: str) -> None:
+    assert told(CLOCK.format(local=stamp, stamp=stamp, file_scope="", then=then, turn=turn)) == []
