@@ -61,10 +61,11 @@ class System(Chip):
         #: The check for missing connections (`not-connected`), if an image is watched.
         self.connections: Connections | None = None
 
-    def _started_up(self) -> None:
-        """`main` has called BIOS_start: none of its statements run any more."""
-        if self.connections is not None and self.kernel.started:
-            self.connections.started_up = True
+    def _check_connections(self) -> None:
+        """Check for missing connections.  If `main` has called BIOS_start, none of its statements run any more."""
+        if self.connections is not None:
+            self.connections.started_up |= self.kernel.started
+            self.connections.finish()
 
     # Functions of the chip that the kernel needs
 
@@ -90,6 +91,7 @@ class System(Chip):
     def _watchdog_reset(self) -> None:
         """CHOICE: a program under the kernel ends here.  Its pins are as after a reset.  A restart is a new run."""
         if self.kernel.started:
+            self._check_connections()  # after the reset, the registers show nothing of what the program has set up
             self.reset_peripherals("WDRSn")
             self.kernel.stop()
 
@@ -112,9 +114,8 @@ class System(Chip):
     def watch(self, linked: Linked) -> KernelWatch:
         """Watch an image that was linked with `watch`, for errors that show only between threads."""
         watch = KernelWatch(self.kernel, linked, transfers=self.dma.moving)
-        self.connections = connections = Connections(self, linked)
-        self.kernel.ending.connect(self._started_up)
-        self.kernel.ending.connect(connections.finish)
+        self.connections = Connections(self, linked)
+        self.kernel.ending.connect(self._check_connections)
         self.kernel.ending.connect(linked.runtime.finish)
         watch.vectors(self.vectors, self._pie_line)
         for letter in self.adc:

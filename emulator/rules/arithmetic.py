@@ -148,10 +148,11 @@ if `end` has wrapped and `now` has not; in the opposite case it is false for a w
 if it is not tested at exactly that count. `(int) (now - last) > LIMIT` is negative once more than half of the range has
 passed.
 
-The detector follows stamps from CPU timers, eCAPs, the kernel's clock and counters of interrupt routines, through
-variables, members and functions. It reports a comparison that goes wrong because the counter has wrapped between the
-two stamps. A comparison by order is right if its branch takes the difference:
-`if (now < last) d = 65536 - last + now;`.
+The detector follows stamps from CPU timers, eCAPs, the kernel's clock and counters of interrupt routines and Clocks,
+through variables, members and functions. What a task counts is no time, and a test for the next number of a sequence
+(`if (m.number != last + 1) lost++; last = m.number;`) is none for a time. It reports a comparison that goes wrong
+because the counter has wrapped between the two stamps. A comparison by order is right if its branch takes the
+difference: `if (now < last) d = 65536 - last + now;`.
 
 In three cases the source is enough. If a 16-bit counter is compared by order with a stamp and a number
 (`now < last + 20`), the sum wraps before the counter does. If no statement ever sets the stamp of a difference of 16

@@ -67,6 +67,9 @@ Event_Id_15 = 0x8000
 Event_Id_NONE = 0
 UIABenchmark_start = 1
 UIABenchmark_stop = 2
+#: The period of the kernel's tick, in microseconds.
+ti_sysbios_knl_Clock_tickPeriod__C = uint32(1000)
+Clock_tickPeriod = ti_sysbios_knl_Clock_tickPeriod__C
 
 Task_Handle = handle("Task_Handle")
 Semaphore_Handle = handle("Semaphore_Handle")

@@ -1635,3 +1635,49 @@ def test_a_time_base_that_stands_is_told(tmp_path: Path, was: str, now: str, tol
     text = MEASURED.replace(was, now, 1)
     found = [f for f in told(tmp_path, text) if "TIM again and again" in f.message]
     assert [text.splitlines()[f.place.line - 1].strip() for f in found if f.place is not None] == told_at
+
+
+#: A task sends a character now and then.  Nobody services the watchdog, which bites after 13 ms.
+BITTEN = """#include <xdc/std.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/knl/Task.h>
+#include "F28x_Project.h"
+static Void Send(UArg a, UArg b)
+{
+    for (;;) {
+        SciaRegs.SCITXBUF.all = 'x';
+        Task_sleep(10);
+    }
+}
+Int main(Void)
+{
+    InitSysCtrl();
+    EALLOW;
+    CpuSysRegs.PCLKCR7.bit.SCI_A = 1;
+    GpioCtrlRegs.GPBGMUX1.bit.GPIO43 = 3;
+    GpioCtrlRegs.GPBMUX1.bit.GPIO43 = 3;
+    EDIS;
+    SciaRegs.SCICCR.all = 0x0007;
+    SciaRegs.SCILBAUD.all = 53;
+    SciaRegs.SCICTL1.all = 0x0002;
+    SciaRegs.SCICTL1.bit.SWRESET = 1;
+    Task_create(Send, NULL, NULL);
+    EALLOW;
+    WdRegs.WDCR.all = 0x0028;
+    EDIS;
+    BIOS_start();
+    return 0;
+}
+"""
+
+
+@pytest.mark.parametrize(("was", "now", "rules"), [
+    ("", "", ["watchdog-reset"]),
+    ("    SciaRegs.SCICTL1.bit.SWRESET = 1;\n", "", ["not-connected", "watchdog-reset"]),
+])  # fmt: skip
+def test_after_a_reset_by_the_watchdog_the_registers_before_it_are_judged(
+    tmp_path: Path, was: str, now: str, rules: list[str]
+) -> None:
+    (tmp_path / "drv.c").write_text(BITTEN.replace(was, now), encoding="utf-8")
+    checked = check_files(DriverFiles([tmp_path / "drv.c"], calls=1, board=load("bare"), seconds=0.05))
+    assert sorted(f.rule for f in checked.findings if f.rule in ("not-connected", "watchdog-reset")) == rules

@@ -1,9 +1,10 @@
 """Pass `stamps`: which values are stamps of a free-running counter, and which comparisons its wrap makes wrong.
 
 A stamp is a value of a CPU timer, an eCAP, the IPC counter or the kernel's clock, or of an object that an interrupt
-routine only counts up.  A copy, a complement or a shift of a stamp is a stamp too, also as the result of a function.  A
-stamp plus or minus a number is a *deadline*; the difference of two stamps is a number.  Objects and members are
-followed through the whole image, whatever the order of statements.
+routine or a function of the kernel's Clock only counts up.  What a task counts is no time: it may number messages.  A
+copy, a complement or a shift of a stamp is a stamp too, also as the result of a function.  A stamp plus or minus a
+number is a *deadline*; the difference of two stamps is a number.  Objects and members are followed through the whole
+image, whatever the order of statements.
 
 The result are suspicions, by node.  The running code checks whether the counter has wrapped between the two stamps
 (`Guards`, `Runtime`).
@@ -13,6 +14,9 @@ The result are suspicions, by node.  The running code checks whether the counter
 | `order` | two stamps compared by order, and no branch takes their difference |
 | `equal`, `equal, left` | a stamp compared for equality with a deadline (the left side is the deadline) |
 | `past` | the signed time since a stamp is compared with a limit |
+
+A test for equality asks for the next number of a sequence, and for no time, if what follows it sets the number that it
+expects anew, whatever the result: `if (message.number != last + 1) lost++; last = message.number;`.
 """
 
 from __future__ import annotations
@@ -49,11 +53,13 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
     addressed,
+    all_blocks,
     assigned,
     bare,
     blocks,
     different,
     gives,
+    last_loop,
     leaves,
     once,
     own_nodes,
@@ -118,20 +124,40 @@ class Stamps:
             pass
         found: dict[int, str] = {}
         for function in self.functions:
-            for s in statements(function.body):
-                found |= self.of_statement(s)
+            for block in all_blocks(function.body):
+                for n, s in enumerate(block):
+                    kinds = self.of_statement(s)
+                    if kinds and not isinstance(s, While):
+                        kinds = {p: kind for p, kind in kinds.items() if not self._next_number(s, p, block[n + 1 :])}
+                    found |= kinds
         return found
+
+    def _next_number(self, s: Stmt, compare: int, after: list[Stmt]) -> bool:
+        """Whether a test for equality with a deadline asks for the next number: what follows sets it anew."""
+        tested = next(p for p in own_nodes(s) if id(p) == compare)
+        if not isinstance(tested, Compare) or tested.op not in ("==", "!="):
+            return False
+        ends = {
+            key_of(p.lvalue) for side in (tested.left, tested.right) if self.kind(side) & DEADLINE
+            for p in parts(side) if isinstance(p, Load)
+        } - {None}  # fmt: skip
+        for given in map(gives, after):
+            if given is not None and key_of(given[0]) in ends and self.kind(given[1]):
+                return not any(isinstance(p, Load) and key_of(p.lvalue) in ends for p in parts(given[1]))
+        return False
 
     def counters(self) -> Iterator[Key]:
         """The objects that interrupt routines count up and no other statement sets."""
         counted: set[Key] = set()
         set_: set[Key] = set()
         for function in self.functions:
+            # A function that never ends is a task.
+            enters = function.interrupt or (function.path in self.entered and last_loop(function) is None)
             for s in statements(function.body):
                 if not isinstance(s, Assign) or not isinstance(s.target, LValue):
                     continue
                 key = key_of(s.target)
-                if key is not None and (function.interrupt or function.path in self.entered) and _counts(s):
+                if key is not None and enters and _counts(s):
                     counted.add(key)
                 elif key is not None:
                     set_.add(key)

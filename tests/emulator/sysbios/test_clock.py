@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from emulator import compiled
 from emulator.sysbios.core import KernelError
 from tests.emulator.sysbios.bench import TICK, Bench
+from tests.emulator.sysbios.c_program import seen
 
 
 def stamp(b: Bench, name: str = "x") -> Any:
@@ -38,6 +39,23 @@ def test_the_period_register_holds_the_period_and_the_timer_counts_one_more() ->
     b.run_ticks(5)
     assert b.kernel.Clock_getTicks() == 5
     assert b.kernel.Clock_getTickPeriod() == 1000
+
+
+def test_the_period_is_a_constant_of_the_program_too() -> None:
+    # Clock.h: `#define Clock_tickPeriod (ti_sysbios_knl_Clock_tickPeriod__C)`, a UInt32: nothing wraps at 65536.
+    assert seen("""
+void work(UArg a, UArg b)
+{
+    UInt32 asked = Clock_getTickPeriod();
+    UInt ms = 100;
+    note(Clock_tickPeriod == asked);
+    note(ti_sysbios_knl_Clock_tickPeriod__C == asked);
+    note(ms * Clock_tickPeriod == 100000UL);
+    Task_sleep(10 * 1000 / Clock_tickPeriod);
+    note((int)Clock_getTicks());
+}
+int main(void) { task(work, 1); BIOS_start(); return 0; }
+""") == [1, 1, 1, 10]
 
 
 def test_functions_of_one_tick_run_in_order_of_creation() -> None:

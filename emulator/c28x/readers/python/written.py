@@ -11,6 +11,8 @@ _OPERATORS: Final[dict[type, str]] = {
     ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.FloorDiv: "/", ast.Mod: "%", ast.LShift: "<<",
     ast.RShift: ">>", ast.BitOr: "|", ast.BitAnd: "&", ast.BitXor: "^", ast.USub: "-", ast.UAdd: "+", ast.Invert: "~",
 }  # fmt: skip
+#: Type of C-shaped Python -> type of C.
+_TYPES: Final = {"int16": "int", "uint16": "unsigned int", "int32": "long", "uint32": "unsigned long"}
 _ESCAPES: Final = {"\\": "\\\\", '"': '\\"', "'": "\\'", "\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
@@ -38,6 +40,9 @@ def expression(node: ast.expr, lines: Sequence[str]) -> str | None:
             return name
         case ast.Attribute(value=ast.Name(), attr=constant):  # a constant of an enumeration
             return constant
+        case ast.Call(func=ast.Name(id=ctype), args=[operand], keywords=[]) if ctype in _TYPES:
+            inner = expression(operand, lines)
+            return None if inner is None else f"({_TYPES[ctype]}){_nested(operand, inner)}"
         case ast.UnaryOp(op=op, operand=operand) if type(op) in _OPERATORS:
             inner = expression(operand, lines)
             return None if inner is None else f"{_OPERATORS[type(op)]}{_nested(operand, inner)}"

@@ -103,6 +103,8 @@ def define(text: str) -> Define:
         ("-1", "#define N (-1)"),
         ("~(A + 1)", "#define N (~(A + 1))"),
         ("US_SENSOR.LEFT", "#define N (LEFT)"),
+        ("uint32(1000)", "#define N ((unsigned long)1000)"),
+        ("int16(A + 1)", "#define N ((int)(A + 1))"),
     ],
 )
 def test_a_constant_keeps_its_writing_where_C_has_it(python: str, c: str) -> None:
