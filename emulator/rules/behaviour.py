@@ -325,6 +325,27 @@ which only keeps the value away from 0.
         "TRM ePWM: dead-band submodule",
     ),
     _rule(
+        "capture-edge", Severity.WARNING, "The time of an eCAP that is taken for a width is none.", """
+An echo, a servo pulse or a PWM is measured as its period, or as a number that only grows: the distance is always the
+same, or changes from one measurement to the next.
+
+An eCAP takes the count of its counter at each event, and `CAP1POL` and `CAP2POL` say which edge an event is: 0 a rising
+one, 1 a falling one. At the end of the run one of these holds:
+
+* both are the same edge, and the program takes the time between them (`CAP2` where `CTRRST1` resets the counter, or
+  `CAP2 - CAP1`) for a width: by the name of what gets it (`echoTicks`, `ancho`, `pulse_length`), or by a comment beside
+  `CAP1POL` or `CAP2POL` that says the other edge;
+* no event resets the counter, and `CAP2` alone, from which nothing is subtracted, goes to a width by its name.
+
+Not reported is a program that measures a period by its names, takes `CAP3` or `CAP4` too, changes the edges while it
+runs, prescales the input, or sets the counter itself.
+
+**Fix:** capture the rising edge as event 1 and the falling one as event 2, and reset the counter with event 1
+(`CTRRST1`), or subtract `CAP1`.
+""",
+        "TRM eCAP: capture mode; ECCTL1",
+    ),
+    _rule(
         "wrong-identity",
         Severity.WARNING,
         "The identity of a part is compared with that of another part.",

@@ -17,6 +17,7 @@ from emulator.devices.lv_maxsonar_ring import SonarRing
 from emulator.registers.i2c import I2CSTR
 from emulator.registers.spi import SPICCR, SPICTL
 from hil.drivers.budget import RUN, TimeBudget, computed
+from hil.drivers.capture_edges import wrong_capture_edges
 from hil.drivers.cut_messages import TRIAL, CutTrial, cut_messages
 from hil.drivers.face_scale import FaceScales
 from hil.drivers.face_zero import FaceZeros
@@ -276,6 +277,7 @@ def _run(
         *wrong_rates(build.modules, image.board, tick_us, peer_known=board_named),
         *wrong_timers(build.modules, image.board),
         *swallowed_pulses(build.modules, image.board),
+        *wrong_capture_edges(build.modules, image.board),
         *wrong_identities(build.modules, image.board, board_named=board_named),
     )  # fmt: skip
     for wrong in told:
