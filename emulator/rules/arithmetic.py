@@ -103,6 +103,10 @@ the value is used otherwise too, as for its upper word.
 A stamp of 16 bits of a clock of 32 is reported if it is subtracted from all of it: `if (millis - last >= PERIOD)`
 with `Uint16 last` is right for the first 65 seconds. `(Uint16)(millis - last)` is right for longer.
 
+A capture (`CAP2`) or count (`TSCTR`, `TIM`) that a 16-bit object keeps without a cast is reported before the program
+runs if a test then has one outcome only: `if (millimetres(width) < 200)`, where 65535 counts are 56 mm. Sixteen bits
+are enough for short pulses, and then nothing is reported.
+
 **Fix:** make the object `long`, or limit the value before the assignment.
 """,
         "ISO C 6.3.1.3 p3",

@@ -13,6 +13,7 @@ from emulator.c28x.passes.held import with_held_values
 from emulator.c28x.passes.small_functions import with_small_functions
 from hil.board import Board
 from hil.drivers.call_checker import CallChecker, CheckedFunction, Key, key_of
+from hil.drivers.cut_captures import cut_captures
 from hil.drivers.following import wrong_steps
 from hil.drivers.hysteresis import equal_limits
 from hil.drivers.limits import unused_limits
@@ -110,7 +111,7 @@ def source_findings(build: Build) -> list[Finding]:
     image = build.image()
     for mixed in (
         *mixed_units(build.modules, image.board.kernel.clocks.tick_period_us), *unused_limits(build.files),
-        *equal_limits(build.modules),
+        *equal_limits(build.modules), *cut_captures(build.modules),
     ):  # fmt: skip
         image.board.findings.report_at(mixed.place, mixed.rule, mixed.message, object=mixed.object, how="static")
     steps = {step.place: step for step in wrong_steps(build.modules)}  # as the source has it, where that shows it
