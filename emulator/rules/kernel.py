@@ -176,22 +176,24 @@ that instruction. A copy by 16-bit words, a mask of one half, or another process
     ),
     _rule(
         "race-long", Severity.WARNING, "Two threads share a 32-bit scalar without mutual exclusion.", """
-One thread writes a `float` or `long`, another reads it, and they share no gate. The C28x moves an aligned 32-bit word
-with one instruction (MOVL, MOV32), so the value is whole while the compiler uses it. C does not promise that: a `long`
-may be added or masked in halves, and a copy of 16-bit words is a copy of halves. A set is never whole: three distances
-that are read in sequence can come from two measurements.
+Threads use a `float` or `long` and share no gate. The C28x moves an aligned 32-bit word with one instruction (MOVL,
+MOV32), so the value is whole while the compiler uses it. C does not promise that: a `long` may be masked, shifted or
+cut in halves, and a copy of 16-bit words is a copy of halves. A function that reads it twice can work with two values.
+A set is never whole: three distances that are read in sequence can come from two measurements.
 
-If two threads write, the last write wins.
+If two threads write, the last write wins. If one thread writes it as a whole and each function that reads it does so
+once, without another value of the same writer beside it, the rule is `race-word`.
 
 **Fix:** read and write it under the gate of its server, all values of one measurement at once.
 """, "CPU 2.2.5, MOVL; ISO C 5.1.2.3",
     ),
     _rule(
-        "race-word", Severity.NOTE, "Two threads share a 16-bit word without mutual exclusion.", """
-One instruction loads or stores 16 bits, so the word is whole. That is enough for a flag between a handler and a task,
-and the finding only says that such a word exists. Check three things: the word can change between two reads of one
-function; the compiler may keep it in a register unless it is `volatile`; it orders only data that are written before it
-and read after it.
+        "race-word", Severity.NOTE, "Two threads share a word without mutual exclusion.", """
+One instruction loads or stores 16 bits, so the word is whole. So is a `float` or `long` that one thread writes as a
+whole, and that a function reads once (MOVL, MOV32); otherwise the rule is `race-long`. That is enough for a flag
+between a handler and a task, and the finding only says that such a word exists. Check three things: the word can change
+between two reads of one function; the compiler may keep it in a register unless it is `volatile`; it orders only data
+that are written before it and read after it.
 
 If a lower thread reads and writes the word in one statement while a higher one writes it, the rule is `race`. An index
 that one thread alone moves round a ring buffer (`i = (i + 1) % N`) is not reported if it is `volatile`, or if only the
@@ -489,7 +491,8 @@ The owner of the gate sleeps or waits for a semaphore, so a higher priority does
 `GateMutex` or a semaphore (created with 1, posted by the task that took it): these have no priority inheritance, and
 any task in between runs first.
 
-The value is how long the high task waited, in microseconds.
+If the owner of a `GateMutexPri` sleeps or pends, the place is that statement, and the details name the waiting one. The
+value is how long the high task waited, in microseconds.
 
 **Fix:** never wait while you hold a gate; use `GateMutexPri`, not a semaphore, for mutual exclusion.
 """, "BIOS, GateMutexPri, GateMutex, Semaphore",

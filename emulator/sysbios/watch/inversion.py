@@ -14,6 +14,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from emulator.c28x.findings import Findings
+from emulator.c28x.position import interrupted
+from emulator.c28x.sites import Place
 from emulator.clock import us
 from emulator.sysbios.gate_mutex_pri import GateMutexPri
 from emulator.sysbios.scheduler import BLOCKED, Task
@@ -37,8 +39,9 @@ class BlockedTask:
     taken: StatementNumber
     #: The threads that must run before the wait can end.
     helpers: set[Thread] = field(default_factory=set)
-    #: Where one of them blocked during the wait.
+    #: Where one of them blocked during the wait, and the call path if this was the holder itself.
     blocked: str = ""
+    path: tuple[Place, ...] = ()
     #: A gate that one of them waited for itself: priority inheritance does not reach the owner of this gate.
     chained: str = ""
 
@@ -147,8 +150,11 @@ class Inversion:
             wait.chained = self._names.of(found[0])
             wait.helpers |= found[1].helpers
         elif isinstance(helper.what, Task):
-            statement = self._locator.of(helper.what, self._threads.kernel.tasks.current)
-            wait.blocked = self._locator.text(statement)
+            current = self._threads.kernel.tasks.current
+            wait.blocked = self._locator.text(self._locator.of(helper.what, current))
+            if helper is wait.holder:
+                position = self._findings.position if helper.what is current else helper.what
+                wait.path = self._findings.path(*interrupted(position.at, position.calls))
 
     def _judge(self, thread: Thread, name: str) -> None:
         """The wait is over.  Report it if tasks of priorities in between had the CPU meanwhile."""
@@ -176,8 +182,15 @@ class Inversion:
             why = f"{holder} itself waited for {wait.chained}, and inheritance is not transitive"
         else:
             why = f"{holder} lost the inherited priority before it left the gate"
-        self._findings.report(
-            rule, f"{thread} waited {waited:.1f} us for {name}, held by {wait.holder}, while {middle} ran for "
-            f"{us(cycles):.1f} us: {why}", object=name, value=waited,
-            details=(f"{holder} took it in {self._locator.text(wait.taken)}",),
-        )  # fmt: skip
+        message = (
+            f"{thread} waited {waited:.1f} us for {name}, held by {wait.holder}, while {middle} ran for "
+            f"{us(cycles):.1f} us: {why}"
+        )
+        taken = f"{holder} took it in {self._locator.text(wait.taken)}"
+        if lends and wait.path:  # the cause is the statement at which the holder blocks
+            self._findings.report_at(
+                wait.path[0], rule, message, object=name, value=waited, how="dynamic", call_path=wait.path, task=holder,
+                details=(taken, f"{thread.name} waits in {self._locator.text(self._locator.here())}"),
+            )  # fmt: skip
+        else:
+            self._findings.report(rule, message, object=name, value=waited, details=(taken,))

@@ -284,6 +284,7 @@ def _order(calls: Calls, threads: ThreadWatch) -> None:
     calls.before(
         "Semaphore_post", "Swi_post", "Swi_or", "Swi_inc", "Swi_andn", "Swi_dec", "Clock_start", callback=released
     )
+    calls.before("Task_setPri", callback=threads.set_priority)
     calls.before("Hwi_enableInterrupt", callback=enabled)
     calls.after("Hwi_disableInterrupt", callback=disabled)
     calls.after("Hwi_create", "Swi_create", "Clock_create", callback=made)

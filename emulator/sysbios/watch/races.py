@@ -15,7 +15,7 @@ comparison of times or a peripheral's own interrupt enable gives.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from typing import Final
 
 from emulator.c28x.ctypes import ArrayType, CType, FloatType, StructType
@@ -48,6 +48,7 @@ from emulator.sysbios.watch.pairs import (
 from emulator.sysbios.watch.statements import Function, StatementLocator, StatementNumber
 from emulator.sysbios.watch.threads import HWI_LEVEL, SWI_LEVEL, Gate, Routine, Thread, ThreadWatch, excluded
 from emulator.sysbios.watch.untold import untold_words
+from emulator.sysbios.watch.whole_words import whole_words
 
 _RANK: Final = {"race-word": 1, "unmasked-long": 1, "race-long": 2, "race": 3}
 #: When this many locals are kept, those of functions that have returned are dropped.
@@ -147,6 +148,8 @@ class Races:
         self._divided: set[StructType] | None = None
         #: Indices of ring buffers, from the source; None: not read yet.
         self._indices: dict[Word, bool] | None = None
+        #: 32-bit objects that functions move as a whole, from the source; None: not read yet.
+        self._whole: Mapping[str, Mapping[Function, int]] | None = None
         self._threads = threads
         self._locator = locator
         self._names = names
@@ -430,6 +433,8 @@ class Races:
                 if rule == "race-word" and not goes_on:
                     return  # a flag, counter or index: programs without a kernel rightly do it so
                 rule = "race" if goes_on else "unmasked-long"
+            elif rule == "race-long" and self._is_whole(shared, cell, other, access):
+                rule = "race-word"
         if rule == "race-word" and self._is_index(shared, cell, offset, lower, higher):
             return
         if _RANK[rule] <= shared.rank:
@@ -450,6 +455,17 @@ class Races:
         elif early and not lost:
             said += f", because {early} is handed over before that"
         self._report(shared, rule, said, other, at)
+
+    def _is_whole(self, shared: SharedObject, cell: SharedCell, other: LatestAccess, access: LatestAccess) -> bool:
+        """Whether one thread writes a 32-bit object, and each access moves it whole; a reader looks at it once."""
+        if self._whole is None:
+            self._whole = whole_words(self._modules)
+        reads = self._whole.get(shared.object.declaration.path, {})
+        once = all(
+            function in reads and (each.write or reads[function] < 2)
+            for each in (other, access) for function in (self._locator.function(each.statement),)
+        )
+        return once and len(cell.writers | {each.thread for each in (other, access) if each.write}) == 1
 
     def _is_index(
         self, shared: SharedObject, cell: SharedCell, offset: int, lower: LatestAccess, higher: LatestAccess

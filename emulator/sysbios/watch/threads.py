@@ -233,7 +233,6 @@ class ThreadWatch:
         trace.listen(self._swi_ends, "swi end", each_tick=False)
         trace.listen(self._readied, "ready", each_tick=False)
         trace.listen(self._clock_runs, "clock", each_tick=False)
-        trace.listen(self._raised, "priority", each_tick=False)
         trace.ticks_joined.connect(self._ticks_passed)
 
     def _switched(self, cycles: int, _kind: str, _name: str) -> None:
@@ -316,14 +315,9 @@ class ThreadWatch:
         task = next(task for task in reversed(self.kernel.tasks.all) if task.name == name)
         self.of(task)
 
-    def _raised(self, _cycles: int, _kind: str, name: str) -> None:
-        """`Task_setPri` by the firmware gives a task another level; inheritance does not."""
-        task_name, _, priority = name.rpartition("=")
-        if task_name not in self._tasks:
-            self._created(task_name)
-        thread = self._tasks[task_name]
-        if not any(gate.owner is thread.what for gate in thread.entered):
-            thread.level = int(priority)
+    def set_priority(self, task: Task, priority: int) -> None:
+        """The firmware gives a task another priority.  What a task inherits at a gate is not its own."""
+        self.of(task).level = priority
 
     def of(self, what: Any) -> Thread:
         """The thread of a task, Swi, Hwi, Clock object or routine.

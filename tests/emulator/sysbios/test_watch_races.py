@@ -207,7 +207,7 @@ PAIRS = {
         two_tasks("count: int16 = 0", "count = count + 1", "n = Swi_disable()\ncount = count - 1\nSwi_restore(n)"),
     ),
     "float": (
-        "race-long", two_tasks("d: float32 = 0", "d = 1", "x = d"),
+        "race-word", two_tasks("d: float32 = 0", "d = 1", "x = d"),
         two_tasks("d: float32 = 0", UNDER.format("d = 1"), UNDER.format("x = d")),
     ),
     "word": (
@@ -215,7 +215,7 @@ PAIRS = {
         two_tasks("s: int16 = 0", UNDER.format("s = 1"), UNDER.format("n = s")),
     ),
     "float handed over": (
-        "race-long", two_tasks("d: float32 = 0", "d = 1", "x = d"),
+        "race-word", two_tasks("d: float32 = 0", "d = 1", "x = d"),
         two_tasks("d: float32 = 0", "d = 1\nSemaphore_post(semB)", "x = d", clocks="every(postA, 5, 5)"),
     ),
     "ring": (
@@ -233,6 +233,20 @@ PAIRS = {
         two_tasks(PAIR, UNDER.format(WRITE), UNDER.format(READ)),
     ),
 }  # fmt: skip
+
+
+@pytest.mark.parametrize(("declared", "high", "low", "noted"), [
+    ("d: float32 = 0", "d = d + 1", "d = 2", "x = d"),  # two tasks write
+    ("d: float32 = 0", "d = 1", "if d > 3:\n    x = d", "x = d\nif x > 3:\n    x = 3"),  # the two must agree
+    ("d: float32 = 0\ne: float32 = 0", "d = 1\ne = 1", "x = d + e", "x = d"),  # a set of two
+    ("d: uint32 = 0", "d = d + 1", "n = int16(d)", "x = d"),  # a half
+    ("d: uint32 = 0", "d |= 1", "x = d", "if n:\n    x = d\nelse:\n    x = d + 1"),
+])  # fmt: skip
+def test_a_long_that_one_task_writes_whole_and_another_reads_once_is_noted(
+    declared: str, high: str, low: str, noted: str
+) -> None:
+    assert found(two_tasks(declared, high, low)) == {"race-long"}
+    assert found(two_tasks(declared, "d = 1", noted)) == {"race-word"}
 
 
 @pytest.mark.parametrize("name", PAIRS)
@@ -370,7 +384,7 @@ def test_a_handler_that_is_held_off_is_silent(body: str) -> None:
 
 def test_a_finding_names_both_places_the_tasks_and_the_object() -> None:
     specimen = Watched(two_tasks("d: float32 = 0", "d = 1", "x = d")).run(60)
-    finding = specimen.one("race-long")
+    finding = specimen.one("race-word")
     lines = specimen.lines
     assert finding.object == "drv.d"
     assert finding.place is not None

@@ -129,6 +129,25 @@ def test_its_correct_twin_is_silent(name: str) -> None:
     assert rules <= {"busy-wait"}
 
 
+def test_an_inversion_is_told_where_the_holder_sleeps() -> None:
+    specimen = Watched(CHAIN.format(high=TAKE, low=HOLD.format("Task_sleep(6)"), main="pass")).run(60)
+    finding = specimen.one("priority-inversion")
+    assert finding.place is not None
+    assert specimen.lines[finding.place.line - 1].strip() == "Task_sleep(6)"
+    assert finding.task == "Low"
+    assert finding.details[1].startswith("High waits in High (drv.py:")
+
+
+def test_an_inversion_names_the_own_priority_of_a_task() -> None:
+    # Low passes the gate on to Lowest while no task may run.  High then wants it, and Lowest inherits 6 before it runs.
+    low = HOLD.format("Task_sleep(4)\n        n = Task_disable()") + "\n        DelayUs(3000)\n        Task_restore(n)"
+    text = CHAIN.format(high=TAKE, low=low, main="task(Lowest, 5)").replace("postA, 22", "postA, 26")
+    waits = "Task_sleep(21)\n    n = GateMutexPri_enter(gate)\n    GateMutexPri_leave(gate, n)"
+    begin, end = text.index("Task_sleep(19)"), text.index("\n    Task_sleep(1000)")
+    finding = Watched(text[:begin] + waits + text[end:]).run(60).one("priority-inversion")
+    assert finding.message.startswith("Lowest (priority 5) waited")
+
+
 def test_a_missed_deadline_gives_the_longest_response_and_who_ran() -> None:
     """Low is released every 20 ms and needs 3 ms; High takes 19 of every 20 ms: Low cannot finish in time."""
     specimen = Watched(two_tasks(
