@@ -132,7 +132,10 @@ division, a shift to the right or a comparison by order does not. These wraps ar
   or a digit goes down from 0 to its limit in that way;
 * a difference of two 16-bit numbers that goes into a `long`, if one of them has wrapped;
 * a sum or product of two constants, before the program runs: `400u * 195u` is 12464, because `unsigned int` has 16
-  bits.
+  bits;
+* a difference of two positions of an eQEP in quadrature mode that becomes a float, or is divided (shown at the end of
+  the run): one step back is 4294967295. Not if the program compares steps or positions by order, or reads the
+  direction.
 
 These wraps are not reported: a difference that wraps by more than half of the range, because it is the elapsed count
 of a free-running counter; and a result that is cast to its own type.

@@ -10,7 +10,7 @@ program starts may stand at the end: a motor then waits for its next move.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Final, NamedTuple
 
 from emulator.c28x.ctypes import FloatType, IntType
@@ -74,7 +74,9 @@ _ECCTL1_PRESCALE: Final = 0x3E00
 class HardwareCounts:
     """The values of a program that are counts of one hardware counter."""
 
-    def __init__(self, modules: Iterable[Module]) -> None:
+    def __init__(self, modules: Iterable[Module], registers: Mapping[str, frozenset[str]] = _REGISTERS) -> None:
+        """`registers`: kind of block -> those that hold a count."""
+        self._registers = registers
         stamps = Stamps(modules, frozenset())
         for function in stamps.functions:
             stamps.read(function)
@@ -107,7 +109,7 @@ class HardwareCounts:
             case Convert(operand=operand) | Unary(operand=operand) if isinstance(e.ctype, IntType | FloatType):
                 return self._counters(operand)
             case RegisterLoad(register=RegisterRef() as register):
-                return frozenset({_counter_of_register(register)})
+                return frozenset({self._counter_of_register(register)})
             case Call(function=function, arguments=arguments) if function.name in _FUNCTIONS:
                 return frozenset({_counter_of_call(function, arguments)})
             case Call(function=function) if not function.extern:
@@ -121,17 +123,16 @@ class HardwareCounts:
                 return self._counters(left) | self._counters(right)
         return frozenset({OTHER})
 
+    def _counter_of_register(self, register: RegisterRef) -> str:
+        block = register.block.removesuffix("Regs")
+        counts = register.field is None and register.register in self._registers.get(block.rstrip("0123456789"), ())
+        return block if counts else OTHER
+
 
 def _is_number(value: Expr) -> bool:
     """Whether a value is a constant, and not one with which an object of counts begins."""
     constant = bare(value)
     return isinstance(constant, Const) and constant.value not in (0, -1, 0xFFFF, 0xFFFFFFFF)
-
-
-def _counter_of_register(register: RegisterRef) -> str:
-    block = register.block.removesuffix("Regs")
-    counts = register.field is None and register.register in _REGISTERS.get(block.rstrip("0123456789"), ())
-    return block if counts else OTHER
 
 
 def _counter_of_call(function: Function, arguments: list[Expr]) -> str:

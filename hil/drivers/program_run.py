@@ -32,6 +32,7 @@ from hil.drivers.sent_texts import SentTexts
 from hil.drivers.sources import ArrivalWatch
 from hil.drivers.stale import AgeWatch, watched
 from hil.drivers.stated_rates import wrong_rates
+from hil.drivers.steps_back import huge_steps
 from hil.drivers.thrown_away import thrown_away
 from hil.drivers.time_counts import TimeCounts
 from hil.drivers.units import misread_counts
@@ -277,7 +278,7 @@ def _run(
         *wrong_rates(build.modules, image.board, tick_us, peer_known=board_named),
         *wrong_timers(build.modules, image.board),
         *swallowed_pulses(build.modules, image.board),
-        *wrong_capture_edges(build.modules, image.board),
+        *wrong_capture_edges(build.modules, image.board), *huge_steps(build.modules, image.board),
         *wrong_identities(build.modules, image.board, board_named=board_named),
     )  # fmt: skip
     for wrong in told:
