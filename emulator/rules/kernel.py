@@ -319,14 +319,15 @@ milliseconds.
 `Mailbox_pend` with a time-out returns FALSE when no message has come, and does not change the message. A call that
 ignores the result uses the last message again, as long as the sender is silent: the program acts on a dead sensor.
 
-It is reported at the second missing message in a row, after one that came. A cast to `void` says that it is meant; a
-call with time-out 0 is not reported.
+It is reported at the second missing message in a row, after one that came. If no message was missing, it is reported
+only if the message is a local that has no value before: the first time-out computes with garbage. Else the rule is
+`wait-untested`. A cast to `void` says that it is meant; a call with time-out 0 is not reported.
 
 **Fix:** `if (Mailbox_pend(...)) { ... } else { stop; }`.
 """, "BIOS, Mailbox_pend: returns FALSE on timeout",
     ),
     _rule(
-        "wait-untested", Severity.NOTE, "Nothing tests whether an interrupt came before the time-out of a wait.", """
+        "wait-untested", Severity.NOTE, "Nothing tests what ended a wait: what it waited for, or the time-out.", """
 `Semaphore_pend` with a time-out returns FALSE when nobody has posted. If the interrupt that posts stops, a task that
 ignores the result goes on with the old measurement, for ever: it counts the same charge again, and the contactor stays
 closed.
@@ -334,6 +335,9 @@ closed.
 It is reported if only interrupts post the semaphore, and what follows the wait uses an object that the routine writes,
 or if the task has reset the semaphore before, to wait for what it then starts. A test that may show whether anything
 has come (of a count, a flag, an age, a register, a result) is enough. A cast to `void` says that it is meant.
+
+`Mailbox_pend` with a time-out is reported if what follows uses the message: without a new one, it is the last one
+again. It is not if the program sets the message before each wait.
 
 It is a note, because a display may be drawn again at the latest after the time-out.
 

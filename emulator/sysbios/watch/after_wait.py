@@ -9,6 +9,7 @@ from typing import Final
 from emulator.c28x.declarations import lines_with_comments
 from emulator.c28x.passes.dropped import casts_to_void
 from emulator.c28x.tree import (
+    AddressOf,
     Assign,
     Binary,
     Call,
@@ -29,7 +30,7 @@ from emulator.c28x.tree import (
     Where,
     While,
 )
-from emulator.c28x.tree_queries import assigned, assigned_variables, blocks, own_nodes, parts, statements
+from emulator.c28x.tree_queries import assigned, assigned_variables, bare, blocks, own_nodes, parts, statements
 from emulator.sysbios.watch.names import first_argument
 
 #: Calls at which a thread may wait: what follows them no longer belongs to the wait before.
@@ -80,6 +81,46 @@ def used_again(wait: IgnoredWait, function: Function, posters: Iterable[Function
         for s in wait.before for part in own_nodes(s)
     )  # fmt: skip
     return "" if asked and wait.after else None
+
+
+def message_used(wait: IgnoredWait) -> Variable | None:
+    """The object into which a pend on a mailbox stores its message, if what follows uses it; else None.
+
+    If it is set before each wait, it tells whether a message has come.
+    """
+    buffer = _buffer(wait.call)
+    if any(assigned(s) is buffer for s in wait.before):
+        return None
+    used = any(
+        isinstance(part, LValue) and part.root is buffer for s in statements(wait.after) for part in own_nodes(s)
+    )  # fmt: skip
+    return buffer if buffer is not None and used else None
+
+
+def message_tested(wait: IgnoredWait, buffer: Variable) -> bool:
+    """Whether a test after a wait asks for something that may tell whether the message is a new one."""
+    return _tested(wait.after, {buffer})
+
+
+def only_received(buffer: Variable, wait: IgnoredWait, function: Function) -> bool:
+    """Whether a local has no value before a wait stores a message in it: nothing else writes it or has its address."""
+    if buffer.kind != "local" or buffer.initialised:
+        return False
+    given = {id(wait.statement), *(id(s) for s in statements(wait.after))}
+    for s in statements(function.body):
+        here = id(s) not in given
+        if here and any(isinstance(p, AddressOf) and p.lvalue.root is buffer for p in own_nodes(s)):
+            return False
+        if assigned(s) is buffer and not (isinstance(s, Declare) and s.value is None):
+            return False
+    return True
+
+
+def _buffer(call: Call) -> Variable | None:
+    match bare(call.arguments[1]) if len(call.arguments) > 1 else None:
+        case AddressOf(lvalue=LValue(root=Variable() as buffer)):
+            return buffer
+    return None
 
 
 def _is_meant(where: Where) -> bool:

@@ -7,7 +7,8 @@ long, and only time ended the wait: a timeout or Task_sleep.
 `timeout-ignored`: a pend on a mailbox that timed out leaves the message unchanged.
 
 `wait-untested`: a pend on a semaphore that only interrupts post; what follows is for what the interrupt brings, and
-nothing tests whether it came.
+nothing tests whether it came.  Or a pend on a mailbox whose result nothing uses, while what follows uses the message.
+The rule is `timeout-ignored`, although no message was missing, if the message is a local without a value before.
 """
 
 from __future__ import annotations
@@ -17,11 +18,13 @@ from typing import Any, Final
 
 from emulator.c28x.findings import Findings
 from emulator.c28x.link import Linked
+from emulator.c28x.sites import Place
+from emulator.c28x.tree import Variable
 from emulator.clock import CYCLES_PER_MS, ms
 from emulator.sysbios.core import HWI, WAIT_FOREVER
 from emulator.sysbios.mailbox import Mailbox
 from emulator.sysbios.semaphore import Semaphore
-from emulator.sysbios.watch.after_wait import ignored_waits, used_again
+from emulator.sysbios.watch.after_wait import ignored_waits, message_tested, message_used, only_received, used_again
 from emulator.sysbios.watch.calls import Calls
 from emulator.sysbios.watch.gates import Gates
 from emulator.sysbios.watch.names import HandleNames
@@ -52,14 +55,17 @@ class TimeoutWatch:
         #: Statement -> how many of its pends in a row got no message, since the last that got one.
         self._silences: dict[StatementNumber, int] = {}
         self._ignored: set[tuple[str, int]] | None = None
-        #: Waits with a timeout for a semaphore: the statement, the semaphore and the ticks.
-        self._pends: dict[StatementNumber, tuple[Semaphore, int]] = {}
+        #: File and line of the pends that two missing messages have shown.
+        self._told: set[tuple[str, int]] = set()
+        #: Waits with a timeout for a semaphore or a message: the statement, the kernel's object and the ticks.
+        self._pends: dict[StatementNumber, tuple[Semaphore | Mailbox, int]] = {}
         calls.before("Semaphore_post", "Event_post", "Mailbox_post", callback=self._posting)
         for name in ("Semaphore_pend", "Event_pend", "Mailbox_pend", "Mailbox_post"):
             calls.before(name, callback=self._begins)
             calls.after(name, callback=partial(self._ended, name))
         calls.before("Task_sleep", callback=self._begins)
         calls.after("Task_sleep", callback=self._slept)
+        calls.before("Mailbox_pend", callback=self._awaits_message)
         calls.after("Mailbox_pend", callback=self._message)
 
     def _posting(self, what: Any, *_arguments: Any) -> None:
@@ -77,6 +83,8 @@ class TimeoutWatch:
                 if at is None or at[1] not in self._by_interrupt or at[1] in self._by_others:
                     continue
                 place, semaphore, timeout = at
+                if not isinstance(semaphore, Semaphore):
+                    continue
                 posters = [functions[path] for path in self._names.callers("Semaphore_post", semaphore)]
                 used = used_again(wait, function, posters)
                 if used is None:
@@ -88,13 +96,39 @@ class TimeoutWatch:
                     + (f"what follows uses {used} again" if used else "what follows goes on without it"),
                     object=name, how="dynamic",
                 )  # fmt: skip
+            for wait in ignored_waits(function, "Mailbox_pend"):
+                at = waited.get((wait.statement.where.file, wait.statement.where.line))
+                buffer = message_used(wait)
+                if at is not None and buffer is not None and isinstance(at[1], Mailbox):
+                    garbage = only_received(buffer, wait, function)
+                    if garbage or not message_tested(wait, buffer):
+                        self._unread(at[0], at[1], at[2], buffer, garbage=garbage)
+
+    def _unread(self, place: Place, mailbox: Mailbox, timeout: int, buffer: Variable, *, garbage: bool) -> None:
+        """Report a pend on a mailbox whose result nothing uses, if no missing message has shown it."""
+        if place[:2] in self._told:
+            return
+        message, name = buffer.declaration.name, self._names.of(mailbox)
+        without = f"{message}, which has no value before the first message" if garbage else f"{message} again"
+        self._findings.report_at(
+            place, "timeout-ignored" if garbage else "wait-untested",
+            f"nothing tests whether {name} gave a message within {timeout} ticks: what follows uses {without}",
+            object=name, how="dynamic",
+        )  # fmt: skip
 
     def _begins(self, *arguments: Any) -> None:
         if len(arguments) == 2 and isinstance(arguments[0], Semaphore):
-            timeout = arguments[1] & self._threads.kernel.tasks.timeout_mask
-            if timeout not in (0, WAIT_FOREVER):
-                self._pends[self._locator.here()] = arguments[0], timeout
+            self._awaits(arguments[0], arguments[1])
         self._began[self._threads.current] = self._clock.now
+
+    def _awaits(self, what: Semaphore | Mailbox, ticks: int) -> None:
+        """A thread begins to wait for a semaphore or a message."""
+        timeout = ticks & self._threads.kernel.tasks.timeout_mask
+        if timeout not in (0, WAIT_FOREVER):
+            self._pends[self._locator.here()] = what, timeout
+
+    def _awaits_message(self, mailbox: Mailbox, _message: Any, ticks: int) -> None:
+        self._awaits(mailbox, ticks)
 
     def _ended(self, function: str, result: int, what: Any, *arguments: Any) -> None:
         timeout = arguments[-1] if arguments else 0
@@ -132,6 +166,7 @@ class TimeoutWatch:
             place = self._locator.place(statement)
             if self._silences[statement] == SILENCES and place is not None and place[:2] in self._ignored_pends():
                 name = self._names.of(mailbox)
+                self._told.add(place[:2])
                 self._findings.report(
                     "timeout-ignored",
                     f"{name} gave no message in {timeout} ticks, and this statement does not test the result: what "

@@ -100,3 +100,55 @@ def test_a_wait_whose_result_nothing_tests(tmp_path: Path, take: str, body: str,
         assert finding.object == "Link.came"
         assert finding.place is not None
         assert PEND in text.splitlines()[finding.place.line - 1]
+
+
+#: A sender that is never silent, and a task that uses what it sends.
+MESSAGES = """#include <xdc/std.h>
+#include <ti/sysbios/BIOS.h>
+#include <ti/sysbios/knl/Mailbox.h>
+#include <ti/sysbios/knl/Task.h>
+typedef struct { UInt value, number; } Sample;
+static Mailbox_Handle box;
+static UInt32 sum = 0;
+static UInt last = 0;
+static Void Send(UArg a, UArg b)
+{
+    Sample sample = { 3, 0 };
+    for (;;) { sample.number++; Mailbox_post(box, &sample, BIOS_NO_WAIT); Task_sleep(1); }
+}
+static Void Take(UArg a, UArg b)
+{
+    DECLARED
+    for (;;) { BODY }
+}
+Int main(void)
+{
+    box = Mailbox_create(sizeof(Sample), 4, NULL, NULL);
+    Task_create(Send, NULL, NULL);
+    Task_create(Take, NULL, NULL);
+    BIOS_start();
+    return 0;
+}
+"""
+GETS = "Mailbox_pend(box, &m, 50);"
+
+
+@pytest.mark.parametrize(("declared", "body", "rule"), [
+    ("Sample m;", f"{GETS} sum += m.value;", "timeout-ignored"),  # garbage after the first time-out
+    ("Sample m;", f"{GETS} if (m.number != last) sum += m.value; last = m.number;", "timeout-ignored"),
+    ("Sample m = { 0, 0 };", f"{GETS} sum += m.value;", "wait-untested"),
+    ("static Sample m = { 0, 0 };", f"{GETS} sum += m.value;", "wait-untested"),
+    ("Sample m; Mailbox_pend(box, &m, BIOS_WAIT_FOREVER);", f"{GETS} sum += m.value;", "wait-untested"),
+    # The result is asked for; the message tells it; no use of the result is meant; nothing uses the message.
+    ("Sample m;", f"if ({GETS[:-1]}) sum += m.value;", ""),
+    ("Sample m = { 0, 0 };", f"{GETS} if (m.number != last) sum += m.value; last = m.number;", ""),
+    ("Sample m;", f"m.value = 0; {GETS} sum += m.value;", ""),
+    ("Sample m;", f"(void){GETS} sum += m.value;", ""),
+    ("Sample m;", f"{GETS} sum++;", ""),
+    ("Sample m;", "Mailbox_pend(box, &m, BIOS_WAIT_FOREVER); sum += m.value;", ""),
+])  # fmt: skip
+def test_a_message_that_nothing_tests(tmp_path: Path, declared: str, body: str, rule: str) -> None:
+    file = tmp_path / "box.c"
+    file.write_text(MESSAGES.replace("DECLARED", declared).replace("BODY", body), encoding="utf-8")
+    found = check_files(DriverFiles([file], seconds=0.02, calls=1)).findings
+    assert [f.rule for f in found if f.rule in ("timeout-ignored", "wait-untested")] == ([rule] if rule else [])
