@@ -71,10 +71,11 @@ cast, where it is scaled or becomes a float.
         """
 A ratio or a percentage is 0, or always a whole number.
 
-With integers, `float ratio = a / b;` divides as integers: 3 / 4 is 0, and then 0.0. `a / b * 100` does the same. This
-is valid C, so compilers do not warn. The finding is made only when a remainder was really lost, from a quotient below
-100: above that the loss is less than a hundredth. After such a quotient nothing is told at its place: a speed that was
-3000 rpm may fall to 71 rpm.
+With integers, `float ratio = a / b;` divides as integers: 3 / 4 is 0, and then 0.0. `a / b * 100` does the same, and
+so does `code / 4095 * 120` with the full scale of an ADC (other constant divisors may count whole units). This is valid
+C, so compilers do not warn. The finding is made only when a remainder was really lost, from a quotient below 100: above
+that the loss is less than a hundredth. After such a quotient nothing is told at its place: a speed that was 3000 rpm
+may fall to 71 rpm.
 
 **Fix:** make one operand a float: `(float) a / b`. If you want the whole number, keep it in an integer.
 """,

@@ -256,6 +256,7 @@ def _report_of_drivers(wanted: DriverFiles, policy: Policy, *, quiet: bool, upda
         outcome={"fill": wanted.fill, "seed": wanted.seed, "calls": wanted.calls},
         uncalibrated_factor=UNCALIBRATED_FACTOR, faults=checked.faults,
         not_silenced=checked.ran.not_silenced if checked.ran else (),
+        moved=checked.ran.moved if checked.ran else (),
     )  # fmt: skip
     return Report.of(
         checked.findings, run=run, policy=policy, baseline=known_before,

@@ -55,11 +55,11 @@ _LONG: Final = 300
 OTHERS: Final = _MOST * (_PAUSE + _TAKEN)
 
 #: What must not happen whatever comes.
-_OUTSIDE: Final = frozenset({
+OUTSIDE: Final = frozenset({
     "index", "unsigned-wrap-index", "table-short", "pointer-outside", "null-dereference", "memcpy-outside",
 })  # fmt: skip
 #: What must not happen with a number that is taken.
-_WRONG: Final = _OUTSIDE | {
+WRONG: Final = OUTSIDE | {
     "overflow", "widened-late", "unsigned-wrap", "narrowed", "float-to-int", "division-by-zero", "shift-range",
 }  # fmt: skip
 
@@ -163,7 +163,7 @@ class OtherMessages:
             while low < high:
                 taken = takes <= (yield from send(renew(number.put(text, side[tried]))))
                 refused += [] if taken else [side[tried]]
-                seen += ((side[tried], taken, finding) for finding in self._new() if finding.rule in _WRONG)
+                seen += ((side[tried], taken, finding) for finding in self._new() if finding.rule in WRONG)
                 low, high = (tried + 1, high) if taken else (low, tried)
                 tried = (low + high) // 2
         for value, taken, finding in seen:
@@ -181,7 +181,7 @@ class OtherMessages:
         self._new()
         yield from send(text)
         for finding in self._new():
-            if finding.rule in _OUTSIDE:
+            if finding.rule in OUTSIDE:
                 self._keep(finding, (f"after the usual time, with {what}: {_shown(text)}",), sure=True)
 
     def _send(self, name: str, base: SerialFrame, text: bytes) -> Generator[int, None, set[CountedPlace]]:

@@ -36,7 +36,7 @@ _FRACTION: Final = 1e-6
 _DEPTH: Final = 3
 
 
-class _Reckoned(NamedTuple):
+class _ClockedPeriod(NamedTuple):
     """A period as the source reckons it: with which clock, and from what."""
 
     name: str
@@ -45,7 +45,7 @@ class _Reckoned(NamedTuple):
     certain: bool
 
 
-class _Setting(NamedTuple):
+class _PeriodSetting(NamedTuple):
     """A statement that sets a period."""
 
     function: Function
@@ -81,22 +81,22 @@ def misreckoned_periods(modules: Iterable[Module], chip: Chip) -> Iterator[UnitM
         yield UnitMismatch(place, message, found.name, "count-by-name")
 
 
-def _settings(function: Function) -> Iterator[_Setting]:
+def _settings(function: Function) -> Iterator[_PeriodSetting]:
     for s in statements(function.body):
         if isinstance(s, Assign) and isinstance(s.target, RegisterRef):
             register = time_register(s.target)
             if register is not None and register.name in _PERIODS:
-                yield _Setting(function, s, register, s.value)
+                yield _PeriodSetting(function, s, register, s.value)
         for p in own_nodes(s):
             register = set_by_call(p.function, p.arguments) if isinstance(p, Call) else None
             if isinstance(p, Call) and register is not None and register.name in _PERIODS:
-                yield _Setting(function, s, register, p.arguments[-1])
+                yield _PeriodSetting(function, s, register, p.arguments[-1])
 
 
 _Given = list[tuple[tuple[object, ...], Expr]]
 
 
-def _reckoned(e: Expr, given: _Given, deep: int = _DEPTH) -> _Reckoned | None:
+def _reckoned(e: Expr, given: _Given, deep: int = _DEPTH) -> _ClockedPeriod | None:
     """The clock from which an object makes a period; None: it is made of something else too."""
     e = _without_one(e)
     if isinstance(e, Load):
@@ -124,7 +124,7 @@ def _reckoned(e: Expr, given: _Given, deep: int = _DEPTH) -> _Reckoned | None:
     else:
         quantity, size = ("frequency", scale) if divides else ("time", 1 / scale)
         right = unit.quantity == quantity and isclose(unit.scale, size)
-    return _Reckoned(name, hz, unit is not None) if right else None
+    return _ClockedPeriod(name, hz, unit is not None) if right else None
 
 
 def _unit(load: Load) -> PhysicalUnit | None:

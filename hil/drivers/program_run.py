@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Final
@@ -23,6 +23,7 @@ from hil.drivers.face_scale import FaceScales
 from hil.drivers.face_zero import FaceZeros
 from hil.drivers.identities import wrong_identities
 from hil.drivers.least_pulses import swallowed_pulses
+from hil.drivers.made_inputs import MadeInputs, uses
 from hil.drivers.other_messages import OTHERS, OtherMessages, other_messages
 from hil.drivers.period_clocks import misreckoned_periods
 from hil.drivers.periods import RoutinePeriods, wrong_periods, wrong_timers
@@ -95,6 +96,8 @@ class ProgramOutcome:
     cut: str = ""
     #: Its sources that have not fallen silent, because nobody asked for it (`--silence`).
     not_silenced: tuple[str, ...] = ()
+    #: The inputs that nothing on the board drives, and that a further run has moved.
+    moved: tuple[str, ...] = ()
     #: Whether one of its sources was lost for a while.
     lost: bool = False
 
@@ -125,8 +128,12 @@ def run_program(
         known = {(finding.rule, finding.place) for finding in kept}
         others = _others(build, roles, for_s)
         kept = (*kept, *(f for f in others if (f.rule, f.place) not in known))
+    moved: tuple[str, ...] = ()
+    if roles.main is not None:
+        found, moved = _with_inputs(build, roles, for_s, kept, board_named=board_named)
+        kept = (*kept, *found)
     left = () if silence or roles.main is None else silent_sources(build, roles)
-    return replace(ran, findings=kept, not_silenced=left)
+    return replace(ran, findings=kept, not_silenced=left, moved=moved)
 
 
 def _without_parts(build: Build, roles: Roles, for_s: float, *, board_named: bool) -> list[Finding]:
@@ -141,6 +148,26 @@ def _without_parts(build: Build, roles: Roles, for_s: float, *, board_named: boo
         replace(finding, details=(*finding.details, lost))
         for finding in ran.findings if finding.rule in _HANGS and not is_intended(finding, roles)
     ]  # fmt: skip
+
+
+def _with_inputs(
+    build: Build, roles: Roles, for_s: float, known: Iterable[Finding], *, board_named: bool
+) -> tuple[list[Finding], tuple[str, ...]]:
+    """What inputs show that nothing on the board drives, found by a run in which they move; and these inputs."""
+    if not uses(build.modules):
+        return [], ()
+    image = _begin(build, roles)
+    usual = round(for_s * SYSCLK_HZ)
+    inputs = MadeInputs(image, build, usual, board_named=board_named)
+    end = image.board.clock.now + usual
+    image.allow_loops(2 * end + SYSCLK_HZ)
+    with suppress(*STOPS):
+        _go(image, roles, lambda: end, TimeBudget(RUN), lambda fraction: None)
+    found = list(inputs.found(known))  # not what the close of a run shows
+    with suppress(*STOPS):
+        image.close()
+    seen = (anchored(finding, build.others) for finding in found)
+    return [finding for finding in seen if finding is not None], tuple(inputs.moved)
 
 
 def _stale(build: Build, roles: Roles, for_s: float, *, asked: bool) -> list[Finding]:

@@ -46,6 +46,7 @@ def as_dict(report: Report) -> dict[str, Any]:
             "uncalibrated_factor": run.uncalibrated_factor,
             **({"faults": [fault.as_dict() for fault in run.faults]} if run.faults else {}),
             "not_silenced": list(run.not_silenced),
+            "moved_inputs": list(run.moved),
             "functions": [{**asdict(one), "file": relative_path(one.file)} for one in run.functions],
         },
         "failed": report.failed,

@@ -64,6 +64,8 @@ class Run:
     functions: tuple[CalledFunction, ...] = ()
     #: Sources of a program that could fall silent, which was not tried.
     not_silenced: tuple[str, ...] = ()
+    #: The inputs of a program that nothing on its board drives, and that a further run has moved.
+    moved: tuple[str, ...] = ()
     #: Code ran that was not calibrated: its computation times may be so many times longer or shorter on the chip.
     uncalibrated_factor: float | None = None
     #: What came of each fault that was declared.

@@ -126,6 +126,8 @@ from emulator.c28x.tree_queries import within as inside
 
 #: Factors that scale a ratio: per cent, per mille, milli.
 SCALES: Final = (10, 100, 1000, 10000)
+#: The full scales of an ADC of 12 bits: a code divided by one is a ratio.
+FULL_SCALES: Final = (4095, 4096)
 #: CHOICE: an odd factor above this one spreads the bits of a hash or of a random number; 4095 is the last of an ADC.
 _HASH: Final = 4095
 #: CHOICE: a difference of 32 bits without a sign above this one is a small negative one, and no time.
@@ -578,9 +580,9 @@ class Guards:
         assert isinstance(ctype, IntType)
         if op == "|":
             self.fields(e)
-        if op == "*" and isinstance(e.right, Const) and e.right.value in SCALES:
+        if op == "*" and isinstance(e.right, Const):
             quotient = bare(e.left)
-            if isinstance(quotient, Binary) and quotient.op == "/" and not isinstance(quotient.right, Const):
+            if isinstance(quotient, Binary) and quotient.op == "/" and _is_ratio(quotient, e.right):
                 self.widened.setdefault(id(quotient), "scaled")
         if op in ("*", "/"):
             self.scaled |= {id(e.left), id(e.right)}
@@ -1146,3 +1148,11 @@ def _stepped(e: Expr) -> Variable | None:
                 case Load(lvalue=LValue(root=Variable() as root)):
                     return root
     return None
+
+
+def _is_ratio(quotient: Binary, factor: Const) -> bool:
+    """Whether a quotient in front of a constant factor is a ratio, and no number of whole units."""
+    divisor = bare(quotient.right)
+    if isinstance(divisor, Const):
+        return divisor.value in FULL_SCALES and factor.value not in (1, divisor.value)
+    return factor.value in SCALES

@@ -60,6 +60,27 @@ def Speed(period: uint32) -> float32:
     ),
     Pair(
         "remainder-lost",
+        "a code is divided by its full scale before it is scaled; whole pages of 4096 words",
+        (("Angle", (1000,)), ("Angle", (2730,))),
+        """
+Pages: uint32 = 0
+def Angle(code: uint16) -> int16:
+    degrees: int16
+    degrees = int16(uint32(code) / 4095 * 120) - 60  # <-
+    return degrees
+""",
+        """
+Pages: uint32 = 0
+def Angle(code: uint16) -> int16:
+    degrees: int16
+    degrees = int16(uint32(code) * 120 / 4095) - 60
+    Pages = uint32(code) / 4096 * 4096
+    Pages = Pages + uint32(code) / 1000 * 3
+    return degrees
+""",
+    ),
+    Pair(
+        "remainder-lost",
         "a float is cut before it is scaled; digits are taken apart so",
         (("Show", (21.75,)),),
         """
