@@ -44,6 +44,7 @@ EXAMPLES: Final = """
 
   Driver files (*.c, *.py, or the folder that holds them) are translated: this gives the static findings.  Each
   function that is not static is called with generated arguments; main or the tasks run for --for seconds (default 3).
+  A main runs once more with inputs that move, where nothing on the board drives what it reads.
 
   A finding counts if it is as severe as --fail-on says (or worse) and not in the baseline.
 """
