@@ -92,7 +92,8 @@ The first time all is well. The second time, the count goes on where it was, or 
   count has passed its limit: it is then that of one pass. Here the count may also be a local that its loop only counts
   up.
 * A sum is begun again after a number of values, and their count is not (`if (n == MANY) { mean = sum / n; sum = 0; }`):
-  it happens only once, or with `>=` for each value from then on. Here too the count may be a local of a loop.
+  it happens only once, or with `>=` for each value from then on. Here too the count may be a local of a loop. A mark
+  or a state that is set there says that once is enough.
 * The count of such a sum is begun again, and the sum is not: each mean has all values since the start.
 * Readings that differ from a level are counted, and the level follows them when they are enough. A reading that does
   not differ leaves the count as it is: bounces add up.

@@ -448,7 +448,8 @@ It is reported where the result goes to a local, at least two parts of `andMask`
 
 The wait also takes all the events that have come. In `if (events & TICK) ... else if (events & SECOND) ...` the second
 one is lost whenever both have come. It is reported where both come again and again: a Clock posts them in each of its
-calls, or a routine that reads results of an ADC, and nothing else does. An error or a key may rightly put others aside.
+calls, or a routine that reads results of an ADC, and nothing else does. An error or a key may rightly put others aside,
+and so may an event behind which the program looks at the others.
 
 **Fix:** give events of which one is enough in the second mask: `Event_pend(event, Event_Id_NONE, EVENTS, timeout)`;
 test each event with an `if` of its own.

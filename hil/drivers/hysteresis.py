@@ -53,11 +53,18 @@ def _limit(test: Compare) -> tuple[_Limit, str, bool] | None:
     if test.op not in ("<", "<=", ">", ">="):
         return None
     for value, limit, falls in ((test.left, test.right, test.op[0] == "<"), (test.right, test.left, test.op[0] == ">")):
-        text = _text(limit)
+        text = _text(limit) if _is_sum(limit) else ""  # a dead band alone is one limit: inside, and outside
         named = [name for name in re.findall(r"[^\W\d]\w*", text) if _NAME.search(name)]
         if named and isinstance(bare(value), Load):
             return (source_text(bare(value)), text), named[0], falls
     return None
+
+
+def _is_sum(e: Expr) -> bool:
+    inner = as_written(e)
+    if isinstance(inner, Const) and isinstance(inner.source, Expr):
+        return _is_sum(inner.source)
+    return isinstance(inner, Binary) and inner.op in ("+", "-")
 
 
 def _text(e: Expr) -> str:

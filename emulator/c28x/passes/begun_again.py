@@ -313,6 +313,8 @@ class _Program:
             if self._tests(count) > 1:
                 continue  # `if (count < N)` around it: this happens once, and is meant to
             begun = [v for x in s.then if (v := assigned(x)) is not None and _begins(x)]
+            if any(isinstance(x, Assign) and assigned(x) and constant_of(x.value) for x in statements(s.then)):
+                continue  # a mark or a state says that it has happened, as a calibration does once
             totals = sums - {count}
             for total in [v for v in begun if v in totals] if self._only_grows(count, again) else ():
                 once = isinstance(s.test, Compare) and s.test.op == "=="

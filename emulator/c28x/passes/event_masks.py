@@ -87,6 +87,8 @@ def check_lost_events(reports: Mapping[Module, StaticReport]) -> None:
                 first = _chosen(s, variable) & mask
                 if not isinstance(s, If) or first not in regular or len(s.otherwise) != 1:
                     continue
+                if any(isinstance(p, LValue) and p.root is variable for p in within(s.then)):
+                    continue  # the first event looks after the others
                 second = _chosen(s.otherwise[0], variable) & mask
                 if second in regular and regular[second] != regular[first]:
                     message = (

@@ -82,6 +82,8 @@ CLOCKS: Final = frozenset({"Clock_getTicks", "Timestamp_get32"})
 CAPTURES: Final = frozenset({"CAP1", "CAP2", "CAP3", "CAP4"})
 #: Names of stamps that are meant to be renewed: English, Spanish, German.
 _LAST: Final = re.compile(r"last|prev|ultim|anterior|letzt|vorher|alt(?![a-z])|alte", re.IGNORECASE)
+#: Names of the time at which the program began.
+_START: Final = re.compile(r"start|boot|begin|begun|init|power|arran|inici|anfang", re.IGNORECASE)
 #: What can hold a stamp: a variable, a member of a structure type, the target of a parameter, the result of a function.
 Key = tuple[Any, ...]
 
@@ -290,7 +292,8 @@ class Stamps:
 
         Yields the function, the test and the object.  Call it after `suspicions`.  The object is at file scope, or in
         front of an endless loop around the test.  It is meant to be renewed: it is called the last or previous one, or
-        the function renews another stamp behind such a test.  16-bit times are those of `never_set`.
+        the function renews another stamp behind such a test, and it is not called the start.  16-bit times are those of
+        `never_set`.
         """
         if not self.kinds:
             return
@@ -309,7 +312,9 @@ class Stamps:
                     continue
                 in_front = loop is not None and not any(other is w for w in writes for other in statements(loop.body))
                 begun = stamp.kind == "local" and in_front and len(writes) == 1 and _is_number(writes[0])
-                meant = renewed or _LAST.search(stamp.declaration.name)
+                # The start of the program is never renewed; nor need be what leads to the same each time.
+                start = _START.search(stamp.declaration.name) or all(map(_is_number, s.then))
+                meant = not start and (renewed or _LAST.search(stamp.declaration.name))
                 if meant and (begun or (stamp.kind == "global" and not writes)):
                     yield function, s, stamp
 

@@ -460,6 +460,7 @@ Int main(Void)
     # The bits that were not looked at are kept.
     ({"UInt events =": "static UInt events = 0; events = events |"}, False),
     ({"if (events & FAST)": "if (events & (FAST | KEY))"}, False),
+    ({"Fasts++;": "Fasts++; if (events & SLOW) Slows++;"}, False), ({"Fasts++;": "Fasts += events;"}, False),
 ])  # fmt: skip
 def test_a_regular_event_that_another_one_hides_is_told(
     tmp_path: Path, changes: dict[str, str], found: bool

@@ -49,6 +49,8 @@ def test_one_limit_for_both_directions_is_told(tmp_path: Path, on: str, off: str
     # Without a hysteresis; in one direction twice; of two values; with two of them.
     ("Celsius < SET", "Celsius > SET"), ("Celsius < SET - HYST", "Celsius < SET - HYST && Wanted"),
     ("Celsius < SET - HYST", "Wanted > SET - HYST"), ("Celsius < Wanted - HYST", "Celsius > Wanted - Dead_Band"),
+    # Inside of a dead band, and outside of it.
+    ("Celsius < HYST", "Celsius > HYST"), ("Celsius < -Dead_Band", "Celsius > Dead_Band"),
     # A window.
     ("Celsius >= SET - HYST && Celsius <= SET - HYST", "Celsius > SET"),
 ])  # fmt: skip

@@ -214,7 +214,7 @@ def test_a_count_that_is_set_back_now_and_then_is_silent(old: str, taken: str) -
 
 
 MEAN = """typedef unsigned int Uint16;
-Uint16 Reading = 0, Shown = 0;
+Uint16 Reading = 0, Shown = 0, Ready = 0;
 static Uint16 number = 0;
 static unsigned long total = 0;
 static void Take(Uint16 value)
@@ -249,6 +249,7 @@ def test_a_sum_that_is_begun_again_without_its_count_is_told(take: str, turn: st
     # It happens once, and is meant to: the first values are summed, and no others.
     ("if (number < 8) { " + FULL.format("==", "") + " }", ""),
     ("if (number >= 8) return; " + FULL.format("==", ""), ""),
+    ("total += value; number++; if (number == 8) { Shown = total / 8; total = 0; Ready = 1; }", ""),
     ("number++; if (number == 8) { Shown = total; total = 0; } else total += value;", ""),
     # The loop ends, or each call begins with a count of its own.
     ("", LOCAL.format("break;", "")),
@@ -346,7 +347,7 @@ LAMP = "if (Millis - lamp >= 250) { lamp += 250; Ready ^= 1; }"
 
 
 @pytest.mark.parametrize(("stamp", "file_scope", "turn"), [
-    ("begun", "", LAMP), ("lastRun", "", ""), ("letzte", "static Uint32 letzte = 0;", ""),
+    ("run", "", LAMP), ("lastRun", "", ""), ("letzte", "static Uint32 letzte = 0;", ""),
     ("since", "static Uint32 since = 0;", LAMP),
 ])  # fmt: skip
 def test_a_time_since_a_stamp_that_is_not_renewed_is_told(stamp: str, file_scope: str, turn: str) -> None:
@@ -358,7 +359,7 @@ def test_a_time_since_a_stamp_that_is_not_renewed_is_told(stamp: str, file_scope
 @pytest.mark.parametrize(("stamp", "then", "turn"), [
     ("lastRun", "lastRun += 100; Work();", LAMP), ("lastRun", "Work();", "if (Ready) lastRun = Millis;"),
     # The time since the start, and nothing says that it is meant to be renewed; the loop ends.
-    ("start", "Ready = 1;", ""), ("lastRun", "break;", ""),
+    ("start", "Work();", LAMP), ("run", "Ready = 1;", LAMP), ("since", "Work();", ""), ("lastRun", "break;", ""),
 ])  # fmt: skip
 def test_a_time_since_a_stamp_that_is_renewed_or_the_start_is_silent(stamp: str, then: str, turn: str) -> None:
     assert told(CLOCK.format(local=stamp, stamp=stamp, file_scope="", then=then, turn=turn)) == []
