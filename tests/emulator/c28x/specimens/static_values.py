@@ -912,6 +912,44 @@ def Interval() -> uint16:
         ("Interval", ()),
     ),
     static_pair(
+        "limits-crossed",
+        "a minus that is missing in the lower limit",
+        """
+def Clamp(x: int16) -> int16:
+    if x > 100:
+        x = 100
+    if x < 100:  # <-
+        x = -100
+    return x
+""",
+        """
+def Clamp(x: int16) -> int16:
+    if x > 100:
+        x = 100
+    if x < -100:
+        x = -100
+    return x
+""",
+        ("Clamp", (7,)),
+    ),
+    static_pair(
+        "digit-code",
+        "the code of a digit in place of its value",
+        """
+def Append(value: uint16, c: uint16) -> uint16:
+    if c >= 48 and c <= 57:
+        value = value * 10 + c  # <-
+    return value
+""",
+        """
+def Append(value: uint16, c: uint16) -> uint16:
+    if c >= 48 and c <= 57:
+        value = value * 10 + (c - 48)
+    return value
+""",
+        ("Append", (1, 49)),
+    ),
+    static_pair(
         "mask-gaps",
         "a ring of twelve",
         """
