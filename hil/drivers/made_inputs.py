@@ -77,6 +77,8 @@ _PINS: Final = 32
 #: Registers with what an ADC, an eQEP, a SCI and a capture bring.
 _ANALOG: Final = re.compile(r"ADC(?:PPB\d)?RESULT\d+$")
 _SHAFT: Final = re.compile(r"QPOS(?:CNT|LAT|ILAT|SLAT)$|QCPRD(?:LAT)?$")
+#: Functions of TI's that choose a pin for an input of the Input X-BAR.
+_ROUTES: Final = re.compile(r"SetupXINT\dGpio|XBAR_setInputPin|GPIO_setInterruptPin")
 #: Functions of TI's that read a pin.
 _READ_PIN: Final = frozenset({"GPIO_ReadPin", "GPIO_readPin"})
 
@@ -108,7 +110,9 @@ def uses(modules: Iterable[Module]) -> Uses:
                 found.analog |= _ANALOG.match(name) is not None
                 found.shafts |= _SHAFT.match(name) is not None
                 found.characters |= name == "SCIRXBUF"
-            case RegisterRef(block=block) if block == "XintRegs" or block.startswith("ECap"):
+            case RegisterRef(block="InputXbarRegs"):
+                found.routed = True
+            case Call(function=function) if _ROUTES.search(function.name):
                 found.routed = True
             case Call(function=function, arguments=[pin, *_]) if function.name in _READ_PIN:
                 match bare(pin):

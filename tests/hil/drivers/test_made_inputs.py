@@ -10,6 +10,8 @@ import pytest
 from hil.board import load
 from hil.cli import invoke
 from hil.drivers.check import DriverFiles, check_files
+from hil.drivers.made_inputs import uses
+from hil.image import Build
 from hil.reports.model import rule_of
 
 HEAD = """#include "F28x_Project.h"
@@ -213,3 +215,14 @@ def test_a_program_without_such_inputs_runs_once(tmp_path: Path) -> None:
         BUTTON.format(start=START, press="Shown++;").replace("void main(void)", "void Start(void)"),
     ):
         assert told(tmp_path, text, 0.3)[1] == ()
+
+
+@pytest.mark.parametrize(("statement", "used"), [
+    ("InputXbarRegs.INPUT7SELECT = 24;", True), ("GPIO_SetupXINT1Gpio(24);", True), ("Shown = GPIO_ReadPin(24);", True),
+    ("Shown = GpioDataRegs.GPADAT.bit.GPIO24;", True), ("Shown = SciaRegs.SCIRXBUF.bit.SAR;", True),
+    # An eCAP that makes a PWM; an output.
+    ("ECap1Regs.ECCTL2.bit.CAP_APWM = 1; ECap1Regs.CAP2 = 500;", False), ("GpioDataRegs.GPASET.bit.GPIO24 = 1;", False),
+])  # fmt: skip
+def test_what_a_program_uses(tmp_path: Path, statement: str, used: bool) -> None:
+    (tmp_path / "lab.c").write_text(f"{HEAD}void main(void) {{ {statement} for (;;); }}", encoding="utf-8")
+    assert bool(uses(Build([str(tmp_path / "lab.c")]).modules)) is used
