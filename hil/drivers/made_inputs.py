@@ -144,8 +144,8 @@ class MadeInputs:
     def __init__(self, image: Image, build: Build, usual: int, *, board_named: bool) -> None:
         """`usual`: how long the program runs, in cycles.  In the second half pulses and characters come, too.
 
-        `board_named`: the program is meant for this board.  Else a part at an ADC need not be on its board, unless the
-        program starts sonars.
+        `board_named`: the program is meant for this board.  CHOICE: else the parts of the robot at the ADCs are not on
+        its board, and do not count, unless the program starts sonars.
         """
         self._board_named = board_named
         self._board = image.board

@@ -23,7 +23,7 @@ from hil.drivers.clock_names import clock_by_name
 from hil.drivers.hardware_counts import HardwareCounts, TimeRegister, set_by_call, started_timers, time_register
 from hil.drivers.stated_units import as_written, comment_beside, stated
 from hil.drivers.unit_names import PhysicalUnit
-from hil.drivers.units import UnitMismatch
+from hil.drivers.units import UnitMismatch, product_of
 
 #: The registers that hold the period of a counter.
 _PERIODS: Final = frozenset({"PRD", "TBPRD"})
@@ -104,7 +104,7 @@ def _reckoned(e: Expr, given: _Given, deep: int = _DEPTH) -> _ClockedPeriod | No
         return _reckoned(values[0], given, deep - 1) if deep and len(values) == 1 else None
     clocks: list[tuple[str, float, float]] = []  # with the number itself
     objects: list[tuple[Load, bool]] = []
-    for factor, divides in _factors(e):
+    for factor, divides in product_of(e):
         number = as_written(factor)
         clock = clock_by_name(number)
         if isinstance(number, Const) and clock is not None and not divides:
@@ -144,16 +144,6 @@ def _without_one(e: Expr) -> Expr:
             return bare(left)
         case other:
             return other
-
-
-def _factors(e: Expr, divides: bool = False) -> Iterator[tuple[Expr, bool]]:
-    """The factors of a product or a quotient, each with whether it divides."""
-    match bare(e):
-        case Binary(op="*" | "/" as op, left=left, right=right):
-            yield from _factors(left, divides)
-            yield from _factors(right, divides != (op == "/"))
-        case factor:
-            yield factor, divides
 
 
 def _has_factor(e: Expr) -> bool:

@@ -588,7 +588,7 @@ class _Units:
         """
         given: list[Measured] = []
         factor = 1.0
-        for value, divides in _product(e):
+        for value, divides in product_of(e):
             number = _plain(value)
             if number is not None and not any(part.where.macro is not None for part in _with_sources(value)):
                 factor *= (1 / number if divides else number) if number else 0.0
@@ -909,12 +909,12 @@ def _text(given: Measured, value: Expr) -> str:
     return given.of if given.of and given.factor == 1.0 and isinstance(bare(value), Const) else source_text(value)
 
 
-def _product(e: Expr, divides: bool = False) -> Iterator[tuple[Expr, bool]]:
+def product_of(e: Expr, divides: bool = False) -> Iterator[tuple[Expr, bool]]:
     """The factors of a product or a quotient, each with whether it divides."""
     match bare(e):
         case Binary(op="*" | "/" as op, left=left, right=right):
-            yield from _product(left, divides)
-            yield from _product(right, divides != (op == "/"))
+            yield from product_of(left, divides)
+            yield from product_of(right, divides != (op == "/"))
         case factor:
             yield factor, divides
 

@@ -34,6 +34,7 @@ from emulator.c28x.tree import (
     Binary,
     Call,
     Compare,
+    Declaration,
     Declare,
     Evaluate,
     Expr,
@@ -162,6 +163,11 @@ class _Program:
                 self._sum_alone(function, block, again)
                 self._in_a_row(function, block)
 
+    def _tell(self, function: Function, s: Stmt, name: Declaration, message: str) -> None:
+        self.reports[function].report(
+            function, s.where, "not-begun-again", message, object=name.path, declaration=name
+        )  # fmt: skip
+
     # The time in a state
 
     def _times(self, function: Function, switch: Switch, state: Variable) -> None:
@@ -258,9 +264,7 @@ class _Program:
             if used and not marks:
                 name = count.declaration
                 message = f"nothing begins {name.name} again: the next text is appended to this one"
-                self.reports[function].report(
-                    function, s.where, "not-begun-again", message, object=name.path, declaration=name,
-                )  # fmt: skip
+                self._tell(function, s, name, message)
 
     # What is set back after some time
 
@@ -274,9 +278,7 @@ class _Program:
                     f"nothing begins {name.name} again: once it has passed this limit, "
                     f"{back[0].declaration.name} is set back in each pass"
                 )
-                self.reports[function].report(
-                    function, s.where, "not-begun-again", message, object=name.path, declaration=name,
-                )  # fmt: skip
+                self._tell(function, s, name, message)
 
     def _only_sets_back(self, body: list[Stmt], above: frozenset[str]) -> list[Variable] | None:
         """The counts that statements set to a constant, if they only give constants; None: they do anything else."""
@@ -331,11 +333,7 @@ class _Program:
         return v not in self.taken and bool(writes) and all(added(s) or (step_of(s, v) or 0) > 0 for s in writes)
 
     def _tell_sum(self, function: Function, s: Stmt, v: Variable, why: str) -> None:
-        name = v.declaration
-        message = f"nothing begins {name.name} again, {why}"
-        self.reports[function].report(
-            function, s.where, "not-begun-again", message, object=name.path, declaration=name
-        )  # fmt: skip
+        self._tell(function, s, v.declaration, f"nothing begins {v.declaration.name} again, {why}")
 
     def _tests(self, v: Variable) -> int:
         """The number of comparisons with an object."""
@@ -375,9 +373,7 @@ class _Program:
                             f"{name.name} counts how often {new.declaration.name} differs from "
                             f"{stable.declaration.name}, and is not begun again where it does not: bounces add up"
                         )
-                        self.reports[function].report(
-                            function, s.where, "not-begun-again", message, object=name.path, declaration=name,
-                        )  # fmt: skip
+                        self._tell(function, s, name, message)
 
     # The mark that a buffer was too small
 
@@ -408,9 +404,7 @@ class _Program:
                             f"nothing takes {name.name} back, though {index.declaration.name} begins again: once it "
                             "is set, all that follows is refused"
                         )
-                        self.reports[function].report(
-                            function, test.where, "not-begun-again", message, object=name.path, declaration=name,
-                        )  # fmt: skip
+                        self._tell(function, test, name, message)
 
 
 def _repeated(function: Function) -> Iterator[tuple[list[Stmt], list[Stmt]]]:
