@@ -99,6 +99,8 @@ The first time all is well. The second time, the count goes on where it was, or 
   not differ leaves the count as it is: bounces add up.
 * A test asks whether some time is over since the last time (`if (ms - last >= PERIOD) Run();`), and no statement sets
   `last` again: from then on it runs in each pass.
+* An interrupt sets a flag each time, nothing clears it, and the loop of `main`, which waits for nothing else, counts,
+  adds up or toggles something behind a test of it: that counts the turns of the loop.
 
 The check needs the source of a whole program. It knows counts that every statement only counts up, and flags that every
 statement sets to the same value. Not reported: a count that anything but such tests reads, as a clock is; a limit that

@@ -73,7 +73,7 @@ def check_drained(modules: Iterable[Module], reports: dict[Module, StaticReport]
         if any(_compares(f, index) for f in outside):
             continue
         for function in outside:
-            for s, flag, behind in _found_set(function, flags):
+            for s, flag, behind in found_set(all_blocks(function.body), flags):
                 body = list(_once(behind, own, frozenset({function.path})))
                 cleared = any(_set(x, others=True) is flag for x in body)
                 taken = {v for x in body if (v := _stepped(x)) is not None and v is not index}
@@ -122,9 +122,9 @@ def _set(s: Stmt, *, others: bool) -> Variable | None:
     return None
 
 
-def _found_set(function: Function, flags: set[Variable]) -> Iterator[tuple[Stmt, Variable, list[Stmt]]]:
-    """The tests and the waits for flags, each with the flag and the statements that run when it is set."""
-    for block in all_blocks(function.body):
+def found_set(each: Iterable[list[Stmt]], flags: set[Variable]) -> Iterator[tuple[Stmt, Variable, list[Stmt]]]:
+    """The tests and the waits for flags in blocks, each with the flag and the statements that run when it is set."""
+    for block in each:
         for number, s in enumerate(block):
             match s:
                 case If(test=test, then=then):
