@@ -72,6 +72,8 @@ _FEW: Final = 10
 _MET: Final = 20
 #: CHOICE: an integral has wound up if its share is beyond the limit by a part of the output's whole range: one of this.
 _SPANS: Final = 4.0
+#: What many take for an error of the tool, because start-up code of a PC, and that of the EABI, clears these objects.
+_UNCLEARED: Final = " (COFF start-up code does not clear it)"
 FILLS: Final = ("zero", "ones", "nan", "random:SEED", "stack", "trap")
 #: The words at the start of a frame that hold the return address.
 RETURN_ADDRESS_WORDS: Final = 2
@@ -380,6 +382,8 @@ class Runtime:
         if declaration is not None and isinstance(declaration.ctype, ArrayType | StructType):
             part = part_name(declaration.ctype, word)
         message = f"{site.name}{part} is read before anything was written to it"
+        if site.check.kind == "static":
+            message += _UNCLEARED
         # One defect, one finding: if a switch has no case for a value, `no-case` was reported at the switch, where it
         # must be corrected; that nothing was written is only the consequence.  For a value that `no-case` does not
         # report (one that means "none"), the finding is made here.
@@ -533,6 +537,8 @@ class Runtime:
             value = self.fill_value(site.ctype, f"{name}+{offset}", obj.base + offset)
         part = part_name(obj.declaration.ctype, offset)
         message = f"{name}{part} is read through {site.name} before anything was written to it"
+        if obj.declaration.line and not obj.declaration.function:
+            message += _UNCLEARED
         if site.seen is None or site.generation != self.findings.generation:
             site.check.declaration = obj.declaration
         self.hit(site, "uninitialised", message, value)

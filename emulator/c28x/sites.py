@@ -67,7 +67,7 @@ class Site:
     widened: str = ""
     rule: str = ""
     #: "shift" or "sign": the cause of a result out of range; "small": only a small negative number counts; "idle": a
-    #: loop that is written without an end.
+    #: loop that is written without an end.  A read of a value never written: "static" if the object is not a local.
     kind: str = ""
     #: The result is an unsigned difference of two variables.
     difference: bool = False

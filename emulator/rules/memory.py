@@ -17,8 +17,9 @@ RULES: Final[tuple[Rule, ...]] = (
         """
 The program uses a value that no statement has written: a local, an element, a structure member, or a buffer.
 
-A local contains what an earlier call left on the stack. A file-scope object without initialiser contains what RAM held
-at power-up, because the COFF start-up code clears nothing. A library function that scans a buffer (`strlen`, `atof`)
+A local contains what an earlier call left on the stack. A `static` or file-scope object without initialiser contains
+what RAM held at power-up: C wants 0, but the start-up code of a COFF project clears nothing. That of an EABI project
+clears these objects, and `--abi eabi` makes the check do so. A library function that scans a buffer (`strlen`, `atof`)
 reads it in the same way. To copy a structure of which a part was written is right; a local of which nothing was written
 is reported where it is copied.
 

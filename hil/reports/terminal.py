@@ -54,7 +54,7 @@ def _lines(report: Report) -> Iterator[str]:
     for declared in report.idle:
         yield f"{relative_path(declared.file)}:{declared.line}: hil: allow {declared.text}: nothing was found there"
     if report.run.moved:
-        yield f"nothing on the board drives these inputs, so a further run moved them: {', '.join(report.run.moved)}"
+        yield f"inputs that no known part of its board drives, moved in a further run: {', '.join(report.run.moved)}"
     if report.run.not_silenced:
         yield f"could fall silent, which was not tried (--silence): {', '.join(report.run.not_silenced)}"
     called = [f"{one.name} ({one.calls})" for one in report.run.functions if one.called]

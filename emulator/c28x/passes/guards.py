@@ -766,7 +766,8 @@ class Guards:
                 lvalue.fresh = Guard("unwritten", self.site(lvalue.ctype, lvalue.text, at=lvalue.where))
                 return
             text = "" if root.plain else lvalue.text
-            site = self.object(lvalue, root, text=text, caseless=lvalue.unwritten.complete)
+            kind = "static" if root.kind == "global" else ""
+            site = self.object(lvalue, root, text=text, caseless=lvalue.unwritten.complete, kind=kind)
             lvalue.fresh = Guard("unwritten", site)
 
     def check_access(self, lvalue: LValue, *, address: bool = False) -> None:

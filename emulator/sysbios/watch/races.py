@@ -562,7 +562,7 @@ class Races:
             return said + "the last write wins"
         if rule in ("race-long", "unmasked-long"):
             return said + "it is atomic only while the compiler moves its 32 bits with one instruction"
-        return said + "each access is atomic, but the value can change between two reads"
+        return said + "each access is atomic, but a second read may give another value"
 
     def _report(self, shared: SharedObject, rule: str, message: str, other: LatestAccess, at: StatementNumber) -> None:
         """Report at the statement `at`, or at the running one if `at` is 0."""
