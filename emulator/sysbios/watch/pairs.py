@@ -321,6 +321,35 @@ def arrays_of_flags(modules: Iterable[Module]) -> set[str]:
     return arrays - data
 
 
+def flag_members(modules: Iterable[Module]) -> set[tuple[StructType, int]]:
+    """The members of structures that are only ever set to constants, as the mark of a buffer that is full.
+
+    Each by its structure and its offset in words.
+    """
+    flags: set[tuple[StructType, int]] = set()
+    data: set[tuple[StructType, int]] = set()
+    for function in (function for module in modules for function in module.functions):
+        for part in within(function.body):
+            if isinstance(part, AddressOf) and isinstance(part.lvalue.ctype, IntType):
+                if (member := _member_of(part.lvalue)) is not None:
+                    data.add(member)
+        for statement in statements(function.body):
+            match statement:
+                case Assign(target=LValue(ctype=IntType()) as target, value=value):
+                    if (member := _member_of(target)) is not None:
+                        (flags if isinstance(bare(value), Const) else data).add(member)
+    return flags - data
+
+
+def _member_of(lvalue: LValue) -> tuple[StructType, int] | None:
+    """The member that an lvalue names, of a structure by itself or in an array."""
+    match lvalue:
+        case LValue(root=Variable(ctype=ArrayType(element=StructType() as holder)), indices=[_], words=words):
+            return holder, words
+    scalar = named_scalar(lvalue)
+    return (scalar[0], scalar[1]) if scalar is not None and isinstance(scalar[0], StructType) else None
+
+
 def turned_by_both(modules: Iterable[Module]) -> dict[str, set[str]]:
     """Indices of ring buffers that a routine moves and `main` moves too: path -> names of the routines.
 

@@ -41,6 +41,7 @@ from emulator.sysbios.watch.pairs import (
     arrays_of_flags,
     continued,
     divided,
+    flag_members,
     handed_over,
     pairs,
     turned_by_both,
@@ -60,11 +61,13 @@ class SharedObject:
     """An object that several threads may use: its cells by word offset, and how its uses were protected."""
 
     __slots__ = (
-        "apart", "beside", "cells", "conflicting", "findings", "hands_over", "joint", "known", "object", "pairs",
-        "per_element", "rank", "record", "run", "under", "users", "written", "wrote",
+        "apart", "beside", "cells", "conflicting", "findings", "hands_over", "joint", "known", "marks", "object",
+        "pairs", "per_element", "rank", "record", "run", "under", "users", "written", "wrote",
     )  # fmt: skip
 
-    def __init__(self, obj: Object, flags: bool = False, record: bool = True) -> None:
+    def __init__(
+        self, obj: Object, flags: bool = False, record: bool = True, marks: frozenset[int] = frozenset()
+    ) -> None:  # fmt: skip
         ctype = obj.declaration.ctype
         self.object = obj
         self.cells: dict[int, SharedCell] = {}
@@ -87,6 +90,8 @@ class SharedObject:
         self.rank = 0
         #: Whether its integers may tell that other data is ready.  Elements of an array do so if they are flags.
         self.hands_over = flags or not isinstance(ctype, ArrayType)
+        #: In a structure, or in each element of an array of structures: the offsets of members that are flags.
+        self.marks = marks
         #: Gate -> the functions that use the object while they hold it, each with a statement; the threads that use
         #: the object under any gate.
         self.under: dict[Gate, dict[Function, StatementNumber]] = {}
@@ -95,9 +100,13 @@ class SharedObject:
         self.known: set[tuple[StatementNumber, Thread, frozenset[Gate]]] = set()
         self.written = False
 
+    def marks_at(self, offset: int) -> bool:
+        """Whether the scalar at word `offset` is a member that is a flag."""
+        return (offset % self.per_element if self.per_element else offset) in self.marks
+
     def flag(self, offset: int) -> ReadyFlag | None:
         """The scalar at word `offset`, if its value may tell a reader that other data is ready."""
-        leaf = self.object.leaf(offset) if self.hands_over else None
+        leaf = self.object.leaf(offset) if self.hands_over or self.marks_at(offset) else None
         if leaf is None or isinstance(leaf[1], FloatType):
             return None
         return ReadyFlag(self.object.declaration.path, offset, self.object.data, leaf[0])
@@ -142,8 +151,9 @@ class Races:
         self._conditions = UseConditions(())
         self._rereading: frozenset[tuple[str, int]] = frozenset()
         self._of_path: dict[str, SharedObject] = {}
-        #: Arrays of flags, from the source; None: not read yet.
+        #: Arrays of flags, from the source (None: not read yet), and members of structures that are flags.
         self._flags: set[str] | None = None
+        self._marks: set[tuple[StructType, int]] = set()
         #: Structures in which threads have members of their own, from the source; None: not read yet.
         self._divided: set[StructType] | None = None
         #: Indices of ring buffers, from the source; None: not read yet.
@@ -357,12 +367,14 @@ class Races:
         known = self._locals.get(obj)
         if known is not None:
             return known
-        flags = False
-        if isinstance(obj.declaration.ctype, ArrayType):
+        flags, marks, ctype = False, frozenset[int](), obj.declaration.ctype
+        if isinstance(ctype, ArrayType | StructType):
             if self._flags is None:
-                self._flags = arrays_of_flags(self._modules)
+                self._flags, self._marks = arrays_of_flags(self._modules), flag_members(self._modules)
             flags = obj.declaration.path in self._flags
-        shared = SharedObject(obj, flags, self._is_record(obj.declaration.ctype))
+            one = ctype.element if isinstance(ctype, ArrayType) else ctype
+            marks = frozenset(words for holder, words in self._marks if holder == one)
+        shared = SharedObject(obj, flags, self._is_record(ctype), marks)
         if self._threads.routines:
             if self._pairs is None:  # Read late, because most images do not need it.
                 self._pairs, self._continued = pairs(self._modules), continued(self._modules)
@@ -422,7 +434,8 @@ class Races:
             early = self._early(shared, offset, lower, higher)
             several |= bool(early)
         else:
-            several = len(conflicting) > 1 or self._several(shared, offset)
+            # A flag by itself is read and written at once; what it stands for is judged by its own words.
+            several = len(conflicting) > 1 or (not shared.marks_at(offset) and self._several(shared, offset))
         if lost or several:
             rule = "race"
         else:

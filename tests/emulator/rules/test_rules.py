@@ -48,7 +48,7 @@ STATIC = (
         for name in (
             "admitted", "anew", "begun_again", "blocks", "checks", "clamps", "cleared", "cleared_early",
             "copies", "decided", "digits", "drained", "dropped",
-            "entrances", "event_masks", "flow", "formats", "fraction_texts", "likes", "lost_writes", "messages",
+            "entrances", "event_masks", "flow", "formats", "fraction_texts", "kept_flags", "likes", "lost_writes", "messages",
             "names", "narrow_stamps", "never_back",
             "null_tests", "off_by_one", "one_sided", "only_grows", "published", "quotients", "released", "ring_back",
             "search_end", "signs_of_life", "spans", "state_tables", "stated", "states", "stores", "tables", "undone",

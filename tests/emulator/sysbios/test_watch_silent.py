@@ -7,6 +7,49 @@ import pytest
 from tests.emulator.sysbios.watched import Watched
 
 DRIVERS = {
+    "blocks, each with a mark that it is full": """
+class BLOCK(struct):
+    full: int16
+    value: float32
+
+blocks: array[BLOCK, 2]
+filling: int16 = 0
+lost: int16 = 0
+
+# drv.c: fill
+def fill() -> void:
+    k: int16
+    k = 1 - filling
+    blocks[filling].value = 3
+    if blocks[k].full:
+        lost += 1
+    else:
+        blocks[filling].full = 1
+        filling = k
+        Semaphore_post(semB)
+
+# drv.c: Low
+def Low(a0: UArg, a1: UArg) -> void:
+    next: int16
+    s: float32
+    next = 0
+    while 1:
+        Semaphore_pend(semB, BIOS_WAIT_FOREVER)
+        s = blocks[next].value
+        Task_sleep(1)
+        s = s + blocks[next].value
+        blocks[next].full = 0
+        next = 1 - next
+
+# drv.c: main
+def main() -> void:
+    objects()
+    blocks[0].full = 0
+    blocks[1].full = 0
+    task(Low, 2)
+    every(fill, 5, 5)
+    BIOS_start()
+""",
     "ring with two indices, polled": """
 ring: array[int16, 8]
 head: int16 = 0
@@ -310,7 +353,7 @@ def main() -> void:
 """,
 }
 #: A flag or index that both sides touch is a word of 16 bits, and is said to be one.
-WORDS = {"ring with two indices, polled", "flag that is polled"}
+WORDS = {"ring with two indices, polled", "flag that is polled", "blocks, each with a mark that it is full"}
 
 
 @pytest.mark.parametrize("name", DRIVERS)

@@ -196,7 +196,7 @@ def test_the_report_says_what_moved(tmp_path: Path, capsys: pytest.CaptureFixtur
     (tmp_path / "lab.c").write_text(text, encoding="utf-8")
     command = ["check", str(tmp_path / "lab.c"), "--for", "0.3", "--board", "bare", "--calls", "1"]
     invoke(command)
-    assert "a further run moved them: the receiver of SCIA" in " ".join(capsys.readouterr().out.split())
+    assert "drives, moved in a further run: the receiver of SCIA" in " ".join(capsys.readouterr().out.split())
     reports = []
     for _ in range(2):
         invoke([*command, "--json"])
