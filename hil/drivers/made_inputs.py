@@ -167,7 +167,8 @@ class MadeInputs:
     def found(self, known: Iterable[Finding]) -> Iterator[Finding]:
         """What is certain of that which the run has shown, and another run has not."""
         before = {(finding.rule, finding.place) for finding in known}
-        detail = f"no known part of its board drives {', '.join(self.moved)}: a further run moved what the program reads"
+        moved = ", ".join(self.moved)
+        detail = f"no known part of its board drives {moved}: a further run moved what the program reads"
         for finding in self._board.findings:
             late = self._doubtful is not None and finding.time_cycles >= self._doubtful
             certain = finding.rule in (_ALWAYS if late else _COMPUTED)

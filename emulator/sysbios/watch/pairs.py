@@ -330,9 +330,9 @@ def flag_members(modules: Iterable[Module]) -> set[tuple[StructType, int]]:
     data: set[tuple[StructType, int]] = set()
     for function in (function for module in modules for function in module.functions):
         for part in within(function.body):
-            if isinstance(part, AddressOf) and isinstance(part.lvalue.ctype, IntType):
-                if (member := _member_of(part.lvalue)) is not None:
-                    data.add(member)
+            whole = part.lvalue if isinstance(part, AddressOf) and isinstance(part.lvalue.ctype, IntType) else None
+            if whole is not None and (member := _member_of(whole)) is not None:
+                data.add(member)
         for statement in statements(function.body):
             match statement:
                 case Assign(target=LValue(ctype=IntType()) as target, value=value):
