@@ -92,7 +92,7 @@ Cases that fall through and add to each other are not reported.
 Without a comment that says so (`/* fall through */`) a case is reported too that calls the same as the next one again,
 and the only one of a switch without a `break` if it stores the same value in another object than the next case. So is
 a case of a state machine that gives a state and goes on with the case of a state that is not this one, and that gives
-a state, too.
+a state, too. The state may be the result of a function if no other case goes on.
 
 **Fix:** `break`.
 """,

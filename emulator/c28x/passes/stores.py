@@ -50,13 +50,16 @@ def check_stores(function: Function, report: StaticReport) -> None:
         if isinstance(s, Switch):
             falling = [body for _, body in s.cases if len(body) > 1 and isinstance(body[-1], FallThrough)]
             ended = sum(bool(body) and not isinstance(body[-1], FallThrough) for _, body in s.cases)
-            for (_, body), (labels, following) in zip(s.cases, s.cases[1:], strict=False):
+            for number, (_, body) in enumerate(s.cases[:-1]):
                 if body and isinstance(end := body[-1], FallThrough):
+                    labels, following = _next_case(s.cases[number + 1 :])
                     told = _falls(function, body[:-1], following, report, said=end.said)
                     if not end.said:
                         only = len(falling) == 1 and ended > LEAST_ENDED
                         told |= _check_fall_through(function, body[:-1], following, report, only=only)
-                        told = told or _check_next_state(function, s, body[:-1], labels or [], following, report)
+                        told = told or _check_next_state(
+                            function, s, body[:-1], labels, following, report, only=len(falling) == 1
+                        )
                         if only and not told and body[:-1]:
                             message = "this case goes on with the next one, and no comment says so; all others end"
                             report.report(function, statements(body[:-1])[-1].where, "case-goes-on", message)
@@ -70,6 +73,16 @@ def check_stores(function: Function, report: StaticReport) -> None:
                     text = s.target.text
                     message = f"{text} is set to {source_text(s.value)}, and is set again in line {again.line}"
                     report.report(function, s.where, "dead-store", message, object=text)
+
+
+def _next_case(cases: list[tuple[list[int] | None, list[Stmt]]]) -> tuple[list[int], list[Stmt]]:
+    """The labels and the statements with which a case goes on: `case UP: case DOWN: ...` is one case."""
+    every: list[int] = []
+    for labels, body in cases:
+        every += labels or []
+        if len(body) != 1 or not isinstance(body[0], FallThrough):
+            return every, body
+    return every, []
 
 
 def _bodies(body: list[Stmt]) -> Iterator[list[Stmt]]:
@@ -141,15 +154,19 @@ def _check_fall_through(
 
 def _check_next_state(
     function: Function, switch: Switch, body: list[Stmt], labels: list[int], following: list[Stmt],
-    report: StaticReport,
+    report: StaticReport, *, only: bool,
 ) -> bool:  # fmt: skip
-    """Report a case of a state machine that gives a state, and goes on with the case of another one, which does too."""
+    """Report a case of a state machine that gives a state, and goes on with the case of another one, which does too.
+
+    `only`: all other cases end.  Then a state that a function returns counts, too.
+    """
     match bare(switch.subject):
         case Load(lvalue=state) if labels:
             given = [
                 s for s in statements(body)
-                if isinstance(s, Assign) and s.target == state and isinstance(value := bare(s.value), Const)
-                and value.value not in labels
+                if isinstance(s, Assign) and s.target == state
+                and (value.value not in labels if isinstance(value := bare(s.value), Const) else
+                     only and isinstance(value, Call))
             ]  # fmt: skip
             again = any(isinstance(s, Assign) and s.target == state for s in statements(following))
             if given and again and state.text:

@@ -362,6 +362,29 @@ def test_a_state_that_goes_on_with_the_case_of_another(body: str, told: bool) ->
     assert [line for rule, line in findings_of(MACHINE % body) if rule == "case-falls"] == [7] * told
 
 
+LIFT = """enum { STANDS, OPEN, UP, DOWN, BROKEN } state;
+int late, calls;
+int next(int called) { return called > 2 ? UP : called > 0 ? DOWN : STANDS; }
+void step(void)
+{
+    switch (state) {
+    case STANDS: state = next(calls); break;
+    case OPEN: if (late) %s
+    case UP: case DOWN: if (late) state = BROKEN; break;
+    case BROKEN: break;
+    }
+}
+"""
+
+
+@pytest.mark.parametrize(("body", "told"), [
+    ("state = next(calls);", True), ("state = next(calls); break;", False), ("calls = next(calls);", False),
+    ("state = next(calls); /* as on the way */ /* fall through */", False), ("state = UP;", False),
+])  # fmt: skip
+def test_a_case_of_two_states_is_one_case(body: str, told: bool) -> None:
+    assert [line for rule, line in findings_of(LIFT % body) if rule == "case-falls"] == [8] * told
+
+
 STAMPS = """unsigned long millis;
 struct { unsigned last, period; } jobs[3];
 unsigned seen; unsigned long whole;
