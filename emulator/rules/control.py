@@ -72,6 +72,26 @@ end.
         how="static",
     ),
     _rule(
+        "never-updated",
+        Severity.WARNING,
+        "An object ought to remember what was before, and no statement sets it.",
+        """
+The program compares with what was at the start, not with what was the last time.
+
+`if (now == 0 && last == 1) presses++;` counts an edge only if `last = now;` follows. Without it, each pass in which the
+button is pressed counts. `if (message.number != expected) lost++;` needs `expected = message.number + 1;`.
+
+The name says that the object remembers: `last`, `previous`, `old`, `expected`, also in German and Spanish. The check
+needs the source of a whole program. Not reported: an object that is `const` or `volatile`, or whose address is taken;
+a `last` one that is compared with what the program counts up (`if (channel == lastChannel)`), or that begins with
+another number than 0, 1 or -1: it is probably the end of a row.
+
+**Fix:** set it behind the comparison.
+""",
+        "CERT MSC13-C",
+        how="static",
+    ),
+    _rule(
         "not-begun-again",
         Severity.WARNING,
         "A count or a flag is never begun again: it is right only the first time.",

@@ -37,6 +37,7 @@ from emulator.c28x.passes.messages import check_messages
 from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
 from emulator.c28x.passes.narrow_stamps import check_narrow_stamps
 from emulator.c28x.passes.never_back import check_never_back
+from emulator.c28x.passes.never_updated import check_never_updated
 from emulator.c28x.passes.null_tests import NullTests
 from emulator.c28x.passes.off_by_one import check_off_by_one
 from emulator.c28x.passes.one_sided import check_one_sided
@@ -159,6 +160,7 @@ def check(
     check_spans(shown, shown_reports)
     check_drained(whole, of_whole)
     check_kept_flags(whole, of_whole)
+    check_never_updated(modules, reports)
     check_unlimited_lines(whole, of_whole)
     check_undone(modules, reports)
     check_unread_inputs(modules, reports)

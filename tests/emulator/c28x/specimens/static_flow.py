@@ -282,6 +282,34 @@ def Turn(number: uint16) -> uint16:
         ("Turn", (9,)),
     ),
     static_pair(
+        "never-updated",
+        "an edge that nothing remembers",
+        """
+Last: uint16 = 1
+Presses: uint16 = 0
+def Step(now: uint16) -> uint16:
+    if now == 0 and Last == 1:  # <-
+        Presses += 1
+    return Presses
+def main() -> int16:
+    Step(0)
+    return 0
+""",
+        """
+Last: uint16 = 1
+Presses: uint16 = 0
+def Step(now: uint16) -> uint16:
+    if now == 0 and Last == 1:
+        Presses += 1
+    Last = now
+    return Presses
+def main() -> int16:
+    Step(0)
+    return 0
+""",
+        ("Step", (1,)),
+    ),
+    static_pair(
         "not-begun-again",
         "the time in a state is the time since the start",
         """

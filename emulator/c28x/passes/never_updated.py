@@ -1,0 +1,170 @@
+"""Static check of objects that ought to remember what was before, and that no statement sets: `never-updated`.
+
+    static unsigned last = 1;
+    ...
+    if (now == 0 && last == 1) presses++;    /* and nowhere `last = now;` */
+
+    if (message.number != expected) lost++;
+
+The name says that the object remembers (`last`, `previous`, `expected`, in English, German and Spanish).  A last one
+may also be the end of a row (`if (channel == lastChannel)`): so the check is silent where the object `last` is compared
+with something that the program counts up by one, or does not begin as a memory does.
+
+The check needs a whole program.  A `volatile` object may be set by a debugger.  A local by itself that is compared with
+a constant is a `constant-condition`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from typing import Any, Final
+
+from emulator.c28x.ctypes import FloatType, IntType
+from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.passes.state_values import constant_of, start_of
+from emulator.c28x.symbols import Module
+from emulator.c28x.tree import (
+    Assign,
+    Binary,
+    Compare,
+    Const,
+    Convert,
+    Declare,
+    Evaluate,
+    Expr,
+    For,
+    Function,
+    If,
+    Load,
+    Logic,
+    LValue,
+    Not,
+    Return,
+    Stmt,
+    Variable,
+    While,
+)  # fmt: skip
+from emulator.c28x.tree_queries import (
+    added,
+    addressed,
+    assigned,
+    bare,
+    parts,
+    statements,
+    within,
+    without_end,
+)
+
+_WORD: Final = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
+#: Words of names that remember, and those that may also be the end of a row.
+_BEFORE: Final = frozenset((
+    "prev", "previous", "previously", "old", "before", "expected", "vorher", "vorherig", "vorherige", "vorherigen",
+    "vorige", "voriger", "voriges", "erwartet", "erwartete", "erwarteter", "anterior", "previo", "previa", "viejo",
+    "vieja", "esperado", "esperada",
+))  # fmt: skip
+_LAST: Final = frozenset(("last", "letzte", "letzter", "letztes", "letzten", "ultimo", "ultima"))
+#: What a memory begins with.
+_STARTS: Final = frozenset((0, 1, -1, 0xFFFF))
+
+
+def check_never_updated(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
+    """Report the comparisons with objects that ought to remember, and that nothing sets."""
+    owners = {function: report for module, report in reports.items() for function in module.functions}
+    if not any(function.name == "main" and function.body for function in owners):
+        return
+    written: set[Any] = set()
+    counted: set[Any] = set()
+    begins: dict[Any, int] = {}
+    for function in owners:
+        for s in statements(function.body):
+            v = assigned(s)
+            if isinstance(s, Declare) and (start := constant_of(s.value)) is not None:
+                begins[s.variable.declaration] = start
+            elif v is not None:
+                written.add(v.declaration)
+                if (by := added(s)) is not None and constant_of(by) == 1:
+                    counted.add(v.declaration)
+            if isinstance(s, For):
+                written.add(s.counter.declaration)
+                counted.add(s.counter.declaration)
+        written |= {v.declaration for v in addressed(within(function.body))}
+        counted |= set(_wrapped(function))
+    for function, report in owners.items():
+        told: set[Any] = set()
+        for s in _repeated(function):
+            for v, other in _compared(s):
+                name = v.declaration
+                start = start_of(v) if v.kind == "global" else begins.get(name)
+                if start is None or name in written or name in told or not _remembers(v, start, other, counted):
+                    continue
+                told.add(name)
+                message = f"no statement sets {name.name}: each time it is what it was at the start"
+                report.report(function, s.where, "never-updated", message, object=name.path, declaration=name)
+
+
+def _wrapped(function: Function) -> Iterator[Any]:
+    """The objects that become the next number of a row: `n = (n + 1) % 8`."""
+    for s in statements(function.body):
+        v = assigned(s)
+        if v is not None and isinstance(s, Assign):
+            for p in parts(s.value):
+                if isinstance(p, Binary) and p.op == "+" and constant_of(p.right) == 1 and _value_of(p.left) is v:
+                    yield v.declaration
+
+
+def _repeated(function: Function) -> Iterator[Stmt]:
+    """The statements that run again: all of a function, but of `main` and of tasks those of the endless loop."""
+    loops = [s for s in function.body if isinstance(s, While) and without_end(s)]
+    yield from statements([x for loop in loops for x in loop.body] if loops else function.body)
+
+
+def _compared(s: Stmt) -> Iterator[tuple[Variable, Expr | None]]:
+    """The objects that a statement compares or subtracts, each with the other side; None: it is a test by itself."""
+    roots: list[Expr] = [s.test] if isinstance(s, If | While) else []
+    value = s.value if isinstance(s, Assign | Declare | Return | Evaluate) else None
+    roots += [value] if isinstance(value, Expr) else []
+    for root in roots:
+        for p in parts(root):
+            match p:
+                case Compare(op="==" | "!=", left=left, right=right) | Binary(op="-" | "^", left=left, right=right):
+                    for one, other in ((left, right), (right, left)):
+                        if (v := _value_of(one)) is not None and not isinstance(bare(other), Const):
+                            yield v, other
+                case Logic(operands=operands):
+                    for one in operands:
+                        if (v := _truth_of(one)) is not None and v.kind == "global":
+                            yield v, None
+
+
+def _truth_of(e: Expr) -> Variable | None:
+    """The object whose truth a test asks for, or that it compares with a constant."""
+    match bare(e):
+        case Not(operand=operand):
+            return _truth_of(operand)
+        case Compare(op="==" | "!=", left=left, right=right) if constant_of(right) is not None:
+            return _value_of(left)
+    return _value_of(e)
+
+
+def _value_of(e: Expr) -> Variable | None:
+    """The object of which an expression is just the value."""
+    while isinstance(e, Convert):
+        e = e.operand
+    match e:
+        case Load(lvalue=LValue(root=Variable(ctype=IntType() | FloatType()) as v, indices=[], bits=None)):
+            return v
+    return None
+
+
+def _remembers(v: Variable, start: int, other: Expr | None, counted: set[Any]) -> bool:
+    """Whether an object that nothing sets ought to remember, by its name, its start and what it is compared with."""
+    words = {word.lower() for word in _WORD.findall(v.declaration.name)}
+    if v.kind not in ("global", "local") or v.constant or v.volatile or v.address is not None or v.escapes:
+        return False
+    if words & _BEFORE:
+        return True
+    if not words & _LAST or start not in _STARTS:
+        return False
+    named = {p.root.declaration for p in parts(other) if isinstance(p, LValue) and isinstance(p.root, Variable)}
+    return not named & counted
