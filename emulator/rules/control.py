@@ -121,6 +121,8 @@ The first time all is well. The second time, the count goes on where it was, or 
   `last` again: from then on it runs in each pass.
 * An interrupt sets a flag each time, nothing clears it, and the loop of `main`, which waits for nothing else, counts,
   adds up or toggles something behind a test of it: that counts the turns of the loop.
+* The elements of an array have a mark that they are full (or busy). The program sets and tests it, and never takes it
+  back: each element is used once.
 
 The check needs the source of a whole program. It knows counts that every statement only counts up, and flags that every
 statement sets to the same value. Not reported: a count that anything but such tests reads, as a clock is; a limit that

@@ -28,7 +28,7 @@ from emulator.c28x.passes.future_stamps import unreachable_exits
 from emulator.c28x.passes.given import GivenValues
 from emulator.c28x.passes.held import with_held_values
 from emulator.c28x.passes.interrupted import sides_of
-from emulator.c28x.passes.kept_flags import check_kept_flags
+from emulator.c28x.passes.kept_flags import check_kept_flags, check_kept_marks
 from emulator.c28x.passes.likes import check_likes
 from emulator.c28x.passes.lost_writes import check_lost_writes
 from emulator.c28x.passes.masked import check_masked
@@ -160,6 +160,7 @@ def check(
     check_spans(shown, shown_reports)
     check_drained(whole, of_whole)
     check_kept_flags(whole, of_whole)
+    check_kept_marks(modules, reports)
     check_never_updated(modules, reports)
     check_unlimited_lines(whole, of_whole)
     check_undone(modules, reports)

@@ -1,11 +1,20 @@
-"""The text of declarations, for what types do not keep: a storage class, what a pointer leads to, a remark."""
+"""The text of declarations, for what types do not keep: words of names, a storage class, a remark."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
+from typing import Final
 
 from emulator.c28x.tree import Declaration, Expr, Load, LValue, Variable
 from emulator.c28x.tree_queries import bare
+
+_WORD: Final = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
+
+
+def words_of(name: str) -> list[str]:
+    """The words of a name, in small letters: `last` and `state` of `lastState`, `LAST_STATE` and `last_state2`."""
+    return [word.lower() for word in _WORD.findall(name)]
 
 
 def line_of(declaration: Declaration) -> str:

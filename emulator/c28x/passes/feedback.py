@@ -20,11 +20,11 @@ The result are the differences, by the identity of their expressions.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Final, NamedTuple
 
 from emulator.c28x.ctypes import FloatType, IntType
+from emulator.c28x.passes.declared import words_of
 from emulator.c28x.passes.signs import SignedWord
 from emulator.c28x.passes.stamps import Key, key_of
 from emulator.c28x.passes.wind_up import limited_operand
@@ -47,7 +47,6 @@ from emulator.c28x.tree import (
 )
 from emulator.c28x.tree_queries import all_blocks, bare, gives, once, own_nodes, parts, source_text, statements, within
 
-_WORD: Final = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 #: Words that say that a value is the wanted one; `set` and `point` count together.
 _WANTED: Final = frozenset((
     "ref", "reference", "setpoint", "target", "wanted", "desired", "demand", "demanded", "command", "commanded", "cmd",
@@ -104,7 +103,8 @@ def _errors(function: Function) -> Iterator[_Error]:
     body = list(statements(function.body))
     names = [function.name, *(target.text for s in body if (target := _target(s)) is not None)]
     names += [p.function.name for s in body for p in own_nodes(s) if isinstance(p, Call)]
-    if (_LOWERED | _LOWERING).intersection(_words(function.name)) or _LOWERING.intersection(_words(" ".join(names))):
+    falls = (_LOWERED | _LOWERING).intersection(words_of(function.name))
+    if falls or _LOWERING.intersection(words_of(" ".join(names))):
         return
     for n, s in enumerate(body):
         for p in own_nodes(s):
@@ -131,11 +131,7 @@ def _is_backwards(e: Binary) -> bool:
 def _named(e: Expr) -> list[str]:
     """The words of the names of one object or member; empty: it is something else."""
     load = bare(e)
-    return _words(source_text(load)) if isinstance(load, Load) else []
-
-
-def _words(text: str) -> list[str]:
-    return [word.lower() for word in _WORD.findall(text)]
+    return words_of(source_text(load)) if isinstance(load, Load) else []
 
 
 def _is_wanted(words: list[str]) -> bool:

@@ -9,6 +9,9 @@ After the first interrupt `ms` counts the turns of the loop.  So do a sum (`sum 
 Silent if the loop waits anywhere: then something else sets its pace, and the flag may say that the program has begun.
 Silent too if the interrupt sets the flag only under a condition, if the flag's name or comment says that it stays, and
 if what is counted is meant to count turns (`idle++`).
+
+So are marks of elements that are full (`if (blocks[i].full) lost++; else ...`) which the program sets, tests, and
+never takes back: each element can be used once.
 """
 
 from __future__ import annotations
@@ -17,25 +20,33 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
+from emulator.c28x.ctypes import ArrayType, CType, IntType, PointerType, StructType
 from emulator.c28x.passes.begun_again import is_latched, is_number, step_of
+from emulator.c28x.passes.declared import words_of
 from emulator.c28x.passes.drained import found_set
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.state_values import constant_of
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
+    AddressOf,
     Assign,
     Call,
     CallPointer,
+    CopyStruct,
     Evaluate,
+    Expr,
     For,
     Function,
     If,
+    Load,
+    LValue,
     RegisterRef,
     Stmt,
     Variable,
     While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
+    NamedScalar,
     added,
     addressed,
     assigned,
@@ -44,12 +55,15 @@ from emulator.c28x.tree_queries import (
     last_loop,
     leaves,
     own_nodes,
+    parts,
     statements,
     within,
 )
 
 #: Names of functions that wait.
 _WAITS: Final = re.compile(r"delay|wait|sleep|pause|idle|pend|block", re.IGNORECASE)
+#: Words of marks that somebody must take back.  One of `used` may stand for good: a place that was given away.
+_IN_USE: Final = frozenset(("full", "busy", "voll", "lleno", "llena"))
 #: Names of what counts turns on purpose: the load of the CPU, a start value for random numbers.
 _TURNS: Final = re.compile(r"idle|load|spin|turn|loop|pass|free|cpu|seed|rand", re.IGNORECASE)
 
@@ -167,3 +181,71 @@ def _changed(body: list[Stmt], own: dict[str, Function], above: frozenset[str]) 
         if v is not None and more and v.kind == "global" and not _TURNS.search(v.declaration.name):
             return f"changes {v.declaration.name}"
     return ""
+
+
+# Marks of elements
+
+
+def check_kept_marks(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
+    """Report the tests of marks that an element is full or busy, in whole programs that never take such a mark back."""
+    owners = {function: report for module, report in reports.items() for function in module.functions}
+    if not any(function.name == "main" and function.body for function in owners):
+        return
+    given: dict[NamedScalar, list[Expr]] = {}
+    others: set[NamedScalar] = set()
+    whole: set[CType] = set()
+    for function in owners:
+        for s in statements(function.body):
+            match s:
+                case Assign(target=LValue() as target, value=value) if (mark := _mark(target)) is not None:
+                    given.setdefault(mark, []).append(value)
+                case CopyStruct(target=LValue(ctype=holder)):
+                    whole.add(holder)
+        for p in within(function.body):
+            match p:
+                case AddressOf(lvalue=lvalue) if (mark := _mark(lvalue)) is not None:
+                    others.add(mark)
+                case Call(function=Function(extern=True), arguments=arguments):
+                    whole |= {of for e in arguments for q in parts(e) if (of := _holder(q)) is not None}
+    kept = {
+        mark for mark, values in given.items()
+        if mark not in others and mark[0] not in whole and all(map(constant_of, values))
+    }  # fmt: skip
+    for function, report in owners.items() if kept else ():
+        for s in statements(function.body):
+            for p in parts(s.test) if isinstance(s, If) else ():
+                mark = _mark(p.lvalue) if isinstance(p, Load) else None
+                if mark in kept and isinstance(p, Load):
+                    kept.discard(mark)
+                    text = p.lvalue.text
+                    message = f"nothing takes {text} back: once it is set, it stands for good"
+                    report.report(function, s.where, "not-begun-again", message, object=text)
+
+
+def _holder(e: object) -> CType | None:
+    """The structure to which, or to an array of which, an expression points."""
+    target = e.lvalue.ctype if isinstance(e, AddressOf) else None
+    if isinstance(e, Expr) and isinstance(e.ctype, PointerType):
+        target = target or e.ctype.target
+    while isinstance(target, ArrayType):
+        target = target.element
+    return target if isinstance(target, StructType) else None
+
+
+def _mark(lvalue: LValue) -> NamedScalar | None:
+    """The member of the elements of an array that an lvalue names, if it says that an element is full or busy.
+
+    A mark that is no member may say that something happens once (a record that is full).
+    """
+    match lvalue:
+        case LValue(root=Variable(ctype=ArrayType(element=StructType() as holder)), indices=[_], words=words):
+            pass
+        case LValue(root=Expr(ctype=PointerType(target=StructType() as holder)), indices=[], words=words):
+            pass
+        case _:
+            return None
+    if isinstance(lvalue.ctype, IntType) and lvalue.bits is None:
+        for member in holder.members:
+            if member.offset == words and _IN_USE.intersection(words_of(member.name)):
+                return holder, words
+    return None

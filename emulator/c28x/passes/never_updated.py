@@ -16,11 +16,11 @@ a constant is a `constant-condition`.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 from typing import Any, Final
 
 from emulator.c28x.ctypes import FloatType, IntType
+from emulator.c28x.passes.declared import words_of
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.state_values import constant_of, start_of
 from emulator.c28x.symbols import Module
@@ -56,7 +56,6 @@ from emulator.c28x.tree_queries import (
     without_end,
 )
 
-_WORD: Final = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 #: Words of names that remember, and those that may also be the end of a row.
 _BEFORE: Final = frozenset((
     "prev", "previous", "previously", "old", "before", "expected", "vorher", "vorherig", "vorherige", "vorherigen",
@@ -159,7 +158,7 @@ def _value_of(e: Expr) -> Variable | None:
 
 def _remembers(v: Variable, start: int, other: Expr | None, counted: set[Any]) -> bool:
     """Whether an object that nothing sets ought to remember, by its name, its start and what it is compared with."""
-    words = {word.lower() for word in _WORD.findall(v.declaration.name)}
+    words = set(words_of(v.declaration.name))
     if v.kind not in ("global", "local") or v.constant or v.volatile or v.address is not None or v.escapes:
         return False
     if words & _BEFORE:

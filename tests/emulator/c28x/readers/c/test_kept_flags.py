@@ -101,3 +101,38 @@ def test_turns_that_are_counted_on_purpose(tmp_path: Path) -> None:
     text = PROGRAM.format(turn="if (due) idleTurns++;", interrupt="due = 1;", work="", before="")
     text = text.replace("unsigned ms", "unsigned long idleTurns = 0;\nunsigned ms")
     assert told(text) == []
+
+
+BLOCKS = """typedef unsigned Uint16;
+typedef struct {{ Uint16 {mark}; Uint16 value; }} Block;
+static Block blocks[2] = {{{{0, 0}}, {{0, 0}}}};
+static volatile Uint16 filling = 0, lost = 0;
+__interrupt void Fill(void)
+{{
+    Uint16 other = (filling + 1) % 2;
+    Block *block = &blocks[filling];
+    block->value = 3;
+    if (blocks[other].{mark}) lost++;
+    else {{ block->{mark} = 1; filling = other; }}
+}}
+int main(void)
+{{
+    Uint16 next = 0, sum = 0;
+    for (;;) {{
+        if (blocks[next].{mark}) {{ sum ^= blocks[next].value; {after} next = (next + 1) % 2; }}
+        lost = sum;
+    }}
+}}
+"""
+
+
+@pytest.mark.parametrize(("mark", "after", "count"), [
+    ("full", "", 1), ("isBusy", "", 1), ("full", "blocks[next].full = 0;", 0),
+    ("used", "", 0),  # a place that was given away for good
+    ("full", "memset(blocks, 0, sizeof blocks);", 0), ("full", "blocks[next] = blocks[1 - next];", 0),
+])  # fmt: skip
+def test_a_mark_of_an_element_is_taken_back(mark: str, after: str, count: int) -> None:
+    """Else each element is used once."""
+    text = BLOCKS.format(mark=mark, after=after)
+    messages = told(("#include <string.h>\n" if "memset" in after else "") + text)
+    assert messages == [f"nothing takes blocks[other].{mark} back: once it is set, it stands for good"] * count
