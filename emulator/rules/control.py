@@ -106,6 +106,8 @@ The first time all is well. The second time, the count goes on where it was, or 
   begins again, the flag is never taken back: one long message, and no other is heard.
 * Another count is set back after some time without a sign of life (`if (quiet < LIMIT) quiet++; else length = 0;`).
   Nothing sets `quiet` to 0: from then on the other count is set back in each pass.
+* An order is taken back after some time without one (`if (order()) wanted = ...; else if (without < LIMIT) without++;
+  else wanted = 0;`), and no order sets `without` to 0: from then on each order holds for one pass.
 * A state ends by a count or a stamp. At least two other entrances begin it, and all of this state; one entrance does
   not, and nothing else does: the state is over too early by the time of the state before.
 * A difference over some time (`if (ms >= 100) { speed = now - last; last = now; }`) is taken in each pass once the

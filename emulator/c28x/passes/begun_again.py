@@ -1,13 +1,14 @@
 """Static check of counts and flags that are never begun again: `not-begun-again`.
 
 The check needs a whole program (one with a `main`), because it must see all statements.  It knows the integers at file
-scope (and `static` ones) that every statement only counts up, or only sets to one value.  Seven uses of them are wrong
+scope (and `static` ones) that every statement only counts up, or only sets to one value.  Eight uses of them are wrong
 from the second time on:
 
 * the time in a state, which the program can enter again (`if (stateMs > LIMIT) state = FAULT`);
 * the place where a text ends, in a function that ends one text after the other (`line[length] = 0`);
 * the mark that a buffer was too small, while its index begins again (`if (tooLong || ...) bad++; else ...`);
 * the time without a sign of life after which another count is set back (`if (quiet > LIMIT) length = 0;`);
+* the time without an order, after which the last order is taken back (`else if (without < LIMIT) without++; else ...`);
 * the number of values in a sum that is begun again without it (`if (count == N) { mean = sum / N; sum = 0; }`); here
   the count may also be a local that an endless loop never sets back;
 * the sum whose count is begun again without it (`if (count == N) { mean = sum / N; count = 0; }`), likewise;
@@ -34,6 +35,7 @@ from emulator.c28x.tree import (
     Binary,
     Call,
     Compare,
+    Const,
     Declaration,
     Declare,
     Evaluate,
@@ -161,6 +163,7 @@ class _Program:
                     self._set_back(function, s)
             for block, again in _repeated(function):
                 self._sum_alone(function, block, again)
+                self._without_orders(function, block, again)
                 self._in_a_row(function, block)
 
     def _tell(self, function: Function, s: Stmt, name: Declaration, message: str) -> None:
@@ -299,6 +302,34 @@ class _Program:
                 case _:
                     return None
         return found
+
+    def _without_orders(self, function: Function, block: list[Stmt], again: list[Stmt]) -> None:
+        """Report a time without orders which no order begins again, and after which the last order is taken back.
+
+            if (Mailbox_pend(orders, &order, BIOS_NO_WAIT)) wanted = order;
+            else if (without < LIMIT) without++;
+            else wanted = 0;
+        """
+        for s in block:
+            inner = next((x for x in s.otherwise if isinstance(x, If)), None) if isinstance(s, If) else None
+            if not isinstance(s, If) or inner is None:
+                continue
+            for growing, late in ((inner.then, inner.otherwise), (inner.otherwise, inner.then)):
+                count = next((v for x in growing if (v := assigned(x)) is not None and step_of(x, v) == 1), None)
+                if count is None or count not in _roots_of(inner.test) or not self._only_grows(count, again):
+                    continue
+                orders = {assigned(x) for x in s.then if isinstance(x, Assign) and not isinstance(bare(x.value), Const)}
+                back = next((
+                    v for x in late if (v := assigned(x)) in orders and v is not None and isinstance(x, Assign)
+                    and isinstance(bare(x.value), Const)
+                ), None)  # fmt: skip
+                if back is not None:
+                    name = count.declaration
+                    message = (
+                        f"nothing begins {name.name} again: once it has passed this limit, {back.declaration.name} is "
+                        "taken back in the first pass behind each new one"
+                    )
+                    self._tell(function, inner, name, message)
 
     # What is summed, and counted
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from hil.image import Build
-from tests.emulator.c28x.readers.c.workshop import findings_of
+from tests.emulator.c28x.readers.c.workshop import CWorkshop, findings_of
 
 GATE = """typedef unsigned int Uint16;
 enum {{ SHUT, RISING, OPEN, STUCK }};
@@ -363,3 +363,34 @@ def test_a_time_since_a_stamp_that_is_not_renewed_is_told(stamp: str, file_scope
 ])  # fmt: skip
 def test_a_time_since_a_stamp_that_is_renewed_or_the_start_is_silent(stamp: str, then: str, turn: str) -> None:
     assert told(CLOCK.format(local=stamp, stamp=stamp, file_scope="", then=then, turn=turn)) == []
+
+
+ORDERS = """typedef unsigned Uint16;
+int order(int *wanted);
+int Driven = 0;
+int main(void)
+{{
+    int wanted = 0, given = 0;
+    Uint16 without = 0;
+    for (;;) {{
+        if (order(&given)) {{ wanted = given; {order} }}
+        else if (without < 2000) without++;
+        else {{ {late} }}
+        Driven = wanted;
+        {turn}
+    }}
+}}
+"""
+
+
+@pytest.mark.parametrize(("order", "late", "turn", "told"), [
+    ("", "wanted = 0;", "", True),
+    ("without = 0;", "wanted = 0;", "", False),
+    ("", "wanted = 0;", "if (Driven == 0) without = 0;", False),
+    ("", "wanted = 0; without = 0;", "", False),
+    ("", "Driven = 0;", "", False),  # it takes back no order
+])  # fmt: skip
+def test_the_time_without_an_order_begins_again(order: str, late: str, turn: str, told: bool) -> None:
+    """Else each order holds for one pass."""
+    shop = CWorkshop(ORDERS.format(order=order, late=late, turn=turn), static=True, externs={"order": lambda _: 0})
+    assert [f.object for f in shop.findings if f.rule == "not-begun-again"] == ["drv.main.without"] * told
