@@ -51,6 +51,9 @@ seconds, before `rest_ms = seconds * 1000U`; a mask of 12 bits that 16 bits do n
 divided or compared, this is `unsigned-wrap`; if it is signed, `overflow`. Values behind a further test of them are not
 reported.
 
+A difference that its name calls an error (`long error = SET - measured;` with a `Uint16 measured`) is reported before
+the program runs, unless the function compares the two: above the set point it is some 65000.
+
 So does a long pulse: `Uint16 width = fall - rise;` keeps 16 of 32 bits of the time between two captures of an eCAP. It
 is reported when such a width is used as a wider number for the third time.
 

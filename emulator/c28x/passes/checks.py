@@ -21,6 +21,7 @@ from emulator.c28x.passes.digits import check_digits
 from emulator.c28x.passes.drained import check_drained
 from emulator.c28x.passes.dropped import check_dropped
 from emulator.c28x.passes.entrances import check_entrances
+from emulator.c28x.passes.error_signs import check_error_signs
 from emulator.c28x.passes.event_masks import check_event_masks, check_lost_events
 from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.fraction_texts import check_fraction_texts
@@ -155,6 +156,7 @@ def check(
     check_messages(modules, reports)
     check_narrow_stamps(modules, reports)
     check_quotients(reports, given)
+    check_error_signs(modules, reports)
     check_stated(reports, given)
     check_fraction_texts(reports, given)
     check_spans(shown, shown_reports)
