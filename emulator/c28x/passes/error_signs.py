@@ -3,7 +3,7 @@
     long error = SET - measured;    /* with a Uint16 `measured`: below 0 it becomes up to 65535 */
 
 The name says that the result may be negative (`error`, `deviation`, in English, German and Spanish).  Silent if the
-function compares the two sides anywhere, or limits one of them by the other.
+function compares the two sides anywhere, and if the left one is the end of a range (`4095 - code`, `100 - percent`).
 """
 
 from __future__ import annotations
@@ -24,6 +24,8 @@ _SIGNED: Final = frozenset((
 ))  # fmt: skip
 #: These too, if one side is a constant.  That of two variables may be an elapsed count.
 _FROM_CONSTANT: Final = frozenset(("diff", "difference", "differenz", "diferencia"))
+#: Ends of a range, from which the rest is not below 0: per cent and the like; full scales are one less than these.
+_ENDS: Final = frozenset((100, 1000, 10000, 180, 360, *(1 << n for n in range(17))))
 
 
 def check_error_signs(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
@@ -39,7 +41,10 @@ def check_error_signs(modules: Iterable[Module], reports: dict[Module, StaticRep
                 found = _widened(value) if (_SIGNED | _FROM_CONSTANT).intersection(words) else None
                 if found is None or _compared(function, found):
                     continue
-                if _SIGNED.intersection(words) or isinstance(bare(found.left), Const):
+                left = bare(found.left)
+                if isinstance(left, Const) and not _ENDS.isdisjoint((left.value, left.value + 1)):
+                    continue
+                if _SIGNED.intersection(words) or isinstance(left, Const):
                     text = source_text(found)
                     message = (
                         f"{text} is unsigned and has {_bits(found.ctype)} bits: below 0 it wraps, before it becomes "

@@ -8,7 +8,8 @@
 
 The name says that the object remembers (`last`, `previous`, `expected`, in English, German and Spanish).  A last one
 may also be the end of a row (`if (channel == lastChannel)`): so the check is silent where the object `last` is compared
-with something that the program counts up by one, or does not begin as a memory does.
+with something that the program counts up by one.  It is silent about objects that do not begin with 0, 1 or -1, and
+about what is expected but is no number of a row (`expectedVersion`).
 
 The check needs a whole program.  A `volatile` object may be set by a debugger.  A local by itself that is compared with
 a constant is a `constant-condition`.
@@ -58,11 +59,16 @@ from emulator.c28x.tree_queries import (
 
 #: Words of names that remember, and those that may also be the end of a row.
 _BEFORE: Final = frozenset((
-    "prev", "previous", "previously", "old", "before", "expected", "vorher", "vorherig", "vorherige", "vorherigen",
-    "vorige", "voriger", "voriges", "erwartet", "erwartete", "erwarteter", "anterior", "previo", "previa", "viejo",
-    "vieja", "esperado", "esperada",
+    "prev", "previous", "previously", "old", "vorherig", "vorherige", "vorherigen", "vorige", "voriger", "voriges",
+    "anterior", "previo", "previa", "viejo", "vieja",
 ))  # fmt: skip
 _LAST: Final = frozenset(("last", "letzte", "letzter", "letztes", "letzten", "ultimo", "ultima"))
+#: What is expected next, and the words that may stand with it: an expected version or identifier is a constant.
+_EXPECTED: Final = frozenset(("expected", "erwartet", "erwartete", "erwarteter", "esperado", "esperada"))
+_NUMBER: Final = frozenset((
+    "number", "num", "nr", "no", "seq", "sequence", "next", "count", "index", "frame", "msg", "message", "packet",
+    "numero", "nummer", "folge", "secuencia", "siguiente", "mensaje",
+))  # fmt: skip
 #: What a memory begins with.
 _STARTS: Final = frozenset((0, 1, -1, 0xFFFF))
 
@@ -161,9 +167,11 @@ def _remembers(v: Variable, start: int, other: Expr | None, counted: set[Any]) -
     words = set(words_of(v.declaration.name))
     if v.kind not in ("global", "local") or v.constant or v.volatile or v.address is not None or v.escapes:
         return False
-    if words & _BEFORE:
+    if start not in _STARTS:
+        return False
+    if words & _BEFORE or (words & _EXPECTED and words <= _EXPECTED | _NUMBER):
         return True
-    if not words & _LAST or start not in _STARTS:
+    if not words & _LAST:
         return False
     named = {p.root.declaration for p in parts(other) if isinstance(p, LValue) and isinstance(p.root, Variable)}
     return not named & counted

@@ -43,6 +43,8 @@ def test_an_error_without_a_sign(declared: str, body: str) -> None:
     ("long error = (int) (SET - measured);", "out = error;"),
     ("long diff = wanted - measured;", "out = diff;"),  # perhaps an elapsed count
     ("long rest = SET - measured;", "out = rest;"),
+    ("long error = 4095 - measured;", "out = error;"),  # a code of 12 bits is not above
+    ("float error = 100 - measured;", "outf = error;"),  # per cent
     ("unsigned long error = SET - measured;", "out = error;"),
     ("long error = 0;", "if (measured < SET) error = SET - measured; out = error;"),
     ("long error = measured > wanted ? measured - wanted : 0;", "out = error;"),

@@ -34,6 +34,7 @@ def told(objects: str = "", step: str = "", local: str = "", turn: str = "") -> 
     ({"objects": "int old = 0;", "step": "changes = now - old;"}, "old"),
     ({"step": "static Uint16 letzter = 0; if (now != letzter) changes++;"}, "letzter"),
     ({"local": "Uint16 esperado = 0;", "turn": "if (box.number != esperado) lost++;"}, "esperado"),
+    ({"objects": "Uint16 expectedNr = 0;", "step": "if (now != expectedNr) lost++;"}, "expectedNr"),
     ({"local": "Uint16 last = 0;", "turn": "if (read() != last) changes++;"}, "last"),
 ])  # fmt: skip
 def test_what_nothing_sets_remembers_nothing(parts: dict[str, str], name: str) -> None:
@@ -48,6 +49,8 @@ def test_what_nothing_sets_remembers_nothing(parts: dict[str, str], name: str) -
     {"objects": "static Uint16 lastChannel = 7;", "step": "if (now == lastChannel) at = 0;"},
     {"objects": "static Uint16 lastChannel = 1;", "turn": "if (at == lastChannel) at = 0; else at++;"},
     {"objects": "static Uint16 lastChannel = 1;", "turn": "at = (at + 1) % 8; if (at == lastChannel) presses++;"},
+    {"objects": "static Uint16 expectedVersion = 1;", "step": "if (now != expectedVersion) lost++;"},
+    {"objects": "static Uint16 expected = 0xD3;", "step": "if (now != expected) lost++;"},
     {"objects": "static const Uint16 old = 1;", "step": "if (now != old) changes++;"},
     {"objects": "volatile Uint16 expected = 1;", "step": "if (now != expected) changes++;"},
     {"objects": "Uint16 old; Uint16 *where = &old;", "step": "if (now != old) changes++;"},
