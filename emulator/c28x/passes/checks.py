@@ -98,12 +98,15 @@ def check(
             at = remark.where
             place = Place(at.file, at.line, remark.function, module.c_file, at.column)
             found.append(StaticFinding(place, remark.rule, remark.message, remark.name, "", None))
+        # The compiler may know what the small functions of the same file return, and no others.
+        (own,) = with_small_functions([module], frozenset(entered))
+        returned = {function.path: function for function in own.functions}
         for function in module.functions:
             unit = module.unit(function.name)
             found += _of_flow(function)
             ValueChecks(function, report, unit.symbols, flags, masks, results).run()
             found += _of_function(function)
-            check_waiting(function, threads, report)
+            check_waiting(returned.get(function.path, function), threads, report)
             if not in_header(function.where, unit.file):
                 used = mentions.by[function]
                 check_names(function, unit, report, used, by_address=function.path in entered)

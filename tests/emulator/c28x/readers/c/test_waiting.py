@@ -24,6 +24,10 @@ volatile int vflag, vitem[4]; vuint vnamed; struct data data; volatile struct da
 struct bits bits; volatile struct bits vbits;
 static int hidden;
 extern int elsewhere(void);
+int moving(void) { return flag; }
+static int is_ready(int wanted) { return mode == wanted; }
+int vmoving(void) { return vflag; }
+int guarded(void) { int now; DINT; now = flag; EINT; return now; }
 interrupt void isr(void)
 {
     flag = mode = limit = enabled = hidden = item[2] = vflag = vitem[2] = *pointer = 1;
@@ -69,6 +73,10 @@ def waiting(files: str | dict[str, str]) -> list[tuple[str, int, int, str]]:
         ("void wait(void) { while (data.count == 0) ; }", "data.count"),
         ("void wait(void) { while (!bits.done) ; }", "bits.done"),
         ("void wait(void) { while (!data.count) { data.own++; } }", "data.count"),  # the loop writes another member
+        # Another function of this file returns it.
+        ("void wait(void) { while (moving()) ; }", "flag"),
+        ("void wait(void) { int now; do { now = moving(); } while (now); }", "flag"),
+        ("void wait(void) { while (!is_ready(3)) { clear(); } }", "mode"),
     ],
 )
 def test_a_wait_on_what_an_interrupt_writes_is_found_where_the_loop_begins(function: str, variable: str) -> None:
@@ -94,6 +102,11 @@ def test_a_wait_on_what_an_interrupt_writes_is_found_where_the_loop_begins(funct
         "void wait(void) { while (elsewhere() && !flag) ; }",
         "void wait(void) { while (flag) { clear(); } }",
         "void wait(void) { while (!flag) { *pointer = 0; } }",
+        "void wait(void) { while (vmoving()) ; }",
+        "void wait(void) { while (guarded()) ; }",  # more than a value is behind the call
+        "void wait(void) { while (moving()) { DELAY_US(10); } }",
+        "void wait(void) { while (moving()) { clear(); } }",
+        "void count(void) { int i; for (i = 0; i < 10 && moving(); i++) { out[i] = i; } }",
         "void wait(void) { while (!lone) ; }",  # nobody writes it
         "void wait(void) { while (!data.own) ; }",  # nobody writes this member
         "void count(void) { int i; for (i = 0; i < limit; i++) { out[i % 10] = i; } }",
@@ -139,6 +152,13 @@ def test_volatile_at_any_declaration_counts_for_all_files() -> None:
     isr = "int flag;\ninterrupt void isr(void) { flag = 1; }\n"
     assert waiting({"wait.c": wait % "", "isr.c": isr}) == [("wait.c", 4, 5, "isr.flag")]
     assert waiting({"wait.c": wait % "volatile ", "isr.c": isr}) == []
+
+
+def test_what_a_function_of_another_file_returns_is_read_each_time() -> None:
+    get = "int flag;\ninterrupt void isr(void) { flag = 1; }\nint get(void) { return flag; }\n"
+    wait = "int get(void);\nvoid wait(void) { while (!get()) ; }\n"
+    assert waiting({"wait.c": wait, "isr.c": get}) == []
+    assert [name for *_, name in waiting(get + wait)] == ["drv.flag"]
 
 
 MAIN_LOOP = """int events, total; volatile int ticks;
