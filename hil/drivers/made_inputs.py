@@ -29,8 +29,9 @@ from random import Random
 from typing import Final
 
 from emulator.c28x.findings import Finding
+from emulator.c28x.passes.state_values import constant_of
 from emulator.c28x.symbols import Module
-from emulator.c28x.tree import Call, Const, RegisterLoad, RegisterRef, String
+from emulator.c28x.tree import Call, Const, Load, LValue, RegisterLoad, RegisterRef, String, Variable
 from emulator.c28x.tree_queries import bare, within
 from emulator.chip import ECAP_INPUT, XINT_INPUT
 from emulator.clock import CYCLES_PER_MS
@@ -81,6 +82,10 @@ _SHAFT: Final = re.compile(r"QPOS(?:CNT|LAT|ILAT|SLAT)$|QCPRD(?:LAT)?$")
 _ROUTES: Final = re.compile(r"SetupXINT\dGpio|XBAR_setInputPin|GPIO_setInterruptPin")
 #: Functions of TI's that read a pin.
 _READ_PIN: Final = frozenset({"GPIO_ReadPin", "GPIO_readPin"})
+#: Functions of driverlib that read the same, and those by which an ADC converts, perhaps for a DMA.
+_ANALOG_CALL: Final = re.compile(r"ADC_(?:setupSOC|read(?:PPB)?Result)$")
+_SHAFT_CALL: Final = re.compile(r"EQEP_get(?:(?:Index|Strobe)?Position(?:Latch)?|Capture\w+)$")
+_CHARACTER_CALL: Final = re.compile(r"SCI_readChar\w*$")
 
 
 @dataclass
@@ -98,7 +103,7 @@ class Uses:
 
 
 def uses(modules: Iterable[Module]) -> Uses:
-    """The inputs that the functions of a program read by name."""
+    """The inputs that the functions of a program read, by registers or by functions of driverlib."""
     found = Uses()
     for node in (node for module in modules for function in module.functions for node in within(function.body)):
         match node:
@@ -114,10 +119,18 @@ def uses(modules: Iterable[Module]) -> Uses:
                 found.routed = True
             case Call(function=function) if _ROUTES.search(function.name):
                 found.routed = True
-            case Call(function=function, arguments=[pin, *_]) if function.name in _READ_PIN:
-                match bare(pin):
+            case Call(function=function) if _ANALOG_CALL.match(function.name):
+                found.analog = True
+            case Call(function=function) if _SHAFT_CALL.match(function.name):
+                found.shafts = True
+            case Call(function=function) if _CHARACTER_CALL.match(function.name):
+                found.characters = True
+            case Call(function=function, arguments=[at, *_]) if function.name in _READ_PIN:
+                match bare(at):
                     case Const(value=int() as number):
                         found.pins.add(number)
+                    case Load(lvalue=LValue(root=Variable(constant=True) as table)) if table.initial:
+                        found.pins |= {pin for value in table.initial if (pin := constant_of(value)) is not None}
                     case _:
                         found.pins |= set(range(_PINS * 6))
     return found

@@ -10,7 +10,7 @@ import pytest
 from hil.board import load
 from hil.cli import invoke
 from hil.drivers.check import DriverFiles, check_files
-from hil.drivers.made_inputs import uses
+from hil.drivers.made_inputs import Uses, uses
 from hil.image import Build
 from hil.reports.model import rule_of
 
@@ -226,3 +226,27 @@ def test_a_program_without_such_inputs_runs_once(tmp_path: Path) -> None:
 def test_what_a_program_uses(tmp_path: Path, statement: str, used: bool) -> None:
     (tmp_path / "lab.c").write_text(f"{HEAD}void main(void) {{ {statement} for (;;); }}", encoding="utf-8")
     assert bool(uses(Build([str(tmp_path / "lab.c")]).modules)) is used
+
+
+STUBS = """
+Uint16 ADC_readResult(Uint32 base, Uint16 soc) { return 0; }
+void ADC_setupSOC(Uint32 base, Uint16 soc) { }
+Uint32 EQEP_getPosition(Uint32 base) { return 0; }
+Uint16 SCI_readCharNonBlocking(Uint32 base) { return 0; }
+static const Uint16 Buttons[2] = { 24, 31 };
+static Uint16 Chosen = 24;
+"""
+
+
+@pytest.mark.parametrize(("statement", "used"), [
+    ("Shown = ADC_readResult(0, 0);", Uses(analog=True)),
+    ("ADC_setupSOC(0, 0);", Uses(analog=True)),  # a DMA may read it
+    ("Shown = EQEP_getPosition(0);", Uses(shafts=True)),
+    ("Shown = SCI_readCharNonBlocking(0);", Uses(characters=True)),
+    ("Uint16 i; for (i = 0; i < 2; i++) Shown += GPIO_ReadPin(Buttons[i]);", Uses(pins={24, 31})),
+    ("Shown = GPIO_ReadPin(Chosen);", Uses(pins=set(range(192)))),
+])  # fmt: skip
+def test_what_a_program_uses_by_functions(tmp_path: Path, statement: str, used: Uses) -> None:
+    """Functions with the names of driverlib's read the same as registers; a table says which pins."""
+    (tmp_path / "lab.c").write_text(f"{HEAD}{STUBS}void main(void) {{ {statement} for (;;); }}", encoding="utf-8")
+    assert uses(Build([str(tmp_path / "lab.c")]).modules) == used
