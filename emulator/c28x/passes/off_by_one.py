@@ -9,14 +9,15 @@
     ...
     Line[Length] = '\\0';
 
-The number is only counted up by 1 behind one test, and set to constants; no other test asks for it.  So it reaches the
-limit, and one more behind it.  Silent in loops with a number of turns: these may be fewer than the limit.  For an
-object at file scope the check needs the source of a whole program (one with a `main`).
+The number is only counted up by 1 behind one test, and set to constants; no other test asks for it, or only another
+function that sets it back then in any case.  So it reaches the limit, and one more behind it.  Silent in loops with a
+number of turns: these may be fewer than the limit.  For an object at file scope the check needs the source of a whole
+program (one with a `main`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Set
 from itertools import chain
 from typing import Any, NamedTuple
 
@@ -30,16 +31,21 @@ from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     AddressOf,
     Assign,
+    Break,
     Compare,
     Conditional,
+    Continue,
     Declare,
     Expr,
     For,
     Function,
     If,
+    Jump,
+    LeaveSwitch,
     Load,
     LValue,
     Not,
+    Return,
     Stmt,
     Switch,
     Variable,
@@ -86,8 +92,13 @@ def check_off_by_one(modules: Iterable[Module], reports: dict[Module, StaticRepo
     for gate in gates:
         local = isinstance(gate.number[0], Variable) and gate.number[0].kind != "global"
         functions = [gate.function] if local else [f for f in owners if gate.number in named_scalars(f)]
-        if not (local or whole) or not _only_counted(gate, functions):
+        if not (local or whole):
             continue
+        if not _only_counted(gate, functions):
+            late = {id(t) for f in functions if f is not gate.function for t in _tested_at_the_end(f, gate.number)}
+            if not late or not _only_counted(gate, functions, late):
+                continue
+            functions = [gate.function]  # where it is tested, the test may keep it within the array
         for function in functions:
             found = _beyond(gate, function)
             if found is not None:
@@ -134,14 +145,19 @@ def _steps(s: Stmt, number: NamedScalar) -> bool:
     )  # fmt: skip
 
 
-def _only_counted(gate: _Gate, functions: Iterable[Function]) -> bool:
-    """Whether a number is only counted behind its gate, set to constants elsewhere, and tested nowhere else."""
+def _only_counted(gate: _Gate, functions: Iterable[Function], late: Set[int] = frozenset()) -> bool:
+    """Whether a number is only counted behind its gate, set to constants elsewhere, and tested nowhere else.
+
+    `late`: the identities of tests that do not count.
+    """
     counted = {id(s) for s in gate.body}
     for function in functions:
         for s in statements(function.body):
             nodes = own_nodes(s)
             for test in _tests(s, nodes):
-                if test is not gate.test and _has(test, gate.number) and not _about_nothing(test):
+                if test is gate.test or id(test) in late:
+                    continue
+                if _has(test, gate.number) and not _about_nothing(test):
                     return False
             match s:
                 case Assign(target=LValue() as target, value=value) if named_scalar(target) == gate.number:
@@ -169,6 +185,25 @@ def _tests(s: Stmt, nodes: Iterable[Any]) -> Iterator[Expr]:
             yield test
         case For(stop=stop):
             yield stop
+
+
+def _tested_at_the_end(function: Function, number: NamedScalar) -> Iterator[Expr]:
+    """The tests of a number that a function sets back behind them in any case: they end no count.
+
+    As in `if (Count == 8) Serve(); Count = 0;` behind a frame.
+    """
+    for block in all_blocks(function.body):
+        for at, s in enumerate(block):
+            if not isinstance(s, If) or not any(_is_reset(x, number) for x in block[at + 1 :]):
+                continue
+            inner = statements([*s.then, *s.otherwise])
+            if not any(isinstance(x, Return | Break | Continue | Jump | LeaveSwitch) for x in inner):
+                for x in (s, *inner):
+                    yield from _tests(x, own_nodes(x))
+
+
+def _is_reset(s: Stmt, number: NamedScalar) -> bool:
+    return _sets(s, number) and isinstance(s, Assign) and constant_of(s.value) is not None
 
 
 def _about_nothing(test: Expr) -> bool:

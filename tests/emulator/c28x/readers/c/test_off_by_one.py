@@ -36,6 +36,9 @@ def told(take: str, rest: str, main: str = "int main(void) { for (;;) Take(in); 
         ("if (n < 8) { line[n++] = c; line[n] = 0; }", ""),
         ("if (in) n = 0; if (c == '\\n') { line[n] = 0; Obey(); n = 0; } else if (n < 8) line[n++] = c;", ""),
         ("if (kept.used < 8) kept.text[kept.used++] = c; else { kept.text[kept.used] = 0; kept.used = 0; }", ""),
+        # What looks at it later sets it back in any case.
+        ("if ((c & 128) || n > 8) in = 1; else line[n++] = c;", "void End(void) { if (n == 8) Obey(); n = 0; }"),
+        ("if (n <= 8) line[n++] = c;", "void End(void) { if (n >= 4 && line[0]) { if (n < 8) Obey(); } n = 0; }"),
     ],
 )
 def test_one_element_too_many_is_told(take: str, rest: str) -> None:
@@ -59,6 +62,11 @@ def test_one_element_too_many_is_told(take: str, rest: str) -> None:
         ("if (n <= 8) { line[n++] = c; if (n == 8) n = 0; }", ""),
         ("if (n <= 8) line[n++] = c;", "void Look(void) { if (n >= 8) { Obey(); n = 0; } }"),
         ("if (n < 8) line[n++] = c;", "void End(void) { if (n < 8) line[n] = 0; n = 0; Obey(); }"),
+        ("if (n <= 8) line[n++] = c;", "void End(void) { if (n == 8) { Obey(); n = 0; } }"),
+        ("if (n <= 8) line[n++] = c;", "void End(void) { if (n != 8) return; n = 0; Obey(); }"),
+        ("if (n <= 8) line[n++] = c;", "void End(void) { if (n < 8) { in = 1; return; } n = 0; Obey(); }"),
+        ("if (n < 8) line[n++] = c;", "void End(void) { if (n == 8) Obey(); else line[n] = 0; n = 0; }"),
+        ("if (n <= 8) { line[n++] = c; if (n == 8) Obey(); }", "void End(void) { if (n == 8) Obey(); n = 0; }"),
         # It is set back before.
         ("if (n < 8) { line[n++] = c; } else { n = 0; line[n] = c; }", ""),
         ("if (c == '\\r') n = 0; if (c == '\\r') line[n] = c; if (n < 8) n++;", ""),
