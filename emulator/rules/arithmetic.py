@@ -22,7 +22,8 @@ the negative of -32768 does not fit. The hardware wraps (overflow mode is off). 
 overflow never happens. On a PC `int` has 32 bits, so neither the test nor the sanitizer sees anything.
 
 A sum or a product of two constants (`1800 * 1000`) is reported before the program runs. So is a product whose quotient
-is compared with more than it can be: `counts * 7500 / 2000` of 32 bits is never above 1073741.
+is compared with more than it can be: `counts * 7500 / 2000` of 32 bits is never above 1073741. So is a product of
+a value that the source itself limits to more than the product holds: `if (off > 500) off = 500;` and then `off * 1000`.
 
 A bit that is shifted into the sign bit (`1 << 15`, as in every mask for bit 15) loses nothing. It is reported only if
 the result is widened.

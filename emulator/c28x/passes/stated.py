@@ -90,7 +90,7 @@ _JOINS: Final = ("+", "-", "*", "<<", "|", "^")
 
 
 class _Stated(NamedTuple):
-    """The largest value that the source states."""
+    """The largest value that the source states.  Of a number below 0, only what joins two branches asks for it."""
 
     most: int
     #: It is reached: it comes from outside, or replaces larger values.
@@ -262,6 +262,8 @@ class _StatedWalk:
         value = s.value if isinstance(s, Assign | Declare) and isinstance(s.value, Expr) else None
         stated = self.most(value, known) if value is not None else None
         known = _without(known, [s])
+        if stated is None and value is not None and (number := constant_of(value)) is not None and number < 0:
+            stated = _Stated(number)
         match s:
             case Assign(target=LValue() as target) if stated is not None and _plain(target):
                 return [*known, (target, stated)]
@@ -292,6 +294,8 @@ class _StatedWalk:
                 found = _find(known, lvalue)
                 if found is None and (scalar := named_scalar(lvalue)) is not None:
                     found = self.program.scalars.get(scalar)
+                if found is not None and found.most < 0:
+                    return None
                 width = lvalue.bits.width if lvalue.bits is not None else 0
                 return _Stated((1 << width) - 1, bits=True) if found is None and width else found
             case RegisterLoad(register=RegisterRef(field=Field(width=width), bits=bits)) if width < bits:
@@ -526,6 +530,9 @@ def _either(a: _Stated | None, b: _Stated | None) -> _Stated | None:
         return None
     if a.limited and b.limited:
         return min(a, b)  # the other one may belong to another mode
+    for one, other in ((a, b), (b, a)):
+        if one.most < 0:  # it replaces what is below
+            return other if other.limited else None
     number, limited = (a, b) if b.limited else (b, a)
     if not limited.limited or number.most > limited.most + 1:
         return a if a == b else None
