@@ -15,6 +15,7 @@ Sources: TRM, ADC (SOC triggers), ePWM (time base, event trigger, counter compar
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
@@ -22,6 +23,7 @@ from itertools import product
 from operator import eq, not_
 from typing import Final
 
+from emulator.c28x.declarations import lines_with_comments
 from emulator.c28x.link import Linked
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
@@ -52,6 +54,7 @@ from emulator.peripherals.dma import CHANNELS as DMA_CHANNELS
 from emulator.peripherals.epwm_checks import CompareBeyondPeriod
 from emulator.peripherals.epwm_xbar import TRIPS as XBAR_TRIP_OUTPUTS
 from emulator.peripherals.pie import vector_id
+from emulator.peripherals.watchdog import WDCHK, WDDIS
 from emulator.peripherals.xbar_mux import choices
 from emulator.register_writes import RegisterWrites, field_of
 from emulator.registers.core import Block
@@ -93,6 +96,18 @@ TRIP_INPUTS: Final = (1, 2, 3)
 MIN_EDGES: Final = 8
 #: Value of TZA and TZB: a trip does not change the output.
 NO_CHANGE: Final = 3
+#: The watchdog is serviced again and again if it was so often.
+MIN_SERVICES: Final = 3
+#: TI's functions that service the watchdog, and those that switch it off.
+SERVICES_WATCHDOG: Final = ("ServiceDog", "SysCtl_serviceWatchdog")
+SWITCHES_OFF: Final = ("DisableDog", "SysCtl_disableWatchdog")
+#: TI's functions that set up the clock.  They switch the watchdog off; some switch it on while the PLL locks.
+STARTS_UP: Final = ("InitSysCtrl", "InitSysPll", "Device_init", "SysCtl_setClock")
+#: A function or a line says with one of these words that the watchdog is to be off.
+OFF: Final = re.compile(
+    r"(?i:disabl|inactiv|debug|stop|wd\w{0,3}dis(?!\w*\s*=\s*0)|(?:ab|aus)schalt|desactiv|deshabilit|apaga)|"
+    r"(?<![A-Za-z])(?:off|aus)(?![a-z])|(?:Off|OFF|Aus|AUS)(?![A-Za-z])"
+)
 #: Value of LOADAMODE: the active register is never loaded from the shadow register.
 FREEZE: Final = 3
 
@@ -141,6 +156,7 @@ class Connections:
         self._groups()
         self._qualifiers()
         self._cpu_timers()
+        self._watchdog_off()
         self._time_bases()
         self._trips()
         self._trip_actions()
@@ -958,6 +974,52 @@ class Connections:
                 missing = MissingLink(f"{name}.TCR.TSS = 1: it does not run", f"{name}.TCR", "TSS")
                 self._report(place, f"{routine} waits for CPU timer {n}, which is stopped", missing, name)
 
+    def _watchdog_off(self) -> None:
+        """A watchdog that the program sets up with WDDIS = 1 and services, though the start-up has switched it off."""
+        dog, findings = self._chip.watchdog, self._chip.findings
+        if dog.left_off is None or dog.serviced_off < MIN_SERVICES:
+            return
+        if any(
+            cause is None or not any(_starts_up(place) for place in findings.path(cause.at, cause.calls))
+            for cause in dog.switched_on.values()
+        ):
+            return
+        again = any(map(self._source.called_later, SERVICES_WATCHDOG)) or self._source.later("WdRegs", "WDKEY")
+        if not again or self._could_enable_watchdog() or self._switches_watchdog_off():
+            return
+        # A statement of the program's own: TI's functions write WDCR by themselves.
+        path = findings.path(dog.left_off.at, dog.left_off.calls)
+        own = {write.place[:2] for write in self._source.writes.get(("WdRegs", "WDCR"), ())}
+        at = next((n for n, place in enumerate(path) if place[:2] in own), None)
+        if at is None or any(_starts_up(place) or OFF.search(place.function) for place in path):
+            return
+        if not _meant_off(path[at]):
+            findings.report_at(
+                path[at], "not-connected", f"the watchdog is off during the whole run (WdRegs.WDCR.WDDIS = 1), and the "
+                f"program has serviced it {dog.serviced_off} times since: it never resets the device",
+                object="WdRegs.WDCR.WDDIS", how="dynamic",
+            )  # fmt: skip
+
+    def _could_enable_watchdog(self) -> bool:
+        """Whether some statement could switch the watchdog on.  Without WDCHK a write only resets the device."""
+        source, register = self._source, ("WdRegs", "WDCR")
+        start_up = {place for name in STARTS_UP for place, _ in source.calls.get(name, ())}
+        return any(
+            write.mask & WDDIS and (
+                write.values is None or any(value & (WDCHK | WDDIS) == WDCHK for value in write.values)
+            )
+            for write in (
+                *source.writes.get(register, ()), *source.pointed.get("WDCR", ()),
+                *source.from_here_on.get(register, ()), *source.anywhere,
+            )
+            if write.place not in start_up and not _starts_up(write.place) and write.place.function not in SWITCHES_OFF
+        )  # fmt: skip
+
+    def _switches_watchdog_off(self) -> bool:
+        """Whether the program calls a function of TI's that switches the watchdog off, beyond the start-up."""
+        places = (place for name in SWITCHES_OFF for place, _ in self._source.calls.get(name, ()))
+        return any(not _starts_up(place) for place in places)
+
     def _trips(self) -> None:
         """Check the path from a comparator through the X-BAR and the digital compare of an ePWM to its trip zone."""
         for n in range(1, EPWM_COUNT + 1):
@@ -1618,6 +1680,18 @@ class Connections:
                 object=register, how="dynamic", value=beyond.value, call_path=path[at_call:], task=task,
             )  # fmt: skip
         return at_call is not None
+
+
+def _starts_up(place: Place) -> bool:
+    """Whether a place is in a function of TI's that sets up the clock, and the watchdog beside it."""
+    return place.function in STARTS_UP
+
+
+def _meant_off(place: Place) -> bool:
+    """Whether the line of a place, or a comment there or just above, says off; or it is one of two builds (`#else`)."""
+    lines = lines_with_comments(place.file)[: place.line][-4:]
+    said = " ".join([code for code, _ in lines[-1:]] + [comment for _, comment in lines])
+    return bool(OFF.search(said)) or any(code.lstrip().startswith(("#if", "#el")) for code, _ in lines)
 
 
 def _split(register: str) -> tuple[str, str]:

@@ -491,6 +491,10 @@ class RegisterWrites:
         unclear = self.pointed.get(register) or self.from_here_on.get((block, register)) or self.anywhere
         return bool(unclear) or any(write.place in self._later for write in self.writes.get((block, register), ()))
 
+    def called_later(self, function: str) -> bool:
+        """Whether some call of a function can run after the start-up."""
+        return any(place in self._later for place, _ in self.calls.get(function, ()))
+
     def giving(self, block: str, register: str, mask: int, word: int) -> Place | None:
         """The last assignment that can give the bits of `mask` the values that they have in `word`.
 

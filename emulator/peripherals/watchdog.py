@@ -50,6 +50,14 @@ class Watchdog:
         self._set_up: Cause | None = None
         #: When it was serviced last; 0: never.
         self._serviced_at = 0
+        #: The statements that switched it on, by their numbers: the last time.  A reset does not count.
+        self.switched_on: dict[int, Cause | None] = {}
+        #: Whether the last write of WDCR has switched it off.  A reset does not count.
+        self._switched_off = False
+        #: The last statement that wrote WDCR, if an earlier one had switched the watchdog off and it is off still.
+        self.left_off: Cause | None = None
+        #: How often it was serviced since then.
+        self.serviced_off = 0
         self.reset()
 
     def report_hung_main(self, since: int, hung: Place) -> None:
@@ -145,6 +153,7 @@ class Watchdog:
                 return
             self._wdwcr.value = window | FIRSTKEY
         self._serviced_at = self._clock.now
+        self.serviced_off += 1
         self._restart()
 
     def _write_WDCR(self, word: int, lanes: int = ALL) -> None:
@@ -156,6 +165,11 @@ class Watchdog:
         if not self._scsr.value & 1:  # WDOVERRIDE cleared: WDDIS keeps its state
             word = word & ~WDDIS | self._wdcr.value & WDDIS
         self._wdcr.store(word, lanes)
+        off = bool(self._wdcr.value & WDDIS)
+        self.left_off = self._set_up if off and self._switched_off else None
+        self._switched_off, self.serviced_off = off, 0
+        if not off:
+            self.switched_on[self._set_up.at if self._set_up is not None else 0] = self._set_up
         self._restart(count)
 
     def _write_WDWCR(self, word: int, lanes: int = ALL) -> None:

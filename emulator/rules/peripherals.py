@@ -205,6 +205,9 @@ connections are checked:
   `IER` or `ENPIE` does not pass the interrupt on, or no statement executes `EINT`. So it is if `IER = M_INT1` takes bit
   13 away again before the interrupt can come, and if the program has stopped the timer or disabled the line since.
 * CPU timers: the program reads `TIM` again and again, and no statement starts the timer.
+* Watchdog: the start-up of TI has switched it off, a statement of the program writes `WDCR` with `WDDIS = 1` again
+  (`0x0068` for `0x0028`), and the program services it again and again. That is not reported if a statement could switch
+  it on, if the program calls `DisableDog`, or if the line says off (a name, a comment, `#else`).
 * DMA: a channel was never started, has no trigger, does not interrupt (`CHINTE`), or uses an ADC interrupt that is not
   enabled. It has stopped after a transfer, and is given the addresses of the next one without a start.
 * ADC post-processing: an event interrupts, and nothing starts the SOC of its block.

@@ -1681,3 +1681,134 @@ def test_after_a_reset_by_the_watchdog_the_registers_before_it_are_judged(
     (tmp_path / "drv.c").write_text(BITTEN.replace(was, now), encoding="utf-8")
     checked = check_files(DriverFiles([tmp_path / "drv.c"], calls=1, board=load("bare"), seconds=0.05))
     assert sorted(f.rule for f in checked.findings if f.rule in ("not-connected", "watchdog-reset")) == rules
+
+
+#: The loop of `main` services the watchdog, and the start-up has switched it off.
+UNGUARDED = """#include "F28x_Project.h"
+volatile Uint16 Count, Order;
+static void SetUp(Uint16 word)
+{
+    EALLOW;
+    WdRegs.WDCR.all = word;
+    EDIS;
+}
+void main(void)
+{
+    Count = 0;
+    Order = 0;
+    InitSysCtrl();
+    ServiceDog();
+    EALLOW;
+    WdRegs.WDCR.all = 0x006F;
+    EDIS;
+    for (;;) {
+        Count++;
+        DELAY_US(500);
+        ServiceDog();
+    }
+}
+"""
+OFF = "WdRegs.WDCR.all = 0x006F;"
+
+
+@pytest.mark.parametrize(("was", "now", "at"), [
+    ("", "", OFF),
+    ("0x006F", "0x0028 | 0x40", "WdRegs.WDCR.all = 0x0028 | 0x40;"),
+    ("0x006F", "0x0068", "WdRegs.WDCR.all = 0x0068;"),
+    (OFF, OFF + "    // watchdog on, 839 ms", OFF + "    // watchdog on, 839 ms"),
+    (OFF, OFF + "    // WDDIS = 0", OFF + "    // WDDIS = 0"),
+    (OFF, "SetUp(0x006F);", "WdRegs.WDCR.all = word;"),
+    # A write without the check bits resets the device, and does not switch the watchdog on.
+    ("Count++;", "Count++; if (Order == 9) WdRegs.WDCR.all = 0;", OFF),
+    ("        ServiceDog();", "        EALLOW; WdRegs.WDKEY.all = 0x55; WdRegs.WDKEY.all = 0xAA; EDIS;", OFF),
+])  # fmt: skip
+def test_a_watchdog_that_is_set_up_and_stays_off_is_told(tmp_path: Path, was: str, now: str, at: str) -> None:
+    text = UNGUARDED.replace(was, now, 1)
+    (finding,) = told(tmp_path, text)
+    assert "the watchdog is off during the whole run" in finding.message
+    assert finding.place is not None
+    assert text.splitlines()[finding.place.line - 1].strip() == at
+
+
+@pytest.mark.parametrize(("was", "now"), [
+    ("0x006F", "0x002F"),
+    # The start-up alone has switched it off.
+    (OFF, ""),
+    ("    InitSysCtrl();\n    ServiceDog();\n", "    InitSysCtrl();\n    EALLOW; WdRegs.WDCR.all = 0x002F; EDIS;\n"),
+    ("InitSysCtrl();", ""),
+    # The program says that it is to be off.
+    (OFF, "DisableDog();"),
+    (OFF, OFF + " DisableDog();"),
+    (OFF, OFF + "    // the watchdog is off"),
+    ("    EALLOW;\n    " + OFF, "    // Watchdog aus\n    EALLOW;\n    " + OFF),
+    ("0x006F", "WD_DISABLE"),
+    ("0x006F", "0x002F | WDDIS"),
+    (OFF, "WatchdogOff(0x006F);"),
+    ("    EALLOW;\n    " + OFF, "#ifdef GUARDED\n    SetUp(0x0028);\n#else\n    EALLOW;\n    " + OFF + "\n#endif"),
+    # It is on at times, or could be.
+    ("Count++;", "Count++; if (Order == 9) SetUp(0x0028);"),
+    ("Count++;", "Count++; if (Order == 9) SetUp(Count);"),
+    ("Count++;", "SetUp(0x0028); Count++; SetUp(0x0068);"),
+    # It is serviced at the start only.
+    ("        ServiceDog();\n", ""),
+    ("        ServiceDog();\n", "        if (Order == 9) ServiceDog();\n"),
+    ("    for (;;) {", "    for (Order = 0; Order < 20; Order++) ServiceDog();\n    for (;;) {"),
+])  # fmt: skip
+def test_a_watchdog_that_is_on_or_meant_to_be_off_is_not_told(tmp_path: Path, was: str, now: str) -> None:
+    text = UNGUARDED.replace(was, now, 1)
+    assert text != UNGUARDED
+    if "Order < 20" in now:
+        text = text.replace("        ServiceDog();\n", "")
+    if "Off(" in now:
+        text = text.replace("void SetUp", "void WatchdogOff")
+    text = text.replace("volatile Uint16", "#define WD_DISABLE 0x0068\n#define WDDIS 0x40\nvolatile Uint16")
+    assert not told(tmp_path, text)
+
+
+#: As UNGUARDED, with functions that write registers by numbers.  The set-up of the clock has the watchdog on meanwhile.
+UNGUARDED_BY_NUMBERS = """#include "F28x_Project.h"
+#define WORD(x) (*((volatile Uint16 *)(Uint32)(x)))
+#define WD_CR 0x7029ul
+#define WD_KEY 0x7025ul
+volatile Uint16 Count;
+static void SysCtl_disableWatchdog(void) { EALLOW; WORD(WD_CR) |= 0x68; EDIS; }
+static void SysCtl_enableWatchdog(void) { EALLOW; WORD(WD_CR) = (WORD(WD_CR) & ~0x40u) | 0x28; EDIS; }
+static void SysCtl_serviceWatchdog(void) { EALLOW; WORD(WD_KEY) = 0x55; WORD(WD_KEY) = 0xAA; EDIS; }
+static void SysCtl_setWatchdogPrescaler(Uint16 scale)
+{
+    EALLOW;
+    WORD(WD_CR) = (WORD(WD_CR) & ~7u) | 0x28 | scale;
+    EDIS;
+}
+static void SysCtl_setClock(void)
+{
+    Uint16 before = WORD(WD_CR);
+    EALLOW;
+    WORD(WD_CR) = 0x28;
+    WORD(WD_CR) = before | 0x28;
+    EDIS;
+}
+static void Device_init(void) { SysCtl_disableWatchdog(); SysCtl_setClock(); }
+void main(void)
+{
+    Count = 0;
+    Device_init();
+    SysCtl_setWatchdogPrescaler(7);
+    for (;;) {
+        Count++;
+        DELAY_US(500);
+        SysCtl_serviceWatchdog();
+    }
+}
+"""
+
+
+@pytest.mark.parametrize(("also", "found"), [
+    ("", True), ("SysCtl_enableWatchdog();", False), ("SysCtl_disableWatchdog();", False),
+    ("if (Count == 9) SysCtl_enableWatchdog();", False),
+])  # fmt: skip
+def test_a_watchdog_that_a_library_sets_up_and_nothing_enables_is_told(tmp_path: Path, also: str, found: bool) -> None:
+    text = UNGUARDED_BY_NUMBERS.replace("Prescaler(7);", f"Prescaler(7); {also}")
+    lines = text.splitlines()
+    at = [lines[f.place.line - 1].strip() for f in told(tmp_path, text) if f.place is not None]
+    assert at == ["WORD(WD_CR) = (WORD(WD_CR) & ~7u) | 0x28 | scale;"] * found

@@ -61,6 +61,17 @@ def test_the_startup_word_switches_it_off() -> None:
     assert bench.regs.WDCR.all == 0x40, "WDCHK reads 0"
 
 
+def test_services_of_a_watchdog_that_is_off_are_counted() -> None:
+    bench = Bench()
+    bench.regs.WDCR.all = 0x0068
+    bench.service()
+    bench.regs.WDCR.all = 0x006F
+    bench.service()
+    assert (bench.watchdog.serviced_off, bench.watchdog.switched_on) == (1, {})
+    bench.regs.WDCR.all = 0x0028
+    assert (bench.watchdog.serviced_off, bench.watchdog.switched_on) == (0, {0: None})
+
+
 def test_service_restarts_the_counter() -> None:
     bench = Bench()
     bench.clock.charge(100 * COUNT)
