@@ -236,6 +236,8 @@ connections are checked:
   to an object with `Dir = 0`, whose request sends a remote frame. An object receives messages, and the program never
   reads one. A mask (`UMask`) has none of bits 28 to 18, so that an object takes every frame of 11 bits: its mask has
   lower bits only, or an object behind it gets nothing.
+* Swi: it is created with a trigger, and the program only calls `Swi_post`, which posts it at once, whatever the trigger
+  is. `Swi_dec`, `Swi_andn`, `Swi_inc` and `Swi_or` change a trigger, and `Swi_getTrigger` reads it.
 * Pins: the program sets and clears a pin that no statement makes an output. The chip itself drives a pin, and the input
   qualification of the pin needs longer pulses.
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from emulator.c28x.ctypes import ArrayType, CType, StructType
 from emulator.c28x.link import Linked
+from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Call, Const, Convert, Evaluate, Function, FunctionRef, Load, LValue, Stmt, Variable
 from emulator.c28x.tree_queries import bare, blocks, different, own_nodes, parts, statements, within
@@ -25,7 +26,7 @@ class _Mentions:
         self.all: dict[str, list[Call | FunctionRef]] = {}
         #: Name of a function -> its calls in functions, each with the caller.
         self.calls: dict[str, list[tuple[Function, Call]]] = {}
-        #: The names of functions whose address a function takes.
+        #: The names of functions whose address is taken, by a function or in the initial value of an object.
         self.pointed: set[str] = set()
         for module in modules:
             for variable in module.variables:
@@ -37,12 +38,12 @@ class _Mentions:
                 self._mentioned(part)
                 if isinstance(part, Call):
                     self.calls.setdefault(part.function.name, []).append((caller, part))
-                elif isinstance(part, FunctionRef):
-                    self.pointed.add(part.function.name)
 
     def _mentioned(self, part: Any) -> None:
         if isinstance(part, Call | FunctionRef):
             self.all.setdefault(part.function.path, []).append(part)
+        if isinstance(part, FunctionRef):
+            self.pointed.add(part.function.name)
 
 
 class HandleNames:
@@ -128,6 +129,21 @@ class HandleNames:
             and isinstance(call := bare(statement.value), Call)
             and call.function.name == function
         }
+
+    def mentions(self, function: str) -> bool:
+        """Whether some function of the image calls `function`, or takes its address."""
+        return function in self._mentions.calls or function in self._mentions.pointed
+
+    def places(self, function: str, handle: Any) -> list[Place]:
+        """The statements that call `function` for `handle`; none if the source does not tell all of them."""
+        objects = self.objects(handle)
+        if function in self._mentions.pointed or not objects or None in self.passed(function):
+            return []
+        return [
+            Place(s.where.file, s.where.line, caller.name, caller.c_file, s.where.column)
+            for caller in self.functions for s in statements(caller.body) for part in own_nodes(s)
+            if isinstance(part, Call) and part.function.name == function and first_argument(part) in objects
+        ]  # fmt: skip
 
     def callers(self, function: str, handle: Any) -> list[str]:
         """The paths of the functions that can call `function` for `handle`, also where the source does not tell."""

@@ -7,6 +7,8 @@ that gate; or semaphores begin with 0, and each is posted only behind waits for 
 A task that still waits without a timeout at the end of a run is `never-posted` if no statement of the program ends
 such a wait.  A wait with a timeout whose result the program tests is `always-timeout`, if no wait for that object ever
 ended by a post.  Part of a program, without its `main`, gets no such finding: the rest may post.
+
+A Swi with a trigger that no statement changes or reads is `not-connected`: `Swi_post` does not wait for it.
 """
 
 from __future__ import annotations
@@ -38,6 +40,8 @@ ENDS: Final = {
 }  # fmt: skip
 #: The functions that post a software interrupt, at once or after several calls.
 POSTS_OF_SWI: Final = ("Swi_post", "Swi_or", "Swi_inc", "Swi_dec", "Swi_andn")
+#: The functions for which the trigger of a Swi has a meaning: they change it, or read it.
+USES_OF_TRIGGER: Final = (*POSTS_OF_SWI[1:], "Swi_getTrigger")
 
 
 class Standstill:
@@ -76,6 +80,8 @@ class Standstill:
                 calls.after(function, callback=self._waited)
         #: Software interrupts that were created.
         self._swis: dict[Swi, StatementNumber] = {}
+        #: Those with a trigger, each by its parameters.  Another Swi of the same parameters may have got it by chance.
+        self._triggered: dict[tuple[Any, int], Swi] = {}
         calls.after("Clock_create", callback=self._created)
         calls.after("Swi_create", callback=self._swi_created)
 
@@ -119,9 +125,11 @@ class Standstill:
         if not clock.active:
             self._idle[clock] = self._clocks[clock]
 
-    def _swi_created(self, swi: Swi | None, *_arguments: Any) -> None:
+    def _swi_created(self, swi: Swi | None, _function: Any, params: Any, *_arguments: Any) -> None:
         if swi is not None:
             self._swis[swi] = self._locator.here()
+            if swi.initial_trigger:
+                self._triggered.setdefault((params, swi.initial_trigger), swi)
 
     def finish(self) -> None:
         """Report waits that no statement ends, Clocks that no statement starts and Swis that no statement posts."""
@@ -177,6 +185,23 @@ class Standstill:
                     place, "never-posted", f"the Swi {self._names.of(swi)} is created, and {why}: its function never "
                     "runs", object=self._names.of(swi), how="dynamic",
                 )  # fmt: skip
+        self._triggers()
+
+    def _triggers(self) -> None:
+        """Report Swis that wait for a trigger, in a program that only calls Swi_post, which does not look at it."""
+        if any(map(self._names.mentions, USES_OF_TRIGGER)):
+            return
+        for swi in self._triggered.values():
+            created, posts = self._locator.place(self._swis[swi]), self._names.places("Swi_post", swi)
+            if created is None or not self._names.could("Swi_post", swi):
+                continue
+            place = posts[0] if len(posts) == 1 else created
+            name, trigger = self._names.of(swi), swi.initial_trigger
+            self._findings.report_at(
+                place, "not-connected", f"the Swi {name} has the trigger {trigger}, which no statement changes "
+                "(Swi_dec, Swi_inc, Swi_or, Swi_andn) or reads: each Swi_post posts it at once", object=name,
+                how="dynamic", details=() if place == created else (f"it is created at {created}",),
+            )  # fmt: skip
 
     def _never(self, thread: Thread, event: Event, name: str, place: Place) -> None:
         """Report bits of an event that a task waits for and no statement posts."""

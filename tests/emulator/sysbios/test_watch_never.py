@@ -133,6 +133,8 @@ def test_what_no_statement_brings_is_told_where_it_is_waited_for(
     # Through a copy of the handle, and by a function whose address is taken.
     ("Semaphore_post(ready);", "Semaphore_Handle copy = ready; if (Done == 7) Semaphore_post(copy);"),
     ("Clock_create(tick, 10,", "Clock_create((Clock_FuncPtr)Semaphore_post, 10,"),
+    ("Void tick(UArg a) { Semaphore_post(ready);",
+     "Void (*const Post)(Semaphore_Handle) = Semaphore_post;\nVoid tick(UArg a) { if (Done == 7) Post(ready);"),
     ("c.startFlag = TRUE;", "if (Done == 7) Clock_start(timer);"),
     # A Clock that runs once is started again, its function is called, or the worker waits only once.
     ("c.period = 10;", "if (Done == 7) Clock_start(timer);"),
@@ -474,3 +476,46 @@ def test_a_regular_event_that_another_one_hides_is_told(
     lines = text.splitlines()
     at = [lines[f.place.line - 1].strip() for f in checked.findings if f.rule == "event-mask" and f.place]
     assert at == ["else if (events & SLOW) {"] * found
+
+
+#: The Swi runs at each fourth tick: its trigger counts down.
+FOURTH = RIGHT.replace("Swi_post(soon);", "Swi_dec(soon);").replace(
+    "    soon = Swi_create(beat, NULL, NULL);",
+    "    Swi_Params s;\n    Swi_Params_init(&s);\n    s.trigger = 4;\n    soon = Swi_create(beat, &s, NULL);",
+)
+CREATED = "soon = Swi_create(beat, &s, NULL);"
+POSTED = "Void tick(UArg a) { Semaphore_post(ready); Swi_post(soon); }"
+SECOND = "Swi_Handle next;\nVoid tick"
+
+
+@pytest.mark.parametrize(("changes", "at"), [
+    ([("Swi_dec", "Swi_post")], [POSTED]),
+    ([("Swi_dec", "Swi_post"), ("Done = m;", "Done = m; if (Done == 7) Swi_post(soon);")], [CREATED]),
+    ([("Swi_dec(soon)", "Swi_Handle copy = soon; Swi_post(copy)")], [CREATED]),
+    # The parameters of the first Swi serve for another one, which nobody wants to wait.
+    ([("Swi_dec(soon)", "Swi_post(soon)"), ("Void tick", SECOND), ("Done = m;", "Done = m; Swi_post(next);"),
+      (CREATED, CREATED + " next = Swi_create(beat, &s, NULL);")], [POSTED]),
+    ([], []),
+    ([("Swi_dec(soon)", "Swi_andn(soon, 4)")], []),
+    ([("Swi_dec", "Swi_inc")], []),
+    ([("Swi_dec(soon)", "Swi_or(soon, 1)")], []),
+    ([("Swi_dec", "Swi_post"), ("s.trigger = 4;", "")], []),
+    # It tells the function what it is to do.
+    ([("Swi_dec", "Swi_post"), ("Beats = Beats + 1;", "Beats += Swi_getTrigger();")], []),
+    # A post for once, beside those that count.
+    ([("Done = m;", "Done = m; if (Done == 7) Swi_post(soon);")], []),
+    ([("Swi_dec(soon);", "if (Done == 7) Swi_dec(soon); else Swi_post(soon);")], []),
+    ([("Swi_dec", "Swi_post"), ("Void reader", "Void (*const Down)(Swi_Handle) = Swi_dec;\nVoid reader"),
+      ("Done = m;", "Done = m; if (Done == 7) Down(soon);")], []),
+    ([("Swi_dec(soon);", "")], []),
+])  # fmt: skip
+def test_a_trigger_that_nothing_changes_is_told(tmp_path: Path, changes: list[tuple[str, str]], at: list[str]) -> None:
+    text = FOURTH
+    for was, now in changes:
+        assert was in text
+        text = text.replace(was, now, 1)
+    (tmp_path / "drv.c").write_text(text, encoding="utf-8")
+    checked = check_files(DriverFiles([tmp_path / "drv.c"], calls=1, board=load("bare"), seconds=0.1))
+    lines = text.splitlines()
+    found = [f for f in checked.findings if f.rule == "not-connected"]
+    assert [lines[f.place.line - 1].strip().split(" next")[0] for f in found if f.place is not None] == at
