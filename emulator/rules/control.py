@@ -81,9 +81,9 @@ The program compares with what was at the start, not with what was the last time
 `if (now == 0 && last == 1) presses++;` counts an edge only if `last = now;` follows. Without it, each pass in which the
 button is pressed counts. `if (message.number != expected) lost++;` needs `expected = message.number + 1;`.
 
-The name says that the object remembers: `last`, `previous`, `old`, `expected`, also in German and Spanish. The check
-needs the source of a whole program. Not reported: an object that is `const` or `volatile`, or whose address is taken,
-or that begins with another number than 0, 1 or -1; a `last` one that is compared with what the program counts up
+The name says that the object remembers: `last`, `previous`, `old`, `since`, `expected`, also in German and Spanish. The
+check needs the source of a whole program. Not reported: an object that is `const` or `volatile`, or whose address is
+taken, or that begins with another number than 0, 1 or -1; a `last` one that is compared with what the program counts up
 (`if (channel == lastChannel)`), because it is the end of a row; `expectedVersion`, because it is a constant.
 
 **Fix:** set it behind the comparison.

@@ -60,7 +60,7 @@ from emulator.c28x.tree_queries import (
 #: Words of names that remember, and those that may also be the end of a row.
 _BEFORE: Final = frozenset((
     "prev", "previous", "previously", "old", "vorherig", "vorherige", "vorherigen", "vorige", "voriger", "voriges",
-    "anterior", "previo", "previa", "viejo", "vieja",
+    "anterior", "previo", "previa", "viejo", "vieja", "since", "seit", "desde",
 ))  # fmt: skip
 _LAST: Final = frozenset(("last", "letzte", "letzter", "letztes", "letzten", "ultimo", "ultima"))
 #: What is expected next, and the words that may stand with it: an expected version or identifier is a constant.

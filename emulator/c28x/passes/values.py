@@ -204,6 +204,8 @@ class ValueChecks(ConstantChecks):
             match s:
                 case Assign(target=LValue() as target, value=stepped):
                     self.stepped_by_one_bit(target, bare(stepped))
+                case Declare(variable=local, value=Expr() as stepped):
+                    self.stepped_by_one_bit(LValue(local.ctype, local), bare(stepped))
             match s:
                 case Assign(value=value) | Declare(value=value) | Return(value=value):
                     for item in different(value) if isinstance(value, list) else [value]:
@@ -235,16 +237,27 @@ class ValueChecks(ConstantChecks):
             self.report_here("self-assignment", f"{target.text} is assigned to itself", target.text)
 
     def stepped_by_one_bit(self, target: LValue, value: Expr) -> None:
-        """Report `at = (at + 1) & 16`, where `& 15` is the remainder.  One bit that is stepped by itself toggles."""
+        """Report `at = (at + 1) & 16`, where `& 15` is the remainder.  One bit that is stepped by itself toggles.
+
+        The step may go over a local: `next = (at + 1) & 16; ... at = next;`.
+        """
         match value:
             case Binary(op="&", left=left, right=Const(value=int(mask))) if mask > 1 and mask & (mask - 1) == 0:
                 match bare(left):
                     case Binary(op="+", left=Load(lvalue=same), right=Const(value=step)) if (
-                        same == target and step != mask
+                        (same == target or self.copied_to(same, target)) and step != mask
                     ):
                         text = source_text(value)
                         message = f"{text} is 0 or {mask}: the mask of a remainder by {mask} is {mask} - 1"
                         self.report_here("mask-gaps", message, text, mask)
+
+    def copied_to(self, place: LValue, value: LValue) -> bool:
+        """Whether the function gives the value of one object to another one somewhere."""
+        return any(
+            isinstance(s, Assign) and s.target == place and isinstance(read := bare(s.value), Load)
+            and read.lvalue == value
+            for s in statements(self.body)
+        )  # fmt: skip
 
     # Conditions
 

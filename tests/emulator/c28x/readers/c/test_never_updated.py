@@ -34,6 +34,7 @@ def told(objects: str = "", step: str = "", local: str = "", turn: str = "") -> 
     ({"objects": "int old = 0;", "step": "changes = now - old;"}, "old"),
     ({"step": "static Uint16 letzter = 0; if (now != letzter) changes++;"}, "letzter"),
     ({"local": "Uint16 esperado = 0;", "turn": "if (box.number != esperado) lost++;"}, "esperado"),
+    ({"objects": "Uint16 stateSince = 0;", "step": "if (now - stateSince > 100) changes++;"}, "stateSince"),
     ({"objects": "Uint16 expectedNr = 0;", "step": "if (now != expectedNr) lost++;"}, "expectedNr"),
     ({"local": "Uint16 last = 0;", "turn": "if (read() != last) changes++;"}, "last"),
 ])  # fmt: skip

@@ -302,6 +302,8 @@ def test_a_difference_of_texts_that_is_taken_for_equality(tests: str, told: bool
     ("at = (at + 1) & (N - 1);", False),
     # It toggles, or tests a bit of another object.
     ("at = (at + 1) & 1;", False), ("at = (at + 2) & 2;", False), ("at = (n + 1) & 16;", False),
+    ("unsigned next = (at + 1) & 16; if (next != n) at = next;", True),
+    ("unsigned bit = (at + 1) & 16; if (bit) n = 0;", False),
 ])  # fmt: skip
 def test_a_step_that_is_masked_by_one_bit(step: str, told: bool) -> None:
     rules = [rule for rule, _ in findings_of(f"#define N 16\nint at, n;\nvoid f(void)\n{{\n    {step}\n}}\n")]
