@@ -444,7 +444,8 @@ The task wakes up only when the last of the events has come; or an event that ha
 Behind a wait for all of them, each bit of the result is set: tests of single bits are always true. The masks are mostly
 exchanged.
 
-It is reported where the result goes to a local, at least two parts of `andMask` are tested, and `orMask` is 0.
+It is reported where the result goes to a local, at least two parts of `andMask` are tested, and `orMask` is 0; and
+where another wait for this local has the same events in the other mask.
 
 The wait also takes all the events that have come. In `if (events & TICK) ... else if (events & SECOND) ...` the second
 one is lost whenever both have come. It is reported where both come again and again: a Clock posts them in each of its

@@ -54,6 +54,15 @@ def check_event_masks(function: Function, report: StaticReport) -> None:
                     waits.setdefault(variable, []).append((s, *masks))
                 else:
                     others.add(variable)
+    for variable, every in waits.items():
+        for s, together, single in every:
+            any_one = [other.line for other, both, one in every if not both and one == together]
+            if together & (together - 1) and not single and any_one:
+                message = (
+                    f"Event_pend waits until all of {together:#x} have come, and the wait in line {any_one[0]} takes "
+                    "any of the same events: the masks are exchanged"
+                )
+                report.report(function, s.where, "event-mask", message, object=variable.declaration.name)
     for variable, ((s, together, single), *more) in waits.items():
         if variable in others or more or together & (together - 1) == 0:
             continue

@@ -386,6 +386,12 @@ PEND = "Event_Id_NONE, BOTH"
     ({PEND: "BOTH, START"}, False), ({PEND: "BOTH, Event_Id_NONE", "START & events": "BOTH & events"}, False),
     ({PEND: "BOTH, Event_Id_NONE", "if (events & TICK)": "if (events)"}, False),
     ({PEND: "BOTH, Event_Id_NONE", "more = 0": "events = Ticks"}, False), ({PEND: "TICK, Event_Id_NONE"}, False),
+    # Another wait takes any one of the same events; of others; both wait for all.
+    ({"events = E": "if (Ticks) events = Event_pend(event, BOTH, Event_Id_NONE, 5); else events = E",
+      "if (events & TICK)": "if (events & BOTH)"}, True),
+    ({"events = E": "if (Ticks) events = Event_pend(event, 4 | TICK, Event_Id_NONE, 5); else events = E"}, False),
+    ({"events = E": "if (Ticks) events = Event_pend(event, BOTH, Event_Id_NONE, 5); else events = E",
+      PEND: "BOTH, Event_Id_NONE", "if (events & TICK)": "if (events & BOTH)"}, False),
 ])  # fmt: skip
 def test_events_that_must_all_come_and_are_tested_one_by_one_are_told(
     tmp_path: Path, changes: dict[str, str], found: bool
