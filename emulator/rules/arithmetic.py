@@ -106,7 +106,9 @@ test lets more through than the type holds. So is `if (n > 99999L) return;` befo
 the value is used otherwise too, as for its upper word.
 
 A stamp of 16 bits of a clock of 32 is reported if it is subtracted from all of it: `if (millis - last >= PERIOD)`
-with `Uint16 last` is right for the first 65 seconds. `(Uint16)(millis - last)` is right for longer.
+with `Uint16 last` is right for the first 65 seconds. `(Uint16)(millis - last)` is right for longer. The same is
+reported of a position of an eQEP (`QPOSLAT - last`) that goes on to a QPOSMAX above 65535, where no index, no unit
+time-out and no statement sets it back.
 
 A capture (`CAP2`) or count (`TSCTR`, `TIM`) that a 16-bit object keeps without a cast is reported before the program
 runs if a test then has one outcome only: `if (millimetres(width) < 200)`, where 65535 counts are 56 mm. Sixteen bits
