@@ -429,12 +429,16 @@ unused than it uses.
         how="static",
     ),
     _rule(
-        "no-hysteresis", Severity.WARNING, "The two limits that a hysteresis should part are one.", """
+        "no-hysteresis", Severity.WARNING, "The two limits that a hysteresis should part are one, or cross.", """
 The output chatters: it is switched on and off at the same value.
 
 A function compares a value with the same limit in both directions, in two tests:
 `if (celsius < SET - HYST) heater = 1;` and `if (celsius > SET - HYST) heater = 0;`. That can be right, but here the
 limit is a sum or a difference with a constant or an object that its name calls a hysteresis or a dead band.
+
+Or the limits change their places: `if (celsius > limit) alarm = 1;` and `if (celsius < limit + HYST) alarm = 0;`.
+Between them both tests hold. It is reported if both decide about the same object or pin, to which the program gives
+these two values only, and if what else must hold is the same for both, or asks for that object (`if (!alarm)`).
 
 **Fix:** the other sign in one of the two limits.
 """,

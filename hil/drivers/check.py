@@ -15,7 +15,7 @@ from hil.board import Board
 from hil.drivers.call_checker import CallChecker, CheckedFunction, Key, key_of
 from hil.drivers.cut_captures import cut_captures
 from hil.drivers.following import wrong_steps
-from hil.drivers.hysteresis import equal_limits
+from hil.drivers.hysteresis import crossed_limits, equal_limits
 from hil.drivers.limits import unused_limits
 from hil.drivers.program_run import ProgramOutcome, run_program
 from hil.drivers.roles import Roles, roles
@@ -111,7 +111,7 @@ def source_findings(build: Build) -> list[Finding]:
     image = build.image()
     for mixed in (
         *mixed_units(build.modules, image.board.kernel.clocks.tick_period_us), *unused_limits(build.files),
-        *equal_limits(build.modules), *cut_captures(build.modules),
+        *equal_limits(build.modules), *crossed_limits(build.modules), *cut_captures(build.modules),
     ):  # fmt: skip
         image.board.findings.report_at(mixed.place, mixed.rule, mixed.message, object=mixed.object, how="static")
     steps = {step.place: step for step in wrong_steps(build.modules)}  # as the source has it, where that shows it
