@@ -8,6 +8,9 @@
 A test of the flag must lead to a count, or away from the received character: then an old flag is taken for a new event.
 A program that stops at the flag, or that goes to another state for good, needs no clear.
 
+COEF and CDEF of an eQEP are no errors: each standstill, each turn back sets them.  So a test that they are not set
+(`if (QEPSTS.bit.UPEVNT && !QEPSTS.bit.COEF) period = QCPRDLAT;`) is never true again after the first one.
+
 Sources: TRM SCI, SPI, eQEP, ADC, ePWM, CMPSS, I2C and CAN, status registers.
 """
 
@@ -29,6 +32,7 @@ from emulator.c28x.tree import (
     If,
     Logic,
     LValue,
+    Not,
     RegisterLoad,
     RegisterRef,
     Stmt,
@@ -50,6 +54,8 @@ CLEARED: Final[dict[str, tuple[tuple[str, ...], tuple[tuple[str, str, int], ...]
     "I2CSTR": (("NACK", "ARBL"), (("I2CSTR", "", 1), ("I2CMDR", "IRS", 0))),
     "CAN_ES": (("BOff",), (("CAN_CTL", "Init", 0), ("CAN_CTL", "ABO", 1))),
 }
+#: Flags of QEPSTS that come in each use, not only after an error.
+USUAL: Final = frozenset(("COEF", "CDEF"))
 #: What clears a flag from then on: it may be set once, at the start.
 LASTING: Final = "ABO"
 #: The register whose reading takes what came in.
@@ -78,6 +84,9 @@ def latched_flags(modules: Iterable[Module]) -> Iterator[LatchedFlag]:
                                 function.where.file, s.where.line, function.name, function.c_file, s.where.column
                             )
                             yield LatchedFlag(load.block, load.register, load.field.name if load.field else "", place)
+                    for load in _not_set(s.test):
+                        place = Place(function.where.file, s.where.line, function.name, function.c_file, s.where.column)
+                        yield LatchedFlag(load.block, load.register, load.field.name if load.field else "", place)
 
 
 def _tested(test: Expr) -> Iterator[RegisterRef]:
@@ -90,6 +99,25 @@ def _tested(test: Expr) -> Iterator[RegisterRef]:
             yield from _tested(left)
         case RegisterLoad(register=RegisterRef(register=name, field=field) as found) if field is not None:
             if field.name in CLEARED.get(name, ((), ()))[0]:
+                yield found
+
+
+def _not_set(test: Expr) -> Iterator[RegisterRef]:
+    """The flags of `USUAL` each of which alone makes a test false."""
+    match bare(test):
+        case Logic(op="and", operands=operands):
+            for each in operands:
+                yield from _not_set(each)
+        case Not(operand=operand):
+            yield from _usual(operand)
+        case Compare(op="==", left=left, right=right) if constant_of(right) == 0:
+            yield from _usual(left)
+
+
+def _usual(e: Expr) -> Iterator[RegisterRef]:
+    match bare(e):
+        case RegisterLoad(register=RegisterRef(register="QEPSTS", field=field) as found) if field is not None:
+            if field.name in USUAL:
                 yield found
 
 

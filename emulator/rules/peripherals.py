@@ -348,6 +348,7 @@ The finding is made where the program believes the old flag, or where an interru
   triggers the DMA only, and neither `INTxCONT` nor a statement lets it trigger again;
 * SPI: `INT_FLAG` is read while a word is being shifted, and it belongs to the word before;
 * eQEP and CPU timer: the program sees the second time-out without a clear since the first (`QCLR`, `TCR.TIF`);
+* eQEP: a test wants `QEPSTS.COEF` or `CDEF` not to be set, and no statement clears it: a standstill or a turn sets it;
 * I2C: the program gives up a message because of an old `NACK`, before the address was answered;
 * SCI: the program empties the FIFO a second time for one overflow (`RXFFOVF`);
 * ePWM: the one-shot latch (`TZFLG.OST`) stays set while the program clears `TZFLG.INT` again and again;

@@ -1379,6 +1379,12 @@ HOLDS = "        if (EPwm1Regs.TZFLG.bit.OST) { Clears Heard++; State }\n"
     (HOLDS.replace("Clears", "").replace("State", "Enter(3);"), ""),  # for good
     (HOLDS.replace("EPwm1Regs.TZFLG.bit.OST", "EQep1Regs.QEPSTS.bit.COEF && !Mode").replace("Clears", "Mode = Heard;")
      .replace("State", ""), ""),  # the first one only
+    (HOLDS.replace("EPwm1Regs.TZFLG.bit.OST", "Mode && !EQep1Regs.QEPSTS.bit.COEF").replace("Clears", "Mode = Heard;")
+     .replace("State", ""), "COEF"),
+    (HOLDS.replace("EPwm1Regs.TZFLG.bit.OST", "EQep1Regs.QEPSTS.bit.CDEF == 0").replace("Clears", "")
+     .replace("State", ""), "CDEF"),
+    (HOLDS.replace("EPwm1Regs.TZFLG.bit.OST", "!EQep1Regs.QEPSTS.bit.COEF").replace("Clears", "").replace(
+        "State", "EQep1Regs.QEPSTS.all = 0x88;"), ""),
     (HOLDS.replace("EPwm1Regs.TZFLG.bit.OST", "SciaRegs.SCIFFRX.bit.RXFFOVF").replace("Clears", "").replace(
         "State", "SciaRegs.SCIFFRX.bit.RXFIFORESET = 0; SciaRegs.SCIFFRX.bit.RXFIFORESET = 1;"), "RXFFOVF"),
     (HOLDS.replace("EPwm1Regs.TZFLG.bit.OST", "CanaRegs.CAN_ES.bit.BOff").replace("Clears", "").replace("State", ""),
