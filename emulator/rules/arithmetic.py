@@ -134,6 +134,8 @@ division, a shift to the right or a comparison by order does not. These wraps ar
   factor shows that it is a hash;
 * a sum of samples that is divided later (at the addition that wraps); also a global or `static` one that is taken and
   then begins again at 0, and through copies; not if it is masked or compared for equality, as check sums are;
+* a sum of more than 32 readings of the ADC, before the program runs, if the number that ends the count is also what the
+  sum is divided by;
 * the step of a loop whose test compares the object (a count that goes down by two misses 0);
 * the step of an object that is limited above (below 0 it wraps and becomes the limit); not a step by 1, because a ring
   or a digit goes down from 0 to its limit in that way;

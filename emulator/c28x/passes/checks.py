@@ -33,6 +33,7 @@ from emulator.c28x.passes.kept_flags import check_kept_flags, check_kept_marks
 from emulator.c28x.passes.likes import check_likes
 from emulator.c28x.passes.lost_writes import check_lost_writes
 from emulator.c28x.passes.masked import check_masked
+from emulator.c28x.passes.means import check_means
 from emulator.c28x.passes.members import with_members
 from emulator.c28x.passes.messages import check_messages
 from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
@@ -157,6 +158,7 @@ def check(
     check_lost_events(reports)
     check_likes(modules, reports)
     check_messages(modules, reports)
+    check_means(modules, reports)
     check_narrow_stamps(modules, reports)
     check_quotients(reports, given)
     check_error_signs(modules, reports)

@@ -49,7 +49,7 @@ STATIC = (
             "admitted", "anew", "begun_again", "blocks", "checks", "clamps", "cleared", "cleared_early",
             "copies", "decided", "digits", "drained", "dropped",
             "entrances", "error_signs", "event_masks", "flow", "formats", "fraction_texts", "kept_flags", "likes",
-            "lost_writes", "messages", "names", "narrow_stamps", "never_back", "never_updated",
+            "lost_writes", "means", "messages", "names", "narrow_stamps", "never_back", "never_updated",
             "null_tests", "off_by_one", "one_sided", "only_grows", "published", "quotients", "released", "ring_back",
             "search_end", "signs_of_life", "spans", "state_tables", "stated", "states", "stores", "tables", "undone",
             "unlimited_lines", "unread_inputs", "values", "waiting",
