@@ -47,7 +47,9 @@ _REGISTERS: Final = {
 }  # fmt: skip
 #: Kind of block -> the address of its first one, as TI's driverlib passes it, the words of each, and the first number
 #: (DS table of peripheral registers).
-BASES: Final = {"CpuTimer": (0x0C00, 8, 0), "ECap": (0x5000, 0x20, 1), "EPwm": (0x4000, 0x100, 1)}
+BASES: Final = {
+    "CpuTimer": (0x0C00, 8, 0), "ECap": (0x5000, 0x20, 1), "EPwm": (0x4000, 0x100, 1), "EQep": (0x5100, 0x40, 1),
+}  # fmt: skip
 #: Functions of driverlib that return a count of a kind of block.
 _FUNCTIONS: Final = {
     "CPUTimer_getTimerCount": "CpuTimer", "ECAP_getEventTimeStamp": "ECap", "ECAP_getTimeBaseCounter": "ECap",
@@ -74,9 +76,12 @@ _ECCTL1_PRESCALE: Final = 0x3E00
 class HardwareCounts:
     """The values of a program that are counts of one hardware counter."""
 
-    def __init__(self, modules: Iterable[Module], registers: Mapping[str, frozenset[str]] = _REGISTERS) -> None:
-        """`registers`: kind of block -> those that hold a count."""
-        self._registers = registers
+    def __init__(
+        self, modules: Iterable[Module], registers: Mapping[str, frozenset[str]] = _REGISTERS,
+        functions: Mapping[str, str] = _FUNCTIONS,
+    ) -> None:  # fmt: skip
+        """`registers`: kind of block -> those that hold a count; `functions`: those of driverlib that return one."""
+        self._registers, self._functions = registers, functions
         stamps = Stamps(modules, frozenset())
         for function in stamps.functions:
             stamps.read(function)
@@ -110,8 +115,8 @@ class HardwareCounts:
                 return self._counters(operand)
             case RegisterLoad(register=RegisterRef() as register):
                 return frozenset({self._counter_of_register(register)})
-            case Call(function=function, arguments=arguments) if function.name in _FUNCTIONS:
-                return frozenset({_counter_of_call(function, arguments)})
+            case Call(function=function, arguments=arguments) if function.name in self._functions:
+                return frozenset({_counter_of_call(self._functions[function.name], arguments)})
             case Call(function=function) if not function.extern:
                 return self._holds.get(("result", function.path), frozenset({OTHER}))
             case Load(lvalue=lvalue):
@@ -135,11 +140,11 @@ def _is_number(value: Expr) -> bool:
     return isinstance(constant, Const) and constant.value not in (0, -1, 0xFFFF, 0xFFFFFFFF)
 
 
-def _counter_of_call(function: Function, arguments: list[Expr]) -> str:
+def _counter_of_call(kind: str, arguments: list[Expr]) -> str:
     address = bare(arguments[0]) if arguments else None
     if not isinstance(address, Const) or not isinstance(address.value, int):
         return OTHER
-    return counter_at(_FUNCTIONS[function.name], address.value)
+    return counter_at(kind, address.value)
 
 
 def counter_at(kind: str, address: int) -> str:

@@ -17,7 +17,7 @@ from emulator.c28x.ctypes import FloatType, IntType
 from emulator.c28x.passes.stamps import Key, key_of
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
-from emulator.c28x.tree import Binary, Compare, Const, Convert, Expr, Load, RegisterLoad, RegisterRef
+from emulator.c28x.tree import Binary, Call, Compare, Const, Convert, Expr, Load, RegisterLoad, RegisterRef
 from emulator.c28x.tree_queries import bare, own_nodes, parts, source_text, statements
 from emulator.chip import Chip
 from emulator.registers.eqep import QDECCTL
@@ -26,6 +26,9 @@ from hil.drivers.units import UnitMismatch
 
 #: The registers that hold a position.
 _POSITIONS: Final = {"EQep": frozenset({"QPOSCNT", "QPOSLAT"})}
+#: Functions of driverlib that return one; and those that say which way the shaft turns.
+_FUNCTIONS: Final = {"EQEP_getPosition": "EQep", "EQEP_getPositionLatch": "EQep"}
+_DIRECTION: Final = frozenset({"EQEP_getDirection", "EQEP_getStatus"})
 _ORDERS: Final = frozenset({"<", "<=", ">", ">="})
 #: So many copies back steps are followed.
 _DEPTH: Final = 4
@@ -39,9 +42,11 @@ def huge_steps(modules: Iterable[Module], chip: Chip) -> Iterator[UnitMismatch]:
         for s in statements(function.body) for p in own_nodes(s)
     ]  # fmt: skip
     read = [p.register for _, _, p in nodes if isinstance(p, RegisterLoad) and isinstance(p.register, RegisterRef)]
-    if not any(register.register in _POSITIONS["EQep"] for register in read):
+    called = {p.function.name for _, _, p in nodes if isinstance(p, Call)}
+    by_name = any(register.register in _POSITIONS["EQep"] for register in read)
+    if not (by_name or called & _FUNCTIONS.keys()) or called & _DIRECTION:
         return
-    positions = HardwareCounts(modules, _POSITIONS)
+    positions = HardwareCounts(modules, _POSITIONS, _FUNCTIONS)
     steps = _Steps(positions)
     directed = {register.block for register in read if register.register == "QEPSTS"}
     compared = {

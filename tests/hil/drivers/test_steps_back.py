@@ -65,3 +65,26 @@ def test_a_step_without_a_sign_is_told(tmp_path: Path, use: str, text: str, then
 ])  # fmt: skip
 def test_a_step_that_keeps_its_sign_is_not_told(tmp_path: Path, use: str, source: int) -> None:
     assert told(tmp_path, use, source) == []
+
+
+BY_FUNCTIONS = """
+volatile Uint32 Seen = 0;
+Uint32 EQEP_getPosition(Uint32 base) {{ return Seen + base; }}
+Uint16 EQEP_getDirection(Uint32 base) {{ return Seen == base; }}
+void main(void)
+{{"""
+
+
+@pytest.mark.parametrize(("use", "found"), [
+    ("speed = position - last;", True), ("speed = (int32)(position - last);", False),
+    ("if (EQEP_getDirection(0x5100)) speed = position - last;", False),
+])  # fmt: skip
+def test_positions_by_functions_of_driverlib(tmp_path: Path, use: str, found: bool) -> None:
+    """The functions are known by their names, and the eQEP by its address."""
+    text = PROGRAM.replace("\nvoid main(void)\n{{", BY_FUNCTIONS)
+    text = text.replace("EQep1Regs.QPOSCNT", "EQEP_getPosition(0x5100)")
+    file = tmp_path / "wheel.c"
+    file.write_text(text.format(use=use, source=0), encoding="utf-8")
+    findings = check_files(DriverFiles([file], calls=1, board=load("bare"), seconds=0.01)).findings
+    messages = [f.message for f in findings if f.rule == "unsigned-wrap"]
+    assert [m.split(":")[0] for m in messages] == ["position - last has no sign, and becomes a float"] * found
