@@ -754,6 +754,7 @@ A part of the program hangs, and the watchdog does not reset the chip. The watch
   supervisor tests them (`if ((Alive & ALL) == ALL) ServiceDog();`), and no statement clears them: from the first time
   on the test stays true. This is reported in the source of a whole program, at the test. One real sign of life beside
   it is enough: then nothing is reported. Nor is a flag that only the start-up sets.
+* Signs of life are taken back beside the service, and no statement reads them: `Alive = 0; ServiceDog();`.
 
 **Fix:** service the watchdog in the loop of `main`. If an interrupt must do it, let `main` set a flag in each pass,
 and let the routine service the watchdog only if the flag is set, and then clear it. A supervisor clears the signs of

@@ -12,6 +12,8 @@ one value, while every other statement belongs to the start-up, and tests that t
 
 One real sign of life is enough: anything else that the test, or one around it or around a call of the function, looks
 at, but what the function alone counts, and the time.  A flag of the start-up is no sign of life.
+
+So it tells a service beside which signs are taken back that others set, and that no statement reads.
 """
 
 from __future__ import annotations
@@ -46,6 +48,7 @@ from emulator.c28x.tree import (
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
     addressed,
+    all_blocks,
     assigned,
     bare,
     below,
@@ -109,6 +112,14 @@ def check_signs_of_life(modules: Iterable[Module], reports: dict[Module, StaticR
                     "statement takes it back, so that this test stays true from the first time on",
                     object=sign.declaration.path, declaration=sign.declaration,
                 )  # fmt: skip
+            for service, sign in program.unread(function):
+                name = sign.declaration.name
+                reports[module].report(
+                    function, service.where, "watchdog-in-vain",
+                    f"the watchdog is serviced whatever {name} says: others set it, it is taken back here, and no "
+                    "statement reads it",
+                    object=sign.declaration.path, declaration=sign.declaration,
+                )  # fmt: skip
 
 
 class _LifeSigns:
@@ -139,6 +150,12 @@ class _LifeSigns:
             if is_number(v) and v not in taken and not v.escapes and (sign := self._sign(v)) is not None
         }  # fmt: skip
         self._services = self._serving()
+        self._taken = taken
+        #: What statements read but to change it.
+        self._read = {
+            p.lvalue.root for f in functions for s in statements(f.body) for p in own_nodes(s)
+            if isinstance(p, Load) and isinstance(p.lvalue.root, Variable) and p.lvalue.root is not assigned(s)
+        }  # fmt: skip
 
     def _runs_again(self, modules: list[Module]) -> set[int]:
         """The identities of the statements in loops without an end, in interrupt routines and in functions that
@@ -219,6 +236,20 @@ class _LifeSigns:
                 continue
             told.add(id(kept[0][0]))
             yield kept[0]
+
+    def unread(self, function: Function) -> Iterator[tuple[Stmt, Variable]]:
+        """The services beside which a sign of life is taken back that others set and nothing reads: one for each."""
+        for block in all_blocks(function.body):
+            service = next((s for s in block if _is_service(s, self._services) and id(s) in self._again), None)
+            for s in block if service is not None else ():
+                v = assigned(s)
+                if v is None or not isinstance(s, Assign) or constant_of(s.value) != 0 or not is_number(v):
+                    continue
+                others = [w for f, w in self._writes.get(v, ()) if f is not function]
+                alive = any(isinstance(w, Assign) and (constant_of(w.value) or _added(w, v)) for w in others)
+                if alive and v not in self._read and v not in self._taken and not v.escapes and service is not None:
+                    yield service, v
+                    break
 
     def _judge(self, function: Function, conditions: list[_TestAround]) -> tuple[list[tuple[Stmt, Variable]], bool]:
         """The tests that stay true, each with its sign of life, and whether another one looks at something else."""

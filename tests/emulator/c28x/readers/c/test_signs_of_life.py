@@ -188,3 +188,20 @@ int main(void)
 ])  # fmt: skip
 def test_tasks(was: str, now: str, told_: bool) -> None:
     assert bool(told(TASKS.replace(was, now) if was else TASKS)) == told_
+
+
+@pytest.mark.parametrize(("supervise", "found"), [
+    ("    Alive = 0;\n    ServiceDog();\n", True), ("    ServiceDog();\n    Alive = 0;\n", True),
+    ("    if (Ready) {\n        Alive = 0;\n        Kick();\n    }\n", True),
+    ("    if (Alive == ALL) {\n        Alive = 0;\n        ServiceDog();\n    }\n", False),
+    ("    Turns = Alive;\n    Alive = 0;\n    if (Turns == ALL) ServiceDog();\n", False),
+    ("    Alive = 0;\n", False),
+    ("    Seconds = 0;\n    ServiceDog();\n", False),  # no sign that others set
+])  # fmt: skip
+def test_signs_that_nothing_reads(supervise: str, found: bool) -> None:
+    """They are taken back beside the service."""
+    text = PROGRAM.replace(TEST, supervise)
+    service = "Kick();" if "Kick" in supervise else "ServiceDog();"
+    at = supervise[: supervise.index(service)].count("\n") if service in supervise else 0
+    first = PROGRAM[: PROGRAM.index(TEST)].count("\n") + 1
+    assert told(text) == [(first + at, "Alive")] * found
