@@ -68,7 +68,9 @@ is discarded; a state in a local that should be a file-scope object; a parameter
 
 The check also reports a file-scope object that is set twice when nothing in between can read it, and a local structure
 or array (or one that was passed by value) of which no part is read after the last store. A local that is only read to
-make its own next value is reported too: a check sum (`check ^= word;`) that nothing compares.
+make its own next value is reported too: a check sum (`check ^= word;`) that nothing compares. So is a field of a SOC of
+an ADC that is set to two constants in a row, if that field of the next SOC, whose result the program reads, is set
+nowhere.
 
 Constants, steps such as `p++`, and reads of registers or calls of kernel functions (made for their effect) are not
 reported, nor are stores to a `volatile` local. A constant that limits the variable is reported (`if (x > 300) x =

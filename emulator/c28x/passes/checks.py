@@ -15,6 +15,7 @@ from emulator.c28x.passes.begun_again import check_begun_again
 from emulator.c28x.passes.clamps import check_clamps
 from emulator.c28x.passes.cleared import check_cleared
 from emulator.c28x.passes.cleared_early import check_cleared_early
+from emulator.c28x.passes.copied_socs import check_copied_socs
 from emulator.c28x.passes.copies import check_copies
 from emulator.c28x.passes.decided import check_decided
 from emulator.c28x.passes.digits import check_digits
@@ -170,6 +171,7 @@ def check(
     check_kept_marks(modules, reports)
     check_never_updated(modules, reports)
     check_unlimited_lines(whole, of_whole)
+    check_copied_socs(modules, reports)
     check_undone(modules, reports)
     check_unread_inputs(modules, reports)
     check_entrances(shown, shown_reports)
