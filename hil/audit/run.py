@@ -157,15 +157,15 @@ def _audit_forked(
                 Rig(one, modules=modules)
             with robot(one, boot=False):  # its program is watched
                 pass
-        calls = ((name, partial(templates.using, partial(show, name))) for name in names)
-        with closing(forked.in_children(calls, at_once=max(1, processes))) as running:
-            for done, answer in running:
-                if isinstance(answer, forked.ChildDied):
-                    yield _died(done, answer)
-                else:
-                    outcome, taken = answer
-                    yield outcome
-                    templates.make_ready(taken)
+    calls = ((name, partial(templates.using, partial(show, name))) for name in names)
+    with closing(forked.in_children(calls, at_once=max(1, processes))) as running:
+        for done, answer in running:
+            if isinstance(answer, forked.ChildDied):
+                yield _died(done, answer)
+            else:
+                outcome, taken = answer
+                yield outcome
+                templates.make_ready(taken)
 
 
 def _audit_spawned(
