@@ -1,17 +1,18 @@
-"""Static check of flags of interrupts that nothing clears, where a loop then counts its turns: `not-begun-again`.
+"""Static check of flags and marks that a program sets and never takes back: `not-begun-again`.
 
     __interrupt void Tick(void) { due = 1; PieCtrlRegs.PIEACK.all = 1; }
     ...
     while (1) { if (due) { ms++; } }
 
-After the first interrupt `ms` counts the turns of the loop.  So do a sum (`sum += sample`) and a pin that toggles.
+Nothing clears `due`: after the first interrupt `ms` counts the turns of the loop.  So do a sum (`sum += sample`) and a
+pin that toggles.
 
 Silent if the loop waits anywhere: then something else sets its pace, and the flag may say that the program has begun.
 Silent too if the interrupt sets the flag only under a condition, if the flag's name or comment says that it stays, and
 if what is counted is meant to count turns (`idle++`).
 
-So are marks of elements that are full (`if (blocks[i].full) lost++; else ...`) which the program sets, tests, and
-never takes back: each element can be used once.
+The check also tells of marks of elements that are full (`if (blocks[i].full) lost++; else ...`) which the program sets
+and tests, and never takes back: each element can be used once.
 """
 
 from __future__ import annotations

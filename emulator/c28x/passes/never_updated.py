@@ -18,7 +18,7 @@ a constant is a `constant-condition`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Any, Final
+from typing import Final
 
 from emulator.c28x.ctypes import FloatType, IntType
 from emulator.c28x.passes.declared import words_of
@@ -30,7 +30,7 @@ from emulator.c28x.tree import (
     Binary,
     Compare,
     Const,
-    Convert,
+    Declaration,
     Declare,
     Evaluate,
     Expr,
@@ -78,9 +78,9 @@ def check_never_updated(modules: Iterable[Module], reports: dict[Module, StaticR
     owners = {function: report for module, report in reports.items() for function in module.functions}
     if not any(function.name == "main" and function.body for function in owners):
         return
-    written: set[Any] = set()
-    counted: set[Any] = set()
-    begins: dict[Any, int] = {}
+    written: set[Declaration] = set()
+    counted: set[Declaration] = set()
+    begins: dict[Declaration, int] = {}
     for function in owners:
         for s in statements(function.body):
             v = assigned(s)
@@ -96,7 +96,7 @@ def check_never_updated(modules: Iterable[Module], reports: dict[Module, StaticR
         written |= {v.declaration for v in addressed(within(function.body))}
         counted |= set(_wrapped(function))
     for function, report in owners.items():
-        told: set[Any] = set()
+        told: set[Declaration] = set()
         for s in _repeated(function):
             for v, other in _compared(s):
                 name = v.declaration
@@ -108,7 +108,7 @@ def check_never_updated(modules: Iterable[Module], reports: dict[Module, StaticR
                 report.report(function, s.where, "never-updated", message, object=name.path, declaration=name)
 
 
-def _wrapped(function: Function) -> Iterator[Any]:
+def _wrapped(function: Function) -> Iterator[Declaration]:
     """The objects that become the next number of a row: `n = (n + 1) % 8`."""
     for s in statements(function.body):
         v = assigned(s)
@@ -154,15 +154,13 @@ def _truth_of(e: Expr) -> Variable | None:
 
 def _value_of(e: Expr) -> Variable | None:
     """The object of which an expression is just the value."""
-    while isinstance(e, Convert):
-        e = e.operand
-    match e:
+    match bare(e):
         case Load(lvalue=LValue(root=Variable(ctype=IntType() | FloatType()) as v, indices=[], bits=None)):
             return v
     return None
 
 
-def _remembers(v: Variable, start: int, other: Expr | None, counted: set[Any]) -> bool:
+def _remembers(v: Variable, start: int, other: Expr | None, counted: set[Declaration]) -> bool:
     """Whether an object that nothing sets ought to remember, by its name, its start and what it is compared with."""
     words = set(words_of(v.declaration.name))
     if v.kind not in ("global", "local") or v.constant or v.volatile or v.address is not None or v.escapes:
