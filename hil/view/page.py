@@ -306,7 +306,8 @@ class _Head:
         self._counted = -1
         #: Of the last updates, how many more found the pace unkept than kept.
         self._late_updates = 0
-        self._mode = ui.label().classes("chip").props("role=status").mark("mode")
+        # Live as the time is: the page that says "paused" has the time of the pause.
+        self._mode = LiveHtml().classes("chip").props("role=status").mark("mode")
         self._tiles: dict[str, LiveHtml] = {}
         with ui.element("div").classes("tiles").mark("status"):
             self._tile("time")
@@ -346,7 +347,7 @@ class _Head:
         if len(findings) != self._counted:
             self._counted = len(findings)
             self._found.content = counted(by_kind(rated(findings, self._engine.policy)))
-        if self._mode.text != now.mode.value:
-            self._mode.text = now.mode.value
+        if self._mode.content != now.mode.value:
+            self._mode.content = now.mode.value
             css = _CHIP.get(now.mode, "wait")
             self._mode.classes(add=css, remove=" ".join({"run", "wait", "bad"} - {css}))
