@@ -137,6 +137,8 @@ range of values that decides. Examples:
   (t > 20)` it is always false;
 * after `if (mode == 1) ... else if (mode == 1)` the second test is always false;
 * a pointer that was already used is not NULL: the test comes too late, or it should test another pointer;
+* `Mailbox_pend(box, &order, BIOS_WAIT_FOREVER)` never returns FALSE: the branch that sets the speed to 0 then never
+  runs (a branch that leaves, calls a function, or only notes an error is not reported);
 * `if (Ready)` with a function `Ready` tests its address, `name == "abc"` compares two addresses, `flags && 4` tests 4.
 
 `while (1)` and conditions of constants only (build switches) are not reported.

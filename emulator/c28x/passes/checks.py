@@ -21,6 +21,7 @@ from emulator.c28x.passes.decided import check_decided
 from emulator.c28x.passes.digits import check_digits
 from emulator.c28x.passes.drained import check_drained
 from emulator.c28x.passes.dropped import check_dropped
+from emulator.c28x.passes.endless_waits import check_endless_waits
 from emulator.c28x.passes.entrances import check_entrances
 from emulator.c28x.passes.error_signs import check_error_signs
 from emulator.c28x.passes.event_masks import check_event_masks, check_lost_events
@@ -218,6 +219,7 @@ def _of_function(function: Function) -> list[StaticFinding]:
     check_admitted(function, report)
     check_masked(function, report)
     check_event_masks(function, report)
+    check_endless_waits(function, report)
     check_clamps(function, report)
     check_digits(function, report)
     NullTests(function, report).run()

@@ -6,10 +6,11 @@ import re
 from pathlib import Path
 from typing import Final
 
-from emulator.c28x.tree import Declaration, Expr, Load, LValue, Variable
+from emulator.c28x.tree import Declaration, Expr, Load, LValue, Variable, Where
 from emulator.c28x.tree_queries import bare
 
 _WORD: Final = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
+_NAME: Final = re.compile(r"[A-Za-z_]\w*")
 
 
 def words_of(name: str) -> list[str]:
@@ -19,11 +20,21 @@ def words_of(name: str) -> list[str]:
 
 def line_of(declaration: Declaration) -> str:
     """The line on which an object is declared; empty: its text is in no file."""
+    return _line(declaration.file, declaration.line)
+
+
+def name_at(where: Where) -> str:
+    """The name that is written at a place, of a macro for example; empty: there is none, or its text is in no file."""
+    found = _NAME.match(_line(where.file, where.line)[max(where.column - 1, 0):])
+    return found.group() if found is not None and where.column else ""
+
+
+def _line(file: str, line: int) -> str:
     try:
-        lines = Path(declaration.file).read_text(encoding="utf-8", errors="replace").splitlines()
+        lines = Path(file).read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
         return ""
-    return lines[declaration.line - 1] if 0 < declaration.line <= len(lines) else ""
+    return lines[line - 1] if 0 < line <= len(lines) else ""
 
 
 def may_be_volatile(pointer: Expr) -> bool:

@@ -47,7 +47,7 @@ STATIC = (
         f"emulator/c28x/passes/{name}.py"
         for name in (
             "admitted", "anew", "begun_again", "blocks", "checks", "clamps", "cleared", "cleared_early",
-            "copied_socs", "copies", "decided", "digits", "drained", "dropped",
+            "copied_socs", "copies", "decided", "digits", "drained", "dropped", "endless_waits",
             "entrances", "error_signs", "event_masks", "flow", "formats", "fraction_texts", "kept_flags", "likes",
             "lost_writes", "means", "messages", "names", "narrow_stamps", "never_back", "never_updated",
             "null_tests", "off_by_one", "one_sided", "only_grows", "published", "quotients", "released", "ring_back",
