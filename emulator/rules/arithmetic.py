@@ -48,9 +48,9 @@ bits and is right.
 The same happens to a number in a text: `long value = atoi(text)` reads 70000 as 4464, because `atoi` returns an `int`.
 
 Before the program runs, a value is enough that the source itself lets through: the test that refuses more than 3600
-seconds, before `rest_ms = seconds * 1000U`; a mask of 12 bits that 16 bits do not hold after `<< 12`. If the result is
-divided or compared, this is `unsigned-wrap`; if it is signed, `overflow`. Values behind a further test of them are not
-reported.
+seconds, before `rest_ms = seconds * 1000U`; the one that lets results of the ADC up to 4045 through, before
+`(long) (raw << 5)`; a mask of 12 bits that 16 bits do not hold after `<< 12`. If the result is divided or compared,
+this is `unsigned-wrap`; if it is signed, `overflow`. Values behind a further test of them are not reported.
 
 A difference that its name calls an error (`long error = SET - measured;` with a `Uint16 measured`) is reported before
 the program runs, unless the function compares the two: above the set point it is some 65000.

@@ -9,7 +9,8 @@ It is `widened-late` if the result is widened afterwards, `overflow` if it is si
 is divided, shifted down or compared by order.
 
 What the source states: the limit of a test behind which a value from outside is used (a text, a word that was received,
-what a pointer leads to), the limit that replaces a larger value, `% n`; for shifts a mask or the width of a field.
+the result of an ADC as it is, what a pointer leads to), the limit that replaces a larger value, `% n`; for shifts a
+mask or the width of a field.
 With that, a text of `sprintf` may be longer than its array: `memcpy-outside`.
 An object at file scope, a member or a parameter has the largest of what it gets, if the source states that of all.
 Not looked at: values behind another test of them, members of structures of which there are several, casts of a result
@@ -83,6 +84,8 @@ _ENDLESS: Final = 1 << LONGEST
 _COUNTED: Final = 65535
 #: Blocks whose registers hold what somebody sent.
 _RECEIVED: Final = ("Sci", "Spi", "I2c", "Mcb", "Can", "Lin", "Usb")
+#: The largest result of an ADC with 12 bits: a test for more refuses none.
+_LARGEST_RESULT: Final = 4095
 #: What is done with a result that is converted to a wider type.
 _WIDENED: Final = "is widened"
 #: The operators in whose operands a wide result needs all bits.
@@ -215,6 +218,24 @@ class _StatedValues:
                 return unknown or self._any(values, followed | {scalar})
         return False
 
+    def converted(self, e: Expr, followed: frozenset[NamedScalar] = frozenset()) -> bool:
+        """Whether a value that is no constant is the result of an ADC as it is; a computed one has another range."""
+        match e:
+            case Convert(operand=operand):
+                return self.converted(operand, followed)
+            case RegisterLoad(register=RegisterRef(block=block)):
+                return block.startswith("Adc") and "Result" in block
+            case Call(function=function):
+                values: Iterable[GivenValue] = self.given.results.get(function.path, ())
+            case Load(lvalue=lvalue) if (scalar := named_scalar(lvalue)) is not None and scalar not in followed:
+                values, followed = self.given.of(scalar), followed | {scalar}
+            case _:
+                return False
+        given = [one.value for one in values if one.value is None or constant_of(one.value) is None]
+        return len(followed) <= _DEEPEST and bool(given) and all(
+            one is not None and self.converted(one, followed) for one in given
+        )  # fmt: skip
+
     def _any(self, values: Iterable[GivenValue], followed: frozenset[NamedScalar]) -> bool | None:
         """Whether one of some values is from outside; None: they all say nothing."""
         found = {
@@ -281,7 +302,9 @@ class _StatedWalk:
             if not 1 < limit <= min(ctype.high - 1, self.program.bounds.get(scalar, limit)):
                 continue
             before = _find(known, value)
-            now = _Stated(limit, bool(self.program.from_outside(Load(value.ctype, value))), limited=True)
+            load = Load(value.ctype, value)
+            reached = self.program.from_outside(load) or (limit <= _LARGEST_RESULT and self.program.converted(load))
+            now = _Stated(limit, bool(reached), limited=True)
             found = [*_except(found, [(value, now)]), (value, before if before and before.most <= limit else now)]
         return _asked(found, parts(test))
 
@@ -324,7 +347,8 @@ class _StatedWalk:
             if mask is None or mask <= 0 or not isinstance(e.ctype, IntType):
                 return None
             before = self.most(e.left if number is not None else e.right, known)
-            return before if before is not None and before.most <= mask else _Stated(interval(e, {})[1], bits=True)
+            kept = before is not None and before.most <= mask and not before.lost  # else the cut is meant
+            return before if kept else _Stated(interval(e, {})[1], bits=True)
         if e.op == "%" and number is not None and number > 1:
             left = self.most(e.left, known)
             if left is not None and left.most < number:

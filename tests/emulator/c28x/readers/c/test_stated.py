@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from hil.image import Build
 from tests.emulator.c28x.readers.c.workshop import CWorkshop
 
 HEAD = """#include <stdlib.h>
@@ -114,6 +117,7 @@ def test_what_a_result_does_not_hold_is_told(body: str, other: str) -> None:
         ),
         ("if (n > 1000) { n = 0; } Out = (Uint16)(n * 100U);", ""),
         ("Out = ((n & 0xFFFF) << 4) & 0xFFF0;", ""),
+        ("Out = ((n & 0x0FFF) << 12) & 0xFFFF;", ""),
         ("in = ((n & 0x7FFF) << 5) ^ (n >> 2);", ""),
         ("if (n > 5000) return; if (m == 1 && n > 5) return; if (m == 1) Out = n * 1000U;", ""),
         ("if (n > 5000) return; if (m == 1) { if (n > 5) return; } if (m == 1) Out = n * 1000U;", ""),
@@ -167,3 +171,73 @@ def test_a_text_that_can_be_longer_than_its_array_is_told(call: str, *, longer: 
     end = 'void main(void) { Tick(); Order("1"); f(); }'
     found = CWorkshop(f"{TEXTS}void f(void)\n{{ {call}; }}\n{end}\n", static=True).findings
     assert ("memcpy-outside" in {f.rule for f in found}) == longer
+
+
+CONVERTED = """#include "F28x_Project.h"
+static int32 wide; static Uint32 Out; static float Real; static Uint16 in; static volatile Uint16 go;
+static Uint16 Adc(void) {{ return AdcaResultRegs.ADCRESULT0; }}
+static void f(void)
+{{
+    Uint16 r;
+    {body}
+}}
+void main(void)
+{{
+    InitSysCtrl();
+    for (;;)
+        f();
+}}
+"""
+
+
+def told_of_results(tmp_path: Path, body: str) -> list[str]:
+    """What is told of a function with this body, which uses the results of an ADC."""
+    file = tmp_path / "adc.c"
+    file.write_text(CONVERTED.format(body=body), encoding="utf-8")
+    told_there = (f.rule for f in Build([str(file)]).compiled.findings)
+    return [rule for rule in told_there if rule in ("widened-late", "overflow", "unsigned-wrap")]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "r = Adc(); if (r < 50 || r > 4045) return; wide = (int32)(r << 5) - 5;",
+        "r = AdcaResultRegs.ADCRESULT0; if (r >= 50 && r <= 4045) wide = r << 5;",
+        "r = Adc(); if (r < 50 || r > 4045) { in = 0; return; } Real = (r << 5) * 0.5f;",
+        "for (;;) { r = Adc(); if (r < 50 || r > 4045) { in = 0; continue; } Real = (float)(r << 5); }",
+        "for (;;) { r = Adc(); if (r > 4045) break; wide += r << 5; }",
+        "for (;;) { Uint16 q; r = Adc(); if (r > 4045) break; q = r << 5; wide += q; }",
+        "do { r = Adc(); } while (go); if (r > 4000) r = 4000; Out += (Uint32)(r << 5);",
+        "r = 0; if (go) r = Adc(); if (r > 4045) return; wide = r * 20U;",
+    ],
+)
+def test_a_shift_of_a_result_that_a_guard_lets_through_is_told(tmp_path: Path, body: str) -> None:
+    assert told_of_results(tmp_path, body) == ["widened-late"]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "r = Adc(); if (r < 50 || r > 4045) return; wide = (int32)(r << 4) - 5;",
+        "r = Adc(); if (r < 50 || r > 4045) return; wide = ((int32)r << 5) - 5;",
+        "r = Adc(); if (r < 50 || r > 2047) return; wide = (int32)(r << 5) - 5;",
+        "r = Adc(); if (r < 50 || r > 4045) return; wide = (r << 5) & 0xFFFF;",
+        "r = Adc(); if (r < 50 || r > 4045) return; wide = (Uint16)(r << 5);",
+        "r = Adc(); if (r < 50 || r > 4045) return; wide = (int16)(r << 5);",
+        "r = Adc(); if (r < 50 || r > 4045) return; in = (r << 5) ^ (r >> 3);",
+        "r = Adc(); if (r > 5000) return; wide = r << 4;",  # 4095 at most
+        "r = Adc() >> 4; if (r > 4045) return; wide = r << 5;",  # 255 at most
+        "r = (Uint16)(Adc() * 5UL / 16); if (r > 2100) return; wide = r << 5;",  # 1279 at most
+        "r = Adc(); if (r > 4045) return; if (r > 2000) return; wide = r << 5;",
+        "r = Adc(); if (r > 4045) return; r -= 2048; wide = r << 5;",
+        "r = Adc(); if (r < 50 || r > 4045 || r > in) return; wide = r << 5;",
+        "r = Adc(); if (r > 4045) return; if (r < 2000) wide = r << 5; else wide = (int32)r << 5;",
+        # Hashes, sums for a check, turned words.
+        "Uint16 h = 5381; for (;;) { r = Adc(); if (r > 4045) continue; h = (h << 5) + h + r; Out = h; }",
+        "r = Adc(); if (r > 4045) return; r = r << 8 | r >> 8; Out = r;",
+        "r = Adc(); if (r > 4045) return; Out = (Uint16)(r << 8) | r >> 8;",
+        "Uint16 k = 0; r = Adc(); if (r > 4045) return; k ^= r << 8; k = k & 0x8000 ? k << 1 ^ 33 : k << 1; Out = k;",
+    ],
+)
+def test_a_shift_of_a_result_that_fits_or_is_cut_on_purpose_is_silent(tmp_path: Path, body: str) -> None:
+    assert told_of_results(tmp_path, body) == []
