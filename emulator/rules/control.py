@@ -74,9 +74,9 @@ end.
     _rule(
         "never-updated",
         Severity.WARNING,
-        "An object ought to remember what was before, and no statement sets it.",
+        "An object ought to remember what was before, or count a time down, and no statement does it.",
         """
-The program compares with what was at the start, not with what was the last time.
+The program compares with what was at the start, not with what was the last time. Or a pause never ends.
 
 `if (now == 0 && last == 1) presses++;` counts an edge only if `last = now;` follows. Without it, each pass in which the
 button is pressed counts. `if (message.number != expected) lost++;` needs `expected = message.number + 1;`.
@@ -86,7 +86,11 @@ check needs the source of a whole program. Not reported: an object that is `cons
 taken, or that begins with another number than 0, 1 or -1; a `last` one that is compared with what the program counts up
 (`if (channel == lastChannel)`), because it is the end of a row; `expectedVersion`, because it is a constant.
 
-**Fix:** set it behind the comparison.
+`rest = REST_PERIODS; ... if (rest == 0) mode = MOVE;` needs `rest--` somewhere. The name of the object or of the macro
+says that it is a time. Not reported: an object that any statement sets to 0 again, or that anything but tests for 0
+reads; a code that stays (`error = 3`); a local that each turn or call sets anew.
+
+**Fix:** set it behind the comparison; count the time down in each period.
 """,
         "CERT MSC13-C",
         how="static",

@@ -41,7 +41,7 @@ from emulator.c28x.passes.messages import check_messages
 from emulator.c28x.passes.names import Liveness, Mentions, check_image, check_names, in_header
 from emulator.c28x.passes.narrow_stamps import check_narrow_stamps
 from emulator.c28x.passes.never_back import check_never_back
-from emulator.c28x.passes.never_updated import check_never_updated
+from emulator.c28x.passes.never_updated import check_never_counted, check_never_updated
 from emulator.c28x.passes.null_tests import NullTests
 from emulator.c28x.passes.off_by_one import check_off_by_one
 from emulator.c28x.passes.one_sided import check_one_sided
@@ -171,6 +171,7 @@ def check(
     check_kept_flags(whole, of_whole)
     check_kept_marks(modules, reports)
     check_never_updated(modules, reports)
+    check_never_counted(modules, reports)
     check_unlimited_lines(whole, of_whole)
     check_copied_socs(modules, reports)
     check_undone(modules, reports)

@@ -1,4 +1,4 @@
-"""Static check of objects that ought to remember what was before, and that no statement sets: `never-updated`.
+"""Static checks of objects that ought to remember what was before, or to count a time down: `never-updated`.
 
     static unsigned last = 1;
     ...
@@ -13,6 +13,13 @@ about what is expected but is no number of a row (`expectedVersion`).
 
 The check needs a whole program.  A `volatile` object may be set by a debugger.  A local by itself that is compared with
 a constant is a `constant-condition`.
+
+    if (blocked) { mode = REST; rest = REST_PERIODS; }
+    ...
+    if (rest == 0) mode = MOVE;              /* and nowhere `rest--;` */
+
+The name of the object, or of the macro, says that this is a time.  The check is silent where anything but 0 tests reads
+the object, or where a statement sets it to 0: then it is a flag, or a limit.
 """
 
 from __future__ import annotations
@@ -21,7 +28,8 @@ from collections.abc import Iterable, Iterator
 from typing import Final
 
 from emulator.c28x.ctypes import FloatType, IntType
-from emulator.c28x.passes.declared import words_of
+from emulator.c28x.passes.begun_again import is_latched
+from emulator.c28x.passes.declared import name_at, words_of
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.state_values import constant_of, start_of
 from emulator.c28x.symbols import Module
@@ -51,7 +59,9 @@ from emulator.c28x.tree_queries import (
     addressed,
     assigned,
     bare,
+    own_nodes,
     parts,
+    source_text,
     statements,
     within,
     without_end,
@@ -71,6 +81,25 @@ _NUMBER: Final = frozenset((
 ))  # fmt: skip
 #: What a memory begins with.
 _STARTS: Final = frozenset((0, 1, -1, 0xFFFF))
+#: Words of times, and of what is left of one, in names of objects: in English, German and Spanish.
+_TIMES: Final = frozenset((
+    "ticks", "periods", "cycles", "samples", "ms", "millis", "seconds", "time", "timer", "count", "counter",
+    "countdown", "delay", "hold", "holdoff", "pause", "rest", "wait", "timeout", "left", "remaining", "remain",
+    "cooldown", "dwell", "zeit", "restzeit", "takte", "perioden", "zyklen", "zaehler", "warten", "wartezeit",
+    "verzoegerung", "sperre", "sperrzeit", "nachlauf", "tiempo", "ciclos", "periodos", "muestras", "cuenta", "contador",
+    "espera", "pausa", "retardo", "restante", "restantes", "segundos",
+))  # fmt: skip
+#: Words of macros that can be nothing but times.
+_DURATIONS: Final = frozenset((
+    "ticks", "periods", "cycles", "ms", "millis", "seconds", "time", "delay", "duration", "zeit", "takte", "perioden",
+    "zyklen", "dauer", "tiempo", "ciclos", "periodos", "segundos", "retardo", "duracion",
+))  # fmt: skip
+#: Words of numbers that stand for something, and that may rightly stay.
+_CODES: Final = frozenset((
+    "mode", "state", "status", "phase", "step", "flag", "code", "error", "err", "fault", "cause", "reason", "alarm",
+    "id", "level", "kind", "type", "trip", "mask", "event", "fail", "failure", "result", "choice", "select", "modus",
+    "zustand", "fehler", "stufe", "grund", "modo", "estado", "fallo", "causa", "nivel", "paso", "codigo",
+))  # fmt: skip
 
 
 def check_never_updated(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
@@ -173,3 +202,92 @@ def _remembers(v: Variable, start: int, other: Expr | None, counted: set[Declara
         return False
     named = {p.root.declaration for p in parts(other) if isinstance(p, LValue) and isinstance(p.root, Variable)}
     return not named & counted
+
+
+# Times that nothing counts down
+
+
+def check_never_counted(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> None:
+    """Report the tests whether a time is over, of whole programs that begin the time and never count it."""
+    owners = {function: report for module, report in reports.items() for function in module.functions}
+    if not any(function.name == "main" and function.body for function in owners):
+        return
+    again = {id(s) for function in owners for s in _repeated(function)}
+    begun: dict[Declaration, list[Const]] = {}
+    others: set[Declaration] = set()
+    for function in owners:
+        loops = any(isinstance(s, While) and without_end(s) for s in function.body)
+        for s in statements(function.body):
+            v = assigned(s)
+            if v is None:
+                continue
+            number = bare(s.value) if isinstance(s, Assign | Declare) and isinstance(s.value, Expr) else None
+            if isinstance(s, Declare):
+                # A local is what it was in the turn before only if the loop is within its function.
+                fine = loops and id(s) not in again and constant_of(s.value) == 0
+            else:
+                fine = isinstance(number, Const) and isinstance(number.value, int) and number.value > 1
+                # What each call does at once may only set the program up.
+                fine = fine and id(s) in again and not any(s is first for first in function.body)
+            if not fine:
+                others.add(v.declaration)
+            elif isinstance(s, Assign) and isinstance(number, Const):
+                begun.setdefault(v.declaration, []).append(number)
+        others |= {v.declaration for v in addressed(within(function.body))}
+    times = {name for name, numbers in begun.items() if name not in others and _is_time(name, numbers)}
+    tests: dict[Declaration, list[tuple[Function, Stmt, Expr]]] = {}
+    for function in owners if times else ():
+        for s in statements(function.body):
+            asked = [(v, e) for root in own_nodes(s) if isinstance(root, Expr) for v, e in _zero_tests(root, s)]
+            for v, e in asked:
+                tests.setdefault(v.declaration, []).append((function, s, e))
+            read = [p.lvalue.root for p in own_nodes(s) if isinstance(p, Load) and isinstance(p.lvalue.root, Variable)]
+            for v in read:
+                if read.count(v) != sum(other is v for other, _ in asked) or not _may_count(v):
+                    times.discard(v.declaration)
+    for name in times & tests.keys():
+        function, s, test = tests[name][0]
+        begin = begun[name][0]
+        value = name_at(begin.where) or str(begin.value)
+        text = source_text(test)
+        message = f"nothing counts {name.name} down: once it is {value}, {text} has the same result for good"
+        owners[function].report(function, s.where, "never-updated", message, object=name.path, declaration=name)
+
+
+def _may_count(v: Variable) -> bool:
+    """Whether only statements can change an object that begins with 0."""
+    if v.kind == "global" and (start_of(v) != 0 or is_latched(v)):
+        return False
+    return v.kind in ("global", "local") and isinstance(v.ctype, IntType) and not (
+        v.constant or v.volatile or v.escapes or v.address is not None
+    )  # fmt: skip
+
+
+def _is_time(name: Declaration, numbers: list[Const]) -> bool:
+    """Whether the names of an object and of the macros that it gets say that it is a time."""
+    words = set(words_of(name.name))
+    macros = set()
+    for number in numbers:
+        macro = name_at(number.where)
+        if macro and number.where.macro is None:
+            return False  # one of an enumeration
+        macros |= set(words_of(macro))
+    if _CODES & (words | macros):
+        return False
+    return bool(words & _TIMES or macros & _DURATIONS)
+
+
+def _zero_tests(e: Expr, s: Stmt) -> Iterator[tuple[Variable, Expr]]:
+    """The object of which an expression asks whether it is 0, once for each such test in a statement."""
+    match e:
+        case Compare(op="==" | "!=" | ">" | "<=", left=left, right=right) if constant_of(right) == 0:
+            if not name_at(bare(right).where) and (v := _value_of(left)) is not None:
+                yield v, e
+        case Not(operand=operand) if (v := _value_of(operand)) is not None:
+            yield v, e
+        case Logic(operands=operands):
+            for one in operands:
+                if (v := _value_of(one)) is not None:
+                    yield v, one
+    if isinstance(s, If | While) and e is s.test and (v := _value_of(e)) is not None:
+        yield v, e
