@@ -221,9 +221,13 @@ A copy overwrites the object behind the target.
 copies twice as much as there is: it reads beyond the source and writes over what follows the target. The finding gives
 both numbers and the neighbour. On a PC `4 * n` is right, so tests there pass.
 
+A constant length that is twice what is left of an object with a name is reported before the program runs. A length
+behind a pointer is checked when the block is copied.
+
 **Fix:** `n * sizeof(float)` or `sizeof v`; here `sizeof(float)` is 2.
 """,
         "CC table 6-1 (char 16 bits)",
+        how="dynamic/static",
     ),
     _rule(
         "memcpy-outside",
@@ -233,10 +237,10 @@ both numbers and the neighbour. On a PC `4 * n` is right, so tests there pass.
 A copy or a fill overwrites the object or the member behind the target.
 
 The length is larger than the rest of the source or of the target. The finding names what is overwritten. Each
-structure member has its own end. A constant length that leaves the member is reported before the program runs, and so
-is a text that is longer than its array even if each number of its format has one digit, or with the digits that the
-source lets through: a limit, a count that nothing limits (it is taken to reach 65535), the longest name of a table. Any
-other text that is copied or printed into a member and is longer than it is reported while the program runs.
+structure member has its own end. A constant length that leaves the object or the member is reported before the program
+runs, and so is a text that is longer than its array even if each number of its format has one digit, or with the digits
+that the source lets through: a limit, a count that nothing limits (it is taken to reach 65535), the longest name of a
+table. Any other text that is copied or printed into a member and is longer than it is reported while the program runs.
 
 **Fix:** take the length from the smaller of the two objects, with `sizeof`, in 16-bit words.
 """,

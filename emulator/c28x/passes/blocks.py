@@ -1,8 +1,8 @@
 """Static check of library calls: do the block lengths and argument types fit the function?
 
-It examines only the call: a length beyond the end of a member, the size of a pointer instead of the size of its target,
-a float for a function of integers, a text that is longer than the array even if each number has one digit.  A block
-that is a whole object is checked at run time, when it is copied.
+It examines only the call: a length beyond the end of an object or of a member, the size of a pointer instead of the
+size of its target, a float for a function of integers, a text that is longer than the array even if each number has one
+digit.  A block behind a pointer is checked at run time, when it is copied.
 """
 
 from __future__ import annotations
@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Final
 
-from emulator.c28x.ctypes import ArrayType, FloatType, IntType, PointerType
+from emulator.c28x.ctypes import ArrayType, FloatType, IntType, PointerType, StructType
 from emulator.c28x.passes.formats import format_of, shortest
-from emulator.c28x.tree import AddressOf, Call, Const, Convert, Expr, Load, LValue, String, Variable
-from emulator.c28x.tree_queries import bare, calls, source_text
+from emulator.c28x.tree import AddressOf, Call, Const, Convert, Expr, Load, LValue, PointerAdd, String, Variable
+from emulator.c28x.tree_queries import bare, calls, fixed_words, source_text
 
 #: Function -> how many of its arguments are blocks; its last argument is their length in words.
 _BLOCKS: Final = {"memset": 1, "memcpy": 2, "memmove": 2, "memcmp": 2}
@@ -62,12 +62,52 @@ def check_blocks(e: Call, report: Callable[[str, str, str], None], fixed: Mappin
         text = source_text(blocks[0])
         report("sizeof-pointer", f"{name} of {text} takes {length.value} words, the size of a pointer", text)
         return
+    if _check_objects(name, blocks, int(length.value), report):
+        return
     for block in blocks:
         left = _words_to_end(block)
         if left is not None and length.value > left:
             text = source_text(block)
             message = f"{name} takes {length.value} words at {text}, a member with {left} words from there"
             report("memcpy-outside", message, text)
+
+
+def _check_objects(name: str, blocks: list[Expr], length: int, report: Callable[[str, str, str], None]) -> bool:
+    """Report the first block of `length` words that is longer than the rest of its object, and whether there is one."""
+    rests = [(block, rest) for block in blocks if (rest := _words_of_object(block)) is not None]
+    longer = [(block, left) for block, (left, _) in rests if length > left]
+    if not longer:
+        return False
+    block, left = longer[0]
+    text = source_text(block)
+    # The same as at run time: the octets of what is there, or of whole numbers of 32 bits.
+    octets = length % 2 == 0 and any(
+        length // 2 == rest or (words == 2 and length % 4 == 0 and length // 2 <= rest) for _, (rest, words) in rests
+    )
+    why = f"{length} counts octets; in 16-bit words it is {length // 2}" if octets else "sizes count 16-bit words here"
+    message = f"{name} takes {length} words at {text}, an object with {left} words from there: {why}"
+    report("memcpy-octets" if octets else "memcpy-outside", message, text)
+    return True
+
+
+def _words_of_object(e: Expr) -> tuple[int, int] | None:
+    """The words from the target of an argument to the end of its object, and those of a scalar in an array of scalars.
+
+    None: not known, as behind a pointer.  A name of the linker is no object, but the address of something.
+    """
+    match e:
+        case PointerAdd(pointer=pointer, index=index, negative=False, ctype=PointerType(target=target)):
+            number, found = bare(index), _words_of_object(bare(pointer))
+            if found is None or not isinstance(number, Const):
+                return None
+            rest = found[0] - int(number.value) * target.words
+            return (rest, found[1]) if 0 < rest <= found[0] else None
+        case AddressOf(lvalue=LValue(root=Variable(address=None) as root) as lvalue):
+            offset, words = fixed_words(lvalue), root.ctype.words
+            element = root.ctype.element if isinstance(root.ctype, ArrayType) else root.ctype
+            whole = 0 if isinstance(element, StructType | ArrayType) else element.words
+            return (words - offset, whole) if offset is not None and 0 <= offset < words else None
+    return None
 
 
 def _constant(e: Expr, fixed: Mapping[Variable, Const]) -> Expr:

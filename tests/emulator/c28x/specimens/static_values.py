@@ -795,6 +795,29 @@ def Clear() -> int16:
         ("Clear", ()),
     ),
     static_pair(
+        "memcpy-octets",
+        "two octets for each word of an array",
+        """
+SHOTS = 3
+Shots: array[uint16, SHOTS] = (1, 2, 3)
+Kept: array[uint16, SHOTS]
+def Keep() -> None:
+    memcpy(Kept, Shots, 2 * SHOTS)  # <-
+def Last() -> uint16:
+    return Kept[2]
+""",
+        """
+SHOTS = 3
+Shots: array[uint16, SHOTS] = (1, 2, 3)
+Kept: array[uint16, SHOTS]
+def Keep() -> None:
+    memcpy(Kept, Shots, sizeof(Kept))
+def Last() -> uint16:
+    return Kept[2]
+""",
+        ("Keep", ()),
+    ),
+    static_pair(
         "sizeof-pointer",
         "a structure of which two words are cleared",
         """
