@@ -74,7 +74,10 @@ nowhere.
 
 Constants, steps such as `p++`, and reads of registers or calls of kernel functions (made for their effect) are not
 reported, nor are stores to a `volatile` local. A constant that limits the variable is reported (`if (x > 300) x =
-300;` when nothing reads `x`). It is enough that one half of an exchange (`t = a; a = b; b = t;`) is used.
+300;` when nothing reads `x`). So is the result of a function that does nothing but compute it from a local that is used
+later, if nothing ever reads it (`command = limit(turn, -MOST, MOST); drive(turn);`); not if the name or a remark says
+that nothing shall (`dummy`), or if the text of the function names it in another line. It is enough that one half of an
+exchange (`t = a; a = b; b = t;`) is used.
 
 **Fix:** use the value, or remove the statement.
 """,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
@@ -30,11 +31,17 @@ def name_at(where: Where) -> str:
 
 
 def _line(file: str, line: int) -> str:
+    return next((text for _, text in lines_from(file, line)), "")
+
+
+def lines_from(file: str, first: int) -> Iterator[tuple[int, str]]:
+    """The numbers and lines of a file from a line on; none: its text is in no file."""
     try:
         lines = Path(file).read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
-        return ""
-    return lines[line - 1] if 0 < line <= len(lines) else ""
+        return
+    if first > 0:
+        yield from enumerate(lines[first - 1 :], first)
 
 
 def may_be_volatile(pointer: Expr) -> bool:

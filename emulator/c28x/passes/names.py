@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from typing import Any, Final
 
 from emulator.c28x.ctypes import ArrayType, IntType, StructType
+from emulator.c28x.passes.declared import lines_from, words_of
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.passes.values import volatile
 from emulator.c28x.symbols import Module
@@ -14,6 +16,7 @@ from emulator.c28x.tree import (
     Binary,
     Break,
     Call,
+    CallPointer,
     Compare,
     Const,
     Continue,
@@ -34,6 +37,7 @@ from emulator.c28x.tree import (
     PointerAdd,
     RegisterAt,
     RegisterLoad,
+    RegisterRef,
     Return,
     Stmt,
     String,
@@ -94,7 +98,9 @@ class Liveness:
             own = assigned(s) if isinstance(s, Assign) else None
             self.only_themselves -= {v for v in self.used[id(s)] if v is not own}
         end = last_loop(function)
-        if end is not None and not end.body:  # it stops there, so that a debugger shows its locals
+        #: It stops at its end, so that a debugger shows its locals.
+        self.stops = end is not None and not end.body
+        if self.stops:
             self.only_themselves = set()
         #: The live variables after each enclosing loop and at its `continue`; after each enclosing switch.
         self.loops: list[tuple[Live, Live]] = []
@@ -212,13 +218,44 @@ class Liveness:
         if id(s) in self.halves or (isinstance(s, Assign) and self.says_unused(s, variable)):
             return
         declared = isinstance(s, Declare)
-        if _reads_device(value) or (_for_effect(value) and (declared or variable not in self.read_anywhere)):
+        if _reads_device(value):
+            return
+        for_effect = _for_effect(value) and (declared or variable not in self.read_anywhere)
+        if for_effect and not self.is_forgotten(variable, value, live):
             return
         if variable in self.only_themselves and volatile(value):
             return
         if variable in self.whole:  # reported once, at its first part: the walk goes backwards
             self.found = {line: found for line, found in self.found.items() if found[1] is not variable}
         self.found[s.line] = (s.where, variable, value)
+
+    def is_forgotten(self, variable: Variable, value: Expr, live: Live) -> bool:
+        """Whether a value was meant to be used in the place of another local: `command = limit(turn, -MOST, MOST);`.
+
+        A function that only computes makes it of a local that is used later, and nothing ever reads the value.
+        """
+        if variable in self.read_anywhere or self.stops or _NOT_READ & {*words_of(variable.declaration.name)}:
+            return False
+        sources = {root for root in _computed_of(value) if root in live and root in self.tracked}
+        counted = {v for s in statements(self.function.body) if (v := _stepped(s)) is not None}
+        return bool(sources - counted - {variable}) and not self.is_said_elsewhere(variable)
+
+    def is_said_elsewhere(self, variable: Variable) -> bool:
+        """Whether the text of the function names a local where the tree does not: a message that this build leaves out.
+
+        A remark about its line that it is there to be looked at is one, too.
+        """
+        own = {variable.declaration.line}
+        for s in statements(self.function.body):
+            if assigned(s) is variable or (isinstance(s, Declare) and s.variable is variable):
+                own.add(s.line)
+        name = re.compile(rf"\b{re.escape(variable.declaration.name)}\b")
+        for number, line in lines_from(variable.declaration.file, variable.declaration.line):
+            if line.startswith("}"):
+                return False
+            if name.search(line) and (number not in own or _LOOKED_AT.search(line)):
+                return True
+        return True
 
     def says_unused(self, s: Assign, variable: Variable) -> bool:
         """`arg = arg;` marks a parameter as unused.  (`ValueChecks` reports it if `arg` hides a file object.)"""
@@ -292,6 +329,72 @@ _VALUES_ONLY: Final = frozenset({
     "abs", "acos", "asin", "atan", "atan2", "atof", "atoi", "atol", "ceil", "cos", "exp", "fabs", "floor", "fmod",
     "labs", "log", "memcmp", "pow", "sin", "sqrt", "strcmp", "strlen", "tan",
 })  # fmt: skip
+
+
+#: Words of locals that nothing shall read, or only a debugger.
+_NOT_READ: Final = frozenset({
+    "dummy", "unused", "temp", "tmp", "junk", "ignore", "ignored", "scratch", "discard", "discarded", "sink", "trash",
+    "waste", "spare", "debug", "dbg", "watch", "probe", "trace", "test",
+})  # fmt: skip
+#: Remarks about such locals.
+_LOOKED_AT: Final = re.compile(r"debug|watch|inspect|breakpoint|expressions|not used|unused|later|todo", re.IGNORECASE)
+
+
+def _computed_of(value: Expr) -> set[Variable]:
+    """The locals that are arguments of the calls of a value; none if it can have an effect or read a device."""
+    found: set[Variable] = set()
+    for p in parts(value):
+        match p:
+            case Call(function=function, arguments=arguments) if _only_computes(function):
+                for argument in arguments:
+                    lvalue = _value(argument)
+                    if lvalue is not None and isinstance(lvalue.root, Variable) and not lvalue.indices:
+                        found.add(lvalue.root)
+            case LValue(root=Variable(volatile=False), volatile=False):
+                pass
+            case Call() | CallPointer() | RegisterLoad() | RegisterAt() | LValue():
+                return set()
+    return found
+
+
+def _only_computes(function: Function, above: frozenset[str] = frozenset()) -> bool:
+    """Whether a function does nothing but return a value: it sets only its own locals, and takes no time to wait."""
+    if function.extern:
+        return function.name in _VALUES_ONLY
+    if not function.body or function.path in above:
+        return False
+    for s in statements(function.body):
+        match s:
+            case Assign(target=LValue(root=Variable(kind=kind))) | CopyStruct(target=LValue(root=Variable(kind=kind))):
+                if kind == "global":
+                    return False
+            case Assign() | CopyStruct() | While(body=[]) | For(body=[]):
+                return False
+    for node in within(function.body):
+        match node:
+            case RegisterLoad() | RegisterRef() | RegisterAt() | CallPointer():
+                return False
+            case LValue(root=root) if volatile(node) or (isinstance(root, Expr) and not _of_pointer(root)):
+                return False
+            case Call(function=called):
+                if not _only_computes(called, above | {function.path}):
+                    return False
+    return True
+
+
+def _of_pointer(root: Expr) -> bool:
+    """Whether an object is one that a pointer leads to; not one at an address by number."""
+    return isinstance(bare(root), Load) and not isinstance(bare(root).ctype, IntType)
+
+
+def _stepped(s: Stmt) -> Variable | None:
+    """The variable that a statement counts."""
+    match s:
+        case For(variable=LValue(root=Variable() as counter)):
+            return counter
+        case Assign(target=LValue(root=Variable() as counter, indices=[]), value=value):
+            return counter if _harmless(counter, value) and not isinstance(bare(value), Const) else None
+    return None
 
 
 def _for_effect(value: Expr) -> bool:

@@ -5,8 +5,11 @@ The ways through each function are those of ISO C99 6.8.4.2 (switch), 6.8.5 (loo
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from hil.image import Build
 from tests.emulator.c28x.readers.c.workshop import findings_of
 
 HEAD = (
@@ -220,3 +223,68 @@ def test_cases_behind_the_default_are_taken() -> None:
     assert "unreachable" not in told(
         "{ int x = 0; switch (n) { default: x = 3; case 1: x += 4; break; case 2: x = 9; } return x; }"
     )
+
+
+#: Small functions that only compute, and some that do more.
+COMPUTING = """#include <math.h>
+volatile float out; volatile int port; float kept;
+static float limit(float x, float low, float high) { if (x < low) return low; if (x > high) return high; return x; }
+static float wrap(float x) { while (x > 180.0f) x -= 360.0f; return x; }
+static int mean(const int *v, int n)
+{ int k; long sum = 0; for (k = 0; k < n; k++) sum += v[k]; return (int)(sum / n); }
+static float filtered(float x) { kept += 0.1f * (x - kept); return kept; }
+static float slow(float x) { static float was; was += 0.1f * (x - was); return was; }
+static float ask(float x) { return port ? x : 0.0f; }
+static float wait(float x) { long k; for (k = 0; k < 1000; k++) ; return x; }
+static int at(unsigned long base) { return *(volatile int *)(base + 2); }
+#define LOG(x)
+void f(float turn)
+{
+    float command = 0.0f;
+%s
+}
+"""
+#: The text of a body, in which line 17 makes a copy that nothing reads.
+FORGOTTEN = [
+    "    turn = 2.0f * turn;\n    command = limit(turn, -1.0f, 1.0f);\n    out = 1.0f - turn;",
+    "    for (;;) {\n    command = limit(wrap(turn), -1.0f, 1.0f);\n    out = turn; turn = out; }",
+    "    turn *= 2.0f;\n    command = 0.5f * wrap(turn);\n    if (turn > 3.0f) out = turn;",
+    "    {\n    float soft = limit(turn, -1.0f, 1.0f);\n    out = turn; } out = command;",
+    "    turn *= 2.0f;\n    command = fabs(turn);\n    out = turn;",
+]
+#: It is read, made for an effect or for a debugger, or what it was made of is not used later.
+MEANT = [
+    "    turn *= 2.0f;\n    command = limit(turn, -1.0f, 1.0f);\n    out = command;",
+    "    turn *= 2.0f;\n    command = limit(turn, -1.0f, 1.0f);\n    (void)command; out = turn;",
+    "    turn *= 2.0f;\n    command = limit(turn, -1.0f, 1.0f);   /* for the debugger */\n    out = turn;",
+    "    turn *= 2.0f;\n    command = limit(turn, -1.0f, 1.0f);\n    LOG(command); out = turn;",
+    "#if 0\n    out = command;\n#endif\n    command = limit(turn, -1.0f, 1.0f); out = turn;",
+    "    turn *= 2.0f;\n    command = filtered(turn);\n    out = turn;",
+    "    turn *= 2.0f;\n    command = ask(turn);\n    out = turn;",
+    "    turn *= 2.0f;\n    command = wait(turn);\n    out = turn;",
+    "    out = turn;\n    command = limit(turn, -1.0f, 1.0f);\n    out = 0;",
+    "    turn *= 2.0f;\n    command = limit(turn, -1.0f, 1.0f);\n    out = turn; for (;;) ;",
+    "    {\n    float dummy = limit(turn, -1.0f, 1.0f);\n    out = turn; } out = command;",
+    "    {\n    volatile float seen = limit(turn, -1.0f, 1.0f);\n    out = turn; } out = command;",
+    "    { int v[3] = {1, port, 2}, m;\n    m = mean(v, 3);\n    out = v[1]; } out = command;",
+    "    { unsigned long base = 0x5E00; int was;\n    was = at(base);\n    out = base; } out = command;",
+    "    { int k; for (k = 0; k < 9; k++)\n    command = wrap(k);\n    out = k; }",
+    "    turn *= 2.0f;\n    command = slow(turn);\n    out = turn;",
+]
+
+
+def dead_stores(folder: Path, body: str) -> list[int]:
+    """The lines of dead stores in a file: the check also looks at its text."""
+    (folder / "a.c").write_text(COMPUTING % body, encoding="utf-8")
+    found = Build([str(folder / "a.c")]).compiled.findings
+    return [f.place.line for f in found if f.rule == "dead-store" and f.place is not None]
+
+
+@pytest.mark.parametrize("body", FORGOTTEN)
+def test_a_computed_copy_that_is_forgotten_is_a_dead_store(tmp_path: Path, body: str) -> None:
+    assert dead_stores(tmp_path, body) == [17]
+
+
+@pytest.mark.parametrize("body", MEANT)
+def test_what_a_function_returns_may_be_left(tmp_path: Path, body: str) -> None:
+    assert dead_stores(tmp_path, body) == []
