@@ -68,7 +68,9 @@ not reported if a test of the state, or of what is set beside it, comes before, 
 start of `main` sets the last state.
 
 So is a number that a test lets too far: `if (n <= 8) line[n++] = c;` for a line of eight, and for `if (n < 8)` with
-`line[n] = 0;` behind it. It is not reported if another test asks for the number, or in a loop with a number of turns.
+`line[n] = 0;` behind it, and for `if (step <= 4) { wanted = steps[step].wanted; if (elapsed >= steps[step].seconds)
+step++; }` with four steps; the further test must not ask for a mark of the end in an element. It is not reported if
+another test asks for the number, or in a loop with a number of turns.
 A test of another function that then sets the number back in any case does not count (`if (n == 8) serve(); n = 0;`).
 
 A search in a constant table (`while (k < 9 && code > Codes[k]) k++;`) may end behind it, so `Codes[k]` behind the loop

@@ -9,10 +9,13 @@
     ...
     Line[Length] = '\\0';
 
+    if (step <= STEPS) { wanted = steps[step].wanted; if (elapsed >= steps[step].seconds) step++; }
+
 The number is only counted up by 1 behind one test, and set to constants; no other test asks for it, or only another
-function that sets it back then in any case.  So it reaches the limit, and one more behind it.  Silent in loops with a
-number of turns: these may be fewer than the limit.  For an object at file scope the check needs the source of a whole
-program (one with a `main`).
+function that sets it back then in any case.  So it reaches the limit, and one more behind it.  If it is counted behind
+a further test, only the elements that are used before it count; silent if that test may find a mark of the end in an
+element (`if (steps[step].seconds != 0) step++;`).  Silent in loops with a number of turns: these may be fewer than the
+limit.  For an object at file scope the check needs the source of a whole program (one with a `main`).
 """
 
 from __future__ import annotations
@@ -32,6 +35,8 @@ from emulator.c28x.tree import (
     AddressOf,
     Assign,
     Break,
+    Call,
+    CallPointer,
     Compare,
     Conditional,
     Continue,
@@ -43,6 +48,7 @@ from emulator.c28x.tree import (
     Jump,
     LeaveSwitch,
     Load,
+    Logic,
     LValue,
     Not,
     Return,
@@ -74,6 +80,10 @@ class _Gate(NamedTuple):
     number: NamedScalar
     limit: int
     body: list[Stmt]
+    #: The body counts it only behind further tests.
+    further: bool = False
+    #: The identities of those of them that only ask for elements.
+    of_elements: frozenset[int] = frozenset()
 
 
 class _Beyond(NamedTuple):
@@ -133,6 +143,64 @@ def _gates(function: Function) -> Iterator[_Gate]:
                         continue
                     if any(_steps(x, number) for x in body):
                         yield _Gate(function, test, number, limit, body)
+                    elif (tests := _counted_behind(body, number)) is not None:
+                        asked = frozenset(id(p) for e in tests for p in parts(e) if _only_of_element(p, number))
+                        yield _Gate(function, test, number, limit, body, further=True, of_elements=asked)
+
+
+def _counted_behind(body: list[Stmt], number: NamedScalar) -> tuple[Expr, ...] | None:
+    """The further tests behind which a body counts a number, if none of them may find a mark of the end; or None.
+
+    If the body also sets it back, something else may end the count.
+    """
+    if any(_sets(s, number) for s, _ in _further(body)):
+        return None
+    for s, tests in _further(body):
+        if _steps(s, number):
+            return None if any(_finds_end(test, body) for test in tests) else tests
+    return None
+
+
+def _further(body: list[Stmt], tests: tuple[Expr, ...] = ()) -> Iterator[tuple[Stmt, tuple[Expr, ...]]]:
+    """The statements of a body and of the branches in it, each with the tests around it."""
+    for s in body:
+        yield s, tests
+        if isinstance(s, If):
+            for block in blocks(s):
+                yield from _further(block, (*tests, s.test))
+
+
+def _finds_end(test: Expr, body: list[Stmt]) -> bool:
+    """Whether a test may find a mark of the end in an element, or in a copy of it: it asks for one value of it.
+
+    The order of two values ends nothing.
+    """
+    copies = {s.target.text for s in body if isinstance(s, Assign) and isinstance(s.target, LValue)}
+    copies |= {s.variable.declaration.name for s in body if isinstance(s, Declare)}
+    match bare(test):
+        case Compare(op="<" | "<=" | ">" | ">=", left=left, right=right):
+            return any(constant_of(side) is not None and _reads_element(other, copies) for side, other in (
+                (left, right), (right, left),
+            ))  # fmt: skip
+        case Logic(operands=operands):
+            return any(_finds_end(each, body) for each in operands)
+    return _reads_element(test, copies)
+
+
+def _only_of_element(e: Any, number: NamedScalar) -> bool:
+    """Whether an expression is a comparison in which a number is nothing but a subscript."""
+    if not isinstance(e, Compare):
+        return False
+    within = {id(q) for p in parts(e) if isinstance(p, LValue) for i in p.indices for q in parts(i.expr)}
+    return all(id(p) in within for p in parts(e) if isinstance(p, LValue) and named_scalar(p) == number)
+
+
+def _reads_element(e: Expr, copies: set[str]) -> bool:
+    """Whether an expression reads an element, a result of a function, or one of some objects."""
+    return any(
+        isinstance(p, Call | CallPointer) or (isinstance(p, LValue) and bool(p.indices or p.text in copies))
+        for p in parts(e)
+    )
 
 
 def _sets_back(body: list[Stmt], lvalue: LValue) -> bool:
@@ -150,12 +218,12 @@ def _only_counted(gate: _Gate, functions: Iterable[Function], late: Set[int] = f
 
     `late`: the identities of tests that do not count.
     """
-    counted = {id(s) for s in gate.body}
+    counted = {id(s) for s, tests in _further(gate.body) if gate.further or not tests}
     for function in functions:
         for s in statements(function.body):
             nodes = own_nodes(s)
             for test in _tests(s, nodes):
-                if test is gate.test or id(test) in late:
+                if test is gate.test or id(test) in late or id(test) in gate.of_elements:
                     continue
                 if _has(test, gate.number) and not _about_nothing(test):
                     return False
@@ -219,6 +287,8 @@ def _beyond(gate: _Gate, function: Function) -> _Beyond | None:
     """An element that the number goes beyond, with the length of its array and the largest value of the number."""
     within = {id(x) for s in gate.body for block in blocks(s) for x in statements(block)}
     inside = _elements(gate, gate.body, within, gate.limit) if function is gate.function else iter(())
+    if gate.further:
+        return next(inside, None)
     return next(chain(inside, _elements(gate, function.body, within, gate.limit + 1)), None)
 
 

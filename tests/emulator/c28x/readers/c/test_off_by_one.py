@@ -10,7 +10,8 @@ HEAD = """typedef unsigned int Uint16;
 static char line[8];
 static struct { Uint16 used; char text[8]; } kept;
 static Uint16 n, m, more[9];
-volatile char in;
+volatile char in; volatile int port;
+static int Last(Uint16 at) { return line[at] == 0; }
 static void Obey(void) { in = line[0]; }
 """
 
@@ -31,6 +32,10 @@ def told(take: str, rest: str, main: str = "int main(void) { for (;;) Take(in); 
         ("if (n > 8) { n = 0; } line[n++] = c;", ""),
         ("if (n >= 9) return; line[n++] = c;", "void Clear(void) { n = 0; }"),
         ("if (kept.used <= 8) kept.text[kept.used++] = c; else kept.used = 0;", ""),
+        # It is counted behind a further test.
+        ("if (n <= 9) { in = more[n]; m++; if (m >= more[n]) { n++; m = 0; } } else in = 0;", ""),
+        ("if (in) { n = 0; } else if (n <= 8) { in = line[n]; if (in > m && port) n++; }", ""),
+        ("if (n > 8) n = 0; in = line[n]; if (c != 0) { if (port) n++; }", ""),
         # The end of the text.
         ("if (n < 8) line[n++] = c;", "void End(void) { line[n] = 0; n = 0; Obey(); }"),
         ("if (n < 8) { line[n++] = c; line[n] = 0; }", ""),
@@ -58,6 +63,18 @@ def test_one_element_too_many_is_told(take: str, rest: str) -> None:
         ("if (n >= 8) n = 0; line[n++] = c;", ""),
         ("if (n >= 8) return; line[n++] = c;", ""),
         ("if (n <= 8) more[n++] = c;", ""),
+        # It is counted behind a further test, no further than the last element.
+        ("if (n < 9) { in = more[n]; m++; if (m >= more[n]) { n++; m = 0; } } else in = 0;", ""),
+        ("if (n <= 9) { in = more[n]; if (n < 8 && port) n++; }", ""),
+        ("if (n <= 9) { if (port) n++; if (n < 9) in = more[n]; }", ""),
+        ("if (n <= 9) { in = more[n]; if (port) { n++; m--; if (m == 0) n = 0; } }", ""),
+        # A further test may find a mark in the last element.
+        ("if (n <= 9) { in = more[n]; if (more[n] != 0) n++; }", ""),
+        ("if (n <= 9) { in = more[n]; if (more[n]) n++; }", ""),
+        ("if (n <= 9) { in = more[n]; if (more[n] > 0 && port) n++; }", ""),
+        ("if (n <= 9) { m = more[n]; if (m != 0xFFFF) { if (port) n++; } }", ""),
+        ("if (n <= 9) { Uint16 length = more[n]; if (port && length) n++; }", ""),
+        ("if (n <= 9) { in = more[n]; if (Last(n)) n++; }", ""),
         # Another test ends the count.
         ("if (n <= 8) { line[n++] = c; if (n == 8) n = 0; }", ""),
         ("if (n <= 8) line[n++] = c;", "void Look(void) { if (n >= 8) { Obey(); n = 0; } }"),
