@@ -244,6 +244,12 @@ There are two forms:
   reported only if the list of cases seems meant to be complete: every case sets the same object, and one case sets it
   to the value that it has before the switch.
 
+The second form is reported before the program runs if the switch is over the result of a function that returns one
+constant without a case: `duty = FULL; switch (zone()) { case SLOW: duty = HALF; break; case FREE: break; }`, where
+`zone` returns STOP, too. A case that does nothing says there that the value stays. It is not reported if the value that
+stays is 0, if the name of the constant or a remark says that nothing needs to be done (`ZONE_NONE`), if anything else
+sets the object, or if another test asks for what decides the result.
+
 The finding is made when such a value comes, or where the source sets an object of an enumeration at file scope to a
 constant above all of its own, such as a constant of another enumeration. If the missing case leaves an object without a
 value, that is not reported a second time.

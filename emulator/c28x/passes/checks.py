@@ -32,6 +32,7 @@ from emulator.c28x.passes.given import GivenValues
 from emulator.c28x.passes.held import with_held_values
 from emulator.c28x.passes.interrupted import sides_of
 from emulator.c28x.passes.kept_flags import check_kept_flags, check_kept_marks
+from emulator.c28x.passes.left_out import check_left_out
 from emulator.c28x.passes.likes import check_likes
 from emulator.c28x.passes.lost_writes import check_lost_writes
 from emulator.c28x.passes.masked import check_masked
@@ -158,6 +159,7 @@ def check(
     check_cleared_early(modules, reports)
     check_dropped(modules, reports)
     check_lost_events(reports)
+    check_left_out(modules, reports)
     check_likes(modules, reports)
     check_messages(modules, reports)
     check_means(modules, reports)
