@@ -183,6 +183,12 @@ class Image:
         """What TI's `InitSysCtrl` does: every clock is on."""
         self.linked.externs["InitSysCtrl"]()
 
+    def let_interrupts_in(self) -> None:
+        """What an application does once its drivers have written their vectors: ENPIE = 1, EINT."""
+        if self.board.pie.has_routines:
+            self.board.pie.enable()
+            self.board.cpu.enable_interrupts()
+
     def call(self, path: str, arguments: Sequence[Any]) -> Any:
         """Call the function `module.name` with C values; what it raises leaves the image as it was before the call."""
         runtime = self.linked.runtime

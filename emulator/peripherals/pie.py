@@ -191,6 +191,15 @@ class Pie:
         """Whether a function runs when interrupt `vector_id` is taken."""
         return vector_id in self._vectors
 
+    @property
+    def has_routines(self) -> bool:
+        """Whether a vector is a function of the firmware."""
+        return any(begins is not None for _, begins in self._vectors.values())
+
+    def enable(self) -> None:
+        """Set ENPIE."""
+        self._write_PIECTRL(self._ctrl.value | 1)
+
     # --- the flow ----------------------------------------------------------------------------------------------------
 
     def _deliver(self, x: int) -> None:

@@ -8,6 +8,9 @@ The contract is not written down.  So a finding of a generated call counts fully
 * It comes in the circumstances that suit the function best: on a fresh image, after the functions that initialise (by
   their names), or after any one other function; the circumstances with the fewest findings count.
 
+If no file has a `main`, interrupts are let in after a function that initialises, as the application does: the routines
+of the driver run between its calls.
+
 All other findings are `how = "generated"`, notes that name the arguments.  The same holds for waits that only the
 outside of the chip, an interrupt or another function can end, and for all findings of calls if the files have a `main`,
 because this shows how the functions are used.
@@ -542,8 +545,12 @@ class CallChecker:
         before = computed(image)
         watch = self._limit_polls(image, candidate)
         try:
+            if self._prepares(candidate):
+                image.board.cpu.disable_interrupts()
             outcome.result = image.call(candidate.function.path, made)
             if settle:
+                if self.roles.main is None:
+                    image.let_interrupts_in()
                 clock.advance_to(clock.now + SETTLE_MS * CYCLES_PER_MS)
                 clock.request_attention()
         except TooLong:

@@ -1,0 +1,94 @@
+"""Interrupt routines of driver files without a `main`: they run between the calls, as in the application."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from hil.drivers.check import DriverFiles, check_files
+
+DRIVER = """#include "F28x_Project.h"
+#include "sampler.h"
+static volatile Uint32 Sum = 0;
+static volatile Uint16 Count = 0;
+static __interrupt void Sample(void)
+{
+    if (Count < 1000) {
+        Sum += AdcaResultRegs.ADCRESULT0;
+        Count++;
+    }
+    @clear
+    @acknowledge
+}
+void Sampler_Init(void)
+{
+    EALLOW;
+    CpuSysRegs.PCLKCR13.bit.ADC_A = 1;
+    CpuSysRegs.PCLKCR2.bit.EPWM4 = 1;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 0;
+    AdcaRegs.ADCCTL2.bit.PRESCALE = 6;
+    AdcSetMode(ADC_ADCA, ADC_RESOLUTION_12BIT, ADC_SIGNALMODE_SINGLE);
+    EALLOW;
+    AdcaRegs.ADCCTL1.bit.INTPULSEPOS = 1;
+    AdcaRegs.ADCCTL1.bit.ADCPWDNZ = 1;
+    DELAY_US(1000);
+    AdcaRegs.ADCSOC0CTL.bit.CHSEL = 3;
+    AdcaRegs.ADCSOC0CTL.bit.ACQPS = 139;
+    AdcaRegs.ADCSOC0CTL.bit.TRIGSEL = 11;
+    AdcaRegs.ADCINTSEL1N2.bit.INT1SEL = 0;
+    AdcaRegs.ADCINTSEL1N2.bit.INT1E = 1;
+    AdcaRegs.ADCINTFLGCLR.bit.ADCINT1 = 1;
+    PieVectTable.ADCA1_INT = &Sample;
+    EDIS;
+    EPwm4Regs.TBPRD = 4999;
+    EPwm4Regs.TBCTR = 0;
+    EPwm4Regs.TBCTL.bit.HSPCLKDIV = 0;
+    EPwm4Regs.TBCTL.bit.CLKDIV = 0;
+    EPwm4Regs.ETSEL.bit.SOCASEL = 2;
+    EPwm4Regs.ETPS.bit.SOCAPRD = 1;
+    EPwm4Regs.ETSEL.bit.SOCAEN = 1;
+    EPwm4Regs.TBCTL.bit.CTRMODE = 0;
+    EALLOW;
+    CpuSysRegs.PCLKCR0.bit.TBCLKSYNC = 1;
+    EDIS;
+    PieCtrlRegs.PIEIER1.bit.INTx1 = 1;
+    IER |= M_INT1;
+}
+Uint16 Sampler_Mean(void)
+{
+    Uint32 sum;
+    Uint16 n;
+
+    DINT;
+    sum = Sum;
+    n = Count;
+    Sum = 0;
+    Count = 0;
+    EINT;
+    return n == 0 ? 0 : (Uint16)(sum / n);
+}
+"""
+CLEAR = "AdcaRegs.ADCINTFLGCLR.bit.ADCINT1 = 1;"
+ACKNOWLEDGE = "PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;"
+
+
+def told(tmp_path: Path, *, clear: str = CLEAR, acknowledge: str = ACKNOWLEDGE) -> list[tuple[str, str]]:
+    """The rules of errors and warnings, each with the function in which it was found."""
+    file = tmp_path / "sampler.c"
+    file.write_text(DRIVER.replace("@clear", clear).replace("@acknowledge", acknowledge))
+    (tmp_path / "sampler.h").write_text("void Sampler_Init(void);\nUint16 Sampler_Mean(void);\n")
+    report = check_files(DriverFiles([file]))
+    return [
+        (each.rule, each.place.function if each.place else "") for each in report.findings if each.how != "generated"
+    ]  # fmt: skip
+
+
+def test_the_routine_of_a_driver_is_let_in_after_its_initialisation(tmp_path: Path) -> None:
+    """Its own Init leaves INTM and ENPIE to the application: until then conversions end, and nobody clears the flag."""
+    assert told(tmp_path) == []
+
+
+@pytest.mark.parametrize("wrong", ["clear", "acknowledge"])
+def test_a_flag_that_the_routine_leaves_is_told_at_the_routine(tmp_path: Path, wrong: str) -> None:
+    assert ("flag-not-cleared", "Sample") in told(tmp_path, **{wrong: ""})
