@@ -181,6 +181,10 @@ If the source limits the output on both sides and the integral on one, it is rep
 is missing. Not if the integral is added to or set back under a test of the error, or if the regulator is called under
 such a test, or in one state only: the error may be small there.
 
+So is an integral without any limit, if a function of the program or a conditional expression limits the output on both
+sides (`u = limit(KP * error + integral, U_MAX)`), and nothing else of the program reads or sets the integral: it is not
+set back, nor is the output fed back to it, nor does a test decide whether it is added to.
+
 **Fix:** limit the integral to the limits of the output, or add to it only while the output is within them.
 """,
         "K. J. Astrom, R. M. Murray, Feedback Systems, 11.4",

@@ -27,7 +27,7 @@ The result are the parts of regulators, by the identity of their expressions:
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Set
 from typing import Any, Final, NamedTuple
 
 from emulator.c28x.ctypes import FloatType, IntType
@@ -59,6 +59,8 @@ _LIMITERS: Final = frozenset({
     "fmin", "fmax", "fminf", "fmaxf", "fminl", "fmaxl", "__fmin", "__fmax", "__fsat", "_IQsat", "__IQsat", "__min",
     "__max", "__lmin", "__lmax",
 })  # fmt: skip
+#: Those that limit on both sides.
+_BOTH: Final = frozenset({"__fsat", "_IQsat", "__IQsat"})
 _ABOVE: Final = (">", ">=")
 _SIDES: Final = frozenset({"high", "low"})
 
@@ -107,25 +109,29 @@ def wind_up(functions: Iterable[Function]) -> dict[int, RegulatorPart]:
 def open_regulators(functions: Iterable[Function]) -> list[OpenRegulator]:
     """The regulators whose integral nothing limits, or not on both sides."""
     functions = list(functions)
-    sums = [found for function in functions for found in _sums(function)]
+    sums = [found for function in functions for found in integral_sums(function)]
     if not sums:
         return []
     keys = {key for found in sums for key in (found.key, found.held)}
     free = _unlimited(keys, functions, {id(found.value) for found in sums})
     sides = [(each, frozenset(free[each.key] & free[each.held])) for each in sums]
-    found = [_regulator(each, free_sides) for each, free_sides in sides if free_sides]
+    found = [regulator_of(each, free_sides) for each, free_sides in sides if free_sides]
     return [each for each in found if each is not None]
 
 
-def _sums(function: Function) -> Iterator[IntegralSum]:
-    """The statements of a function that add to an object which outlasts it, also in a local that is stored there."""
+def integral_sums(function: Function, lasting: Set[Variable] = frozenset()) -> Iterator[IntegralSum]:
+    """The statements of a function that add to an object which outlasts it, also in a local that is stored there.
+
+    `lasting`: locals that are taken for such objects.
+    """
     stored = _stored_locals(function)
     for target, value in given_values(function.body):
         held, summed = key_of(target), bare(value)
         target = stored.get(held or (), target)
         key, ctype = key_of(target), target.ctype
         signed = isinstance(ctype, FloatType) or (isinstance(ctype, IntType) and ctype.signed)
-        if not signed or target.indices or (isinstance(target.root, Variable) and target.root.plain):
+        passing = isinstance(target.root, Variable) and target.root.plain and target.root not in lasting
+        if not signed or target.indices or passing:
             continue
         if key is None or held is None or not isinstance(summed, Binary) or summed.op != "+":
             continue
@@ -177,7 +183,7 @@ def _mentions(e: Any, key: Key) -> bool:
     return any(isinstance(p, Load) and key_of(p.lvalue) == key for p in parts(e))
 
 
-def _regulator(added: IntegralSum, sides: frozenset[str]) -> OpenRegulator | None:
+def regulator_of(added: IntegralSum, sides: frozenset[str]) -> OpenRegulator | None:
     """The regulator that has this integral."""
     function = added.function
     error = numbers_in(added.addend)
@@ -243,6 +249,60 @@ def limited_operand(e: Any) -> Expr | None:
                         if any(_same(side, each) for each in chosen) and not isinstance(bare(side), Const):
                             return bare(side)
     return None
+
+
+def limited_sides(e: Any) -> set[str]:
+    """On which sides a call or a conditional expression limits a value for certain: `high`, `low`."""
+    if isinstance(e, Conditional):
+        operand = limited_operand(e)
+        return set() if operand is None else _chosen_sides(e, operand)
+    if not isinstance(e, Call):
+        return set()
+    function, at = e.function, _limiter(e.function)
+    if function.extern:
+        return set(_SIDES) if function.name in _BOTH else set()
+    if at is None:
+        return set()
+    parameter, found = function.parameters[at], set[str]()
+    for s in statements(function.body):
+        match s:
+            case If(test=Compare() as test, then=[Return(value=Expr() as value)]):
+                pass
+            case If(test=Compare() as test, then=[Assign(target=LValue(root=root), value=value)]) if root is parameter:
+                pass
+            case Return(value=Expr() as value):
+                found |= _chosen_sides(value, parameter)
+                continue
+            case _:
+                continue
+        side = _beyond(test, parameter)
+        if side and not any(isinstance(p, Load) and _is(p, parameter) for p in parts(value)):
+            found.add(side)
+    return found
+
+
+def _chosen_sides(e: Expr, of: Expr | Variable) -> set[str]:
+    """On which sides the conditional expressions in `e` replace a value."""
+    found = set[str]()
+    for p in parts(e):
+        if isinstance(p, Conditional) and isinstance(p.test, Compare) and (side := _beyond(p.test, of)):
+            then, otherwise = (any(_stands_for(of, q) for q in parts(each)) for each in (p.then, p.otherwise))
+            if then != otherwise:
+                found.add(side if otherwise else next(iter(_SIDES - {side})))
+    return found
+
+
+def _beyond(test: Compare, of: Expr | Variable) -> str:
+    """The side on which a value is where a comparison by order is true; empty: it does not compare it."""
+    if test.op not in ("==", "!="):
+        for side, above in ((test.left, test.op in _ABOVE), (test.right, test.op not in _ABOVE)):
+            if _stands_for(of, side):
+                return "high" if above else "low"
+    return ""
+
+
+def _stands_for(of: Expr | Variable, e: Any) -> bool:
+    return isinstance(e, Expr) and (_is(e, of) if isinstance(of, Variable) else _same(e, of))
 
 
 def _choices(e: Expr) -> list[Expr]:
