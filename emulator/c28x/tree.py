@@ -129,6 +129,8 @@ class Variable:
     nested: bool = False
     #: Its name in generated code, where another local of the function has the same C name.
     alias: str = ""
+    #: An object that only its own file, or its function, can name.
+    static: bool = field(default=False, kw_only=True, repr=False)
     #: Of a file-scope object that only names an address: the address.
     address: int | None = field(default=None, kw_only=True, repr=False)
     #: Pass `frame`: its offset in the function's frame, in words.

@@ -135,6 +135,9 @@ range of values that decides. Examples:
 * after a loop, its counter has the value that ended the loop: `while (n-- > 0)` decrements once more when it ends, so
   `n` is then -1 (or 65535) and never 0;
 * a counter at file scope is set to 0 and counted right before it is compared: each pass begins it anew;
+* a counter with a test that asks for more than it can reach: `if (age < LIMIT) age++; if (age > LIMIT)`; one that each
+  call sets to 0 before its only step; one that nobody counts, only sets to 0 (all statements that set it are known: it
+  is `static`, or the program has a `main`);
 * after `if (t > low) ... else if (t < high)` with `low < high` the second test is always true, so the band between the
   two limits is none (the exact complement, `else if (t <= low)`, is not reported); after `if (t > 10) ... else if
   (t > 20)` it is always false;

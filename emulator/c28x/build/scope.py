@@ -131,7 +131,7 @@ class Builder:
         declared = Declaration(
             name, ctype, self.module.short, where.file, where.line, self.function.name, where.column
         )  # fmt: skip
-        variable = Variable(declared, ctype, "global")
+        variable = Variable(declared, ctype, "global", static=True)
         namesakes = self._static_namesakes[name]
         self._static_namesakes[name] += 1
         variable.alias = f"{self.function.name}__{name}" + (f"__{namesakes}" if namesakes else "")

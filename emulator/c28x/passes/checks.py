@@ -48,6 +48,7 @@ from emulator.c28x.passes.off_by_one import check_off_by_one
 from emulator.c28x.passes.one_sided import check_one_sided
 from emulator.c28x.passes.only_grows import check_only_grows
 from emulator.c28x.passes.open_integrals import check_open_integrals
+from emulator.c28x.passes.out_of_reach import check_out_of_reach
 from emulator.c28x.passes.port_writes import check_port_writes
 from emulator.c28x.passes.published import check_published
 from emulator.c28x.passes.quotients import check_quotients
@@ -135,6 +136,7 @@ def check(
         for function in module.functions:
             check_decided(function, report)
             check_begun_anew(function, report)
+    check_out_of_reach(modules, reports)
     check_begun_again(whole, of_whole)
     check_open_integrals(of_whole)
     check_one_sided(whole, of_whole)

@@ -50,9 +50,9 @@ STATIC = (
             "copied_socs", "copies", "decided", "digits", "drained", "dropped", "endless_waits",
             "entrances", "error_signs", "event_masks", "flow", "formats", "fraction_texts", "kept_flags", "left_out",
             "likes", "lost_writes", "means", "messages", "names", "narrow_stamps", "never_back", "never_updated",
-            "null_tests", "off_by_one", "one_sided", "only_grows", "published", "quotients", "released", "ring_back",
-            "search_end", "signs_of_life", "spans", "state_tables", "stated", "states", "stores", "tables", "undone",
-            "unlimited_lines", "unread_inputs", "values", "waiting",
+            "null_tests", "off_by_one", "one_sided", "only_grows", "out_of_reach", "published", "quotients", "released",
+            "ring_back", "search_end", "signs_of_life", "spans", "state_tables", "stated", "states", "stores", "tables",
+            "undone", "unlimited_lines", "unread_inputs", "values", "waiting",
         )
     ),
     "emulator/c28x/build/", "emulator/c28x/readers/",

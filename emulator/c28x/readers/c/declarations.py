@@ -212,6 +212,7 @@ class CDeclarationReader:
         variable.constant = variable.constant or "const" in qualifiers
         if "static" in node.storage:
             self.linkage.static.add(name)
+        variable.static = name in self.linkage.static
         if extern:
             if variable not in self.objects:
                 self.linkage.declared.setdefault(name, where)

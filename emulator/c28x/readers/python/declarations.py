@@ -264,7 +264,7 @@ class PythonDeclarationReader(PythonTypeReader):
             Declaration(
                 name, ctype, self.module.short, self.module.file, node.lineno, column=self.where(node).column
             ), ctype, "global",
-            initialised=node.value is not None,
+            initialised=node.value is not None, static=name.startswith("_"),
         )  # fmt: skip
         named = declared.node.id if isinstance(declared.node, ast.Name) else ""
         symbol = self.module.symbols.get(named)
