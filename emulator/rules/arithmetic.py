@@ -52,6 +52,9 @@ seconds, before `rest_ms = seconds * 1000U`; the one that lets results of the AD
 `(long) (raw << 5)`; a mask of 12 bits that 16 bits do not hold after `<< 12`. If the result is divided or compared,
 this is `unsigned-wrap`; if it is signed, `overflow`. Values behind a further test of them are not reported.
 
+A product of 16 bits is reported beside one of the same sum that is widened first and has the same form:
+`(long) a[0] * a[0] + a[1] * a[1]`, `(long) x * x + y * y`. Nothing is said if the function compares `a[1]` by order.
+
 A difference that its name calls an error (`long error = SET - measured;` with a `Uint16 measured`) is reported before
 the program runs, unless the function compares the two: above the set point it is some 65000.
 

@@ -33,6 +33,7 @@ from emulator.c28x.passes.held import with_held_values
 from emulator.c28x.passes.interrupted import sides_of
 from emulator.c28x.passes.kept_flags import check_kept_flags, check_kept_marks
 from emulator.c28x.passes.left_out import check_left_out
+from emulator.c28x.passes.like_products import check_like_products
 from emulator.c28x.passes.likes import check_likes
 from emulator.c28x.passes.lost_writes import check_lost_writes
 from emulator.c28x.passes.masked import check_masked
@@ -227,5 +228,6 @@ def _of_function(function: Function) -> list[StaticFinding]:
     check_endless_waits(function, report)
     check_clamps(function, report)
     check_digits(function, report)
+    check_like_products(function, report)
     NullTests(function, report).run()
     return found
