@@ -141,8 +141,7 @@ class Connections:
         modules = list(self._linked.program.modules.values())
         if not any(f.name == "main" and f.body for module in modules for f in module.functions):
             return  # not a whole program
-        blocks = (*self._chip.blocks.values(), self._chip.vectors.registers)
-        self._source = RegisterWrites(modules, blocks)
+        self._read(modules)
         self._adc_triggers()
         self._polled_conversions()
         self._adc_inputs()
@@ -180,7 +179,25 @@ class Connections:
         self._outputs()
         self._driven_inputs()
 
+    def contradictions(self) -> None:
+        """Report settings of driver files without a `main` that have no effect whatever an application does besides.
+
+        Call it once the functions that initialise have been called.
+        """
+        self._read(list(self._linked.program.modules.values()))
+        for group in range(1, 13):
+            for n in range(1, 17):
+                register, field = f"PieCtrlRegs.PIEIER{group}", f"INTx{n}"
+                place = self._wanting(register, field) if self._chip.pie.enabled(group, n) else None
+                # Its routine may be given to a function of these files that nobody has called.
+                if place is not None and not self._writes(f"PieVectTable.{self._chip.vectors.entry(group, n)}"):
+                    self._other_line(place, group, n)
+        self._loads()
+
     # The source
+
+    def _read(self, modules: list[Module]) -> None:
+        self._source = RegisterWrites(modules, (*self._chip.blocks.values(), self._chip.vectors.registers))
 
     def _writes(self, register: str) -> bool:
         """Whether any statement assigns to a register by its name."""

@@ -1,8 +1,8 @@
 """The values that a program's source can write to registers.  They are read from its typed tree.
 
 Only functions that can run count: `main`, interrupt routines, and all functions that these call or name (a task, an
-entry of a table).  A parameter has the values that its calls pass.  A pointer to a block points to the blocks that the
-program puts there (`object_values.py`).
+entry of a table); without a `main`, all.  A parameter has the values that its calls pass.  A pointer to a block points
+to the blocks that the program puts there (`object_values.py`).
 """
 
 from __future__ import annotations
@@ -194,7 +194,8 @@ class RegisterWrites:
             for module in modules for variable in module.variables for value in variable.initial or ()
             for part in parts(value) if isinstance(part, FunctionRef)
         }  # fmt: skip
-        first = [f.path for f in own.values() if f.name == "main" or f.interrupt or f.path in named]
+        whole = any(f.name == "main" for f in own.values())
+        first = [f.path for f in own.values() if not whole or f.name == "main" or f.interrupt or f.path in named]
 
         def leads(path: str) -> set[str]:
             if path not in own:

@@ -244,6 +244,8 @@ class CallChecker:
         self._reserve = 0
         if not self._budget.over:
             self._walk()
+            if self.roles.main is None:
+                self._contradictions()
         progress(1.0)
         return list(self.found.values())
 
@@ -397,6 +399,21 @@ class CallChecker:
                 prepared = None
         if prepared is not None:
             prepared.close()
+
+    def _contradictions(self) -> None:
+        """Look at the chip behind all functions that initialise: settings that contradict each other."""
+        prepared = self._prepared(self._initialising(None, _SIZES[0]), settle=False, started=self._started)
+        if prepared is None:
+            return
+        board = prepared.image.board
+        before = {key_of(finding) for finding in board.findings}
+        if board.connections is not None:
+            board.connections.contradictions()
+        for finding in board.findings:
+            here = anchored(finding, self._others) if key_of(finding) not in before else None
+            if here is not None:
+                self._add_finding(key_of(here), here)
+        prepared.close()
 
     def _initialising(self, besides: Candidate | None, size: int) -> tuple[Step, ...]:
         """Calls of the initialising functions: first those that switch clocks on, then those that set pins."""

@@ -1,4 +1,4 @@
-"""Interrupt routines of driver files without a `main`: they run between the calls, as in the application."""
+"""Driver files without a `main`: interrupt routines run between the calls, and settings that contradict each other."""
 
 from __future__ import annotations
 
@@ -71,12 +71,16 @@ Uint16 Sampler_Mean(void)
 """
 CLEAR = "AdcaRegs.ADCINTFLGCLR.bit.ADCINT1 = 1;"
 ACKNOWLEDGE = "PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;"
+ENABLED = "PieCtrlRegs.PIEIER1.bit.INTx1 = 1;"
 
 
-def told(tmp_path: Path, *, clear: str = CLEAR, acknowledge: str = ACKNOWLEDGE) -> list[tuple[str, str]]:
+def told(
+    tmp_path: Path, *, clear: str = CLEAR, acknowledge: str = ACKNOWLEDGE, enabled: str = ENABLED, more: str = ""
+) -> list[tuple[str, str]]:
     """The rules of errors and warnings, each with the function in which it was found."""
     file = tmp_path / "sampler.c"
-    file.write_text(DRIVER.replace("@clear", clear).replace("@acknowledge", acknowledge))
+    text = DRIVER.replace("@clear", clear).replace("@acknowledge", acknowledge).replace(ENABLED, enabled)
+    file.write_text(text + more)
     (tmp_path / "sampler.h").write_text("void Sampler_Init(void);\nUint16 Sampler_Mean(void);\n")
     report = check_files(DriverFiles([file]))
     return [
@@ -92,3 +96,52 @@ def test_the_routine_of_a_driver_is_let_in_after_its_initialisation(tmp_path: Pa
 @pytest.mark.parametrize("wrong", ["clear", "acknowledge"])
 def test_a_flag_that_the_routine_leaves_is_told_at_the_routine(tmp_path: Path, wrong: str) -> None:
     assert ("flag-not-cleared", "Sample") in told(tmp_path, **{wrong: ""})
+
+
+OTHER = "PieCtrlRegs.PIEIER1.bit.INTx2 = 1;"
+GIVEN = """
+void Sampler_Attach(void (*routine)(void))
+{
+    EALLOW;
+    PieVectTable.ADCB1_INT = (PINT)routine;
+    EDIS;
+}
+"""
+
+
+def test_another_line_of_the_group_is_told(tmp_path: Path) -> None:
+    """HDR F2837xS_pievect.h: 1.1 is ADCA1, 1.2 is ADCB1."""
+    assert told(tmp_path, enabled=OTHER) == [("not-connected", "Sampler_Init")]
+
+
+@pytest.mark.parametrize(
+    ("enabled", "more"), [("", ""), (f"{ENABLED} {OTHER}", ""), (OTHER, GIVEN)], ids=["by-others", "both", "attached"]
+)
+def test_what_an_application_may_do_besides_is_not_told(tmp_path: Path, enabled: str, more: str) -> None:
+    """It may enable the line itself, have a routine of its own for the other one, or attach it."""
+    assert ("not-connected", "Sampler_Init") not in told(tmp_path, enabled=enabled, more=more)
+
+
+DUTY = """
+void Sampler_InitDuty(void)
+{
+    EPwm4Regs.CMPCTL.bit.SHDWAMODE = @shadow;
+    EPwm4Regs.CMPCTL.bit.LOADAMODE = @load;
+    EPwm4Regs.AQCTLA.bit.ZRO = 2;
+    EPwm4Regs.AQCTLA.bit.CAU = 1;
+}
+void Sampler_Duty(Uint16 duty)
+{
+    EPwm4Regs.CMPA.bit.CMPA = duty;
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("shadow", "load", "loads"), [(0, 3, False), (0, 0, True), (0, 2, True), (1, 3, True)],
+    ids=["frozen", "at-zero", "at-both", "immediate"],
+)  # fmt: skip
+def test_a_compare_that_is_never_loaded_is_told(tmp_path: Path, shadow: int, load: int, *, loads: bool) -> None:
+    """TRM, CMPCTL: LOADAMODE = 3 freezes the active register, unless SHDWAMODE = 1 writes it directly."""
+    more = DUTY.replace("@shadow", str(shadow)).replace("@load", str(load))
+    assert (("not-connected", "Sampler_InitDuty") in told(tmp_path, more=more)) is not loads
