@@ -54,13 +54,13 @@ class Rewriting(ABC):
             return node if len(new) == len(node) and all(map(is_, new, node)) else type(node)(new)
         if type(node) not in _FIELDS:
             return node
-        written = self.instead(node)
+        standing = written = self.instead(node)
         for name in _FIELDS.get(type(written), ()):
             old = getattr(written, name)
             part = self._node(old)
             if part is not old:
-                if written is node:
-                    written = copy(node)
+                if written is standing:  # it may be a node of the tree that is read, which stays as it is
+                    written = copy(standing)
                 setattr(written, name, part)
         if written is not node and isinstance(written, Stmt):
             written.nodes = None

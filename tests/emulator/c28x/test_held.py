@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from emulator.c28x.passes.held import with_held_values
-from emulator.c28x.tree import Assign, Declare, Evaluate, Expr, If, Return
+from emulator.c28x.tree import Assign, Call, Declare, Evaluate, Expr, If, Return
 from emulator.c28x.tree_queries import source_text, statements
 from tests.emulator.c28x.readers.c.workshop import findings_of, read
 
@@ -77,3 +77,16 @@ def rules(body: str) -> list[tuple[str, int]]:
 ])  # fmt: skip
 def test_members_and_held_values_are_told_like_objects_and_conditions(body: str, rule: str, *, wrong: bool) -> None:
     assert ((rule, 2) in rules(body)) == wrong
+
+
+def test_the_tree_that_is_read_stays_as_it_is() -> None:
+    body = "int a = count + 1; int b = a * 2; twice(b); return 0;"
+    modules = read({"drv.c": f"{HEAD}int f(int p) {{ {body} }}\n"}).translate()
+    declared = (s for s in modules[0].functions[-1].body if isinstance(s, Declare))
+    held = next(s for s in declared if s.variable.declaration.name == "b")
+    (module,) = with_held_values(modules)
+    (call,) = (s for s in module.functions[-1].body if isinstance(s, Evaluate))
+    assert isinstance(call.value, Call)
+    assert source_text(call.value.arguments[0]) == "(count + 1) * 2"
+    assert isinstance(held.value, Expr)
+    assert source_text(held.value) == "a * 2"
