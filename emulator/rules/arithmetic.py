@@ -346,6 +346,24 @@ The magnitude of a float is 0, or a whole number.
         how="static",
     ),
     _rule(
+        "angle-unwrapped",
+        Severity.WARNING,
+        "The difference of two headings is not brought back into one turn.",
+        """
+From 170 to -170 degrees the vehicle turns the long way round: the difference is -340, and not 20.
+
+A function of the file (`wrap`) brings an angle back into -180 to 180 degrees, or -pi to pi, and the heading is what it
+returns for its sum with a step. `error = wanted - heading;` is not passed through it, and is multiplied. The names say
+that an angle goes round (`heading`, `yaw`, `course`) and that the difference is the error of a regulator. Not reported:
+an error that is compared, changed, divided, or passed to any function, or its product that becomes a whole number or
+goes to a sine; a wanted angle that is compared, or that only constants, functions or copies of the heading set; a file
+in which another function has a turn or half of one as a constant.
+
+**Fix:** `error = wrap(wanted - heading);`
+""",
+        how="static",
+    ),
+    _rule(
         "division-by-zero",
         Severity.ERROR,
         "A number was divided by zero.",

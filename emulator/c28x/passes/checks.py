@@ -11,6 +11,7 @@ from typing import Any
 
 from emulator.c28x.passes.admitted import check_admitted
 from emulator.c28x.passes.anew import check_begun_anew
+from emulator.c28x.passes.angles import check_angles
 from emulator.c28x.passes.begun_again import check_begun_again
 from emulator.c28x.passes.clamps import check_clamps
 from emulator.c28x.passes.cleared import check_cleared
@@ -169,6 +170,7 @@ def check(
     check_narrow_stamps(modules, reports)
     check_quotients(reports, given)
     check_error_signs(modules, reports)
+    check_angles(modules, reports)
     check_stated(reports, given)
     check_fraction_texts(reports, given)
     check_spans(shown, shown_reports)

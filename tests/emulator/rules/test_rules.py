@@ -46,8 +46,8 @@ STATIC = (
     *(
         f"emulator/c28x/passes/{name}.py"
         for name in (
-            "admitted", "anew", "begun_again", "blocks", "checks", "clamps", "cleared", "cleared_early",
-            "copied_socs", "copies", "decided", "digits", "drained", "dropped", "endless_waits",
+            "admitted", "anew", "angles", "begun_again", "blocks", "checks", "clamps", "cleared",
+            "cleared_early", "copied_socs", "copies", "decided", "digits", "drained", "dropped", "endless_waits",
             "entrances", "error_signs", "event_masks", "flow", "formats", "fraction_texts", "kept_flags", "left_out",
             "like_products",
             "likes", "lost_writes", "means", "messages", "names", "narrow_stamps", "never_back", "never_updated",

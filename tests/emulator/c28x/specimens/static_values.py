@@ -1023,4 +1023,47 @@ def Joined(high: uint16, low: uint16, whole: int16) -> uint32:
 """,
         ("Joined", (1, 2, 0)),
     ),
+    static_pair(
+        "angle-unwrapped",
+        "the long way round",
+        """
+Heading: float32 = 0.0
+Wanted: float32 = 0.0
+Turn: float32 = 0.0
+def Wrap(angle: float32) -> float32:
+    if angle > 180.0:
+        return angle - 360.0
+    if angle < -180.0:
+        return angle + 360.0
+    return angle
+def Drive(turn: float32) -> None:
+    Turn = turn
+def Step(rate: float32, wanted: float32) -> None:
+    Wanted = wanted
+    Heading = Wrap(Heading + rate)
+    error: float32 = Wanted - Heading  # <-
+    turn: float32 = error * 0.02
+    Drive(turn)
+""",
+        """
+Heading: float32 = 0.0
+Wanted: float32 = 0.0
+Turn: float32 = 0.0
+def Wrap(angle: float32) -> float32:
+    if angle > 180.0:
+        return angle - 360.0
+    if angle < -180.0:
+        return angle + 360.0
+    return angle
+def Drive(turn: float32) -> None:
+    Turn = turn
+def Step(rate: float32, wanted: float32) -> None:
+    Wanted = wanted
+    Heading = Wrap(Heading + rate)
+    error: float32 = Wrap(Wanted - Heading)
+    turn: float32 = error * 0.02
+    Drive(turn)
+""",
+        ("Step", (1.0, 2.0)),
+    ),
 )
