@@ -56,11 +56,17 @@ class Crossbar:
         """Whether a pin carries the signal."""
         return any(self._mux(pin) == mux for pin, mux in routes.items())
 
-    def _nowhere(self, routes: Routes, what: str) -> str:
-        """Why no pin carries `what`: the function of its first pin instead; empty if a pin carries it."""
+    def _nowhere(self, routes: Routes, what: str, beside: Iterable[Routes] = ()) -> str:
+        """Why no pin carries `what`: the function of one of its pins instead; empty if a pin carries it.
+
+        It is the pin nearest to one that carries a signal of `beside`, those of the same module: boards have them side
+        by side.  If none does, it is the first.
+        """
         if self._carried(routes):
             return ""
-        pin, mux = next(iter(routes.items()))
+        carriers = [pin for other in beside for pin, mux in other.items() if self._mux(pin) == mux]
+        pin = min(routes, key=lambda pin: min((abs(pin - other) for other in carriers), default=0))
+        mux = routes[pin]
         return f"GPIO{pin} has function {self._mux(pin)}, where {what} is function {mux}"
 
     def _follow(self, routes: Iterable[int], follow: Callable[[], None]) -> None:
@@ -77,7 +83,7 @@ class Crossbar:
 
         def follow() -> None:
             bus.connected = all(map(self._carried, on_bus))
-            bus.missing = next(filter(None, (self._nowhere(routes, bus.name) for routes in lines)), "")
+            bus.missing = next(filter(None, (self._nowhere(routes, bus.name, lines) for routes in lines)), "")
 
         for routes in lines:
             self._follow(routes, follow)
@@ -92,7 +98,7 @@ class Crossbar:
         def follow() -> None:
             bus.simo, bus.somi, bus.connected = map(self._carried, on_bus)
             bus.no_simo, bus.no_somi, bus.missing = (
-                self._nowhere(routes, f"{line} of {bus.name}")
+                self._nowhere(routes, f"{line} of {bus.name}", lines)
                 for routes, line in zip(lines, ("SIMO", "SOMI", "CLK"), strict=True)
             )
 
@@ -176,8 +182,8 @@ class Crossbar:
                 if self._mux(pin_a) == a[pin_a] and self._mux(pin_b) == b[pin_b]:
                     stops.append(source.moved.connect(target.move))
                     stops.append(target.looked_at.connect(source.sync))
-            target.missing_a = self._nowhere(a, f"{target.name}A")
-            target.missing_b = self._nowhere(b, f"{target.name}B")
+            target.missing_a = self._nowhere(a, f"{target.name}A", (b,))
+            target.missing_b = self._nowhere(b, f"{target.name}B", (a,))
             lines.connect(self._carrier(a), self._carrier(b))
 
         self._follow({**a, **b}, follow)

@@ -292,6 +292,18 @@ def test_an_eqep_with_both_phases_on_pins_of_different_pairs_is_configured(chip:
     assert (chip.eqep[1].quadrature.missing_a, chip.eqep[1].quadrature.missing_b) == ("", "")
 
 
+@pytest.mark.parametrize(("wrong", "right"), [(0, 1), (5, 1)])
+def test_an_eqep_without_a_phase_names_the_pin_beside_the_other_phase(chip: Chip, wrong: int, right: int) -> None:
+    """GPIO20 carries A, so GPIO21 is meant for B (function 1; 5 is EPWM11B), not GPIO11, which may be an output."""
+    mux(chip, 20, 1)
+    mux(chip, 21, wrong)
+    quadrature = chip.eqep[1].quadrature
+    assert quadrature.missing_b == f"GPIO21 has function {wrong}, where EQEP1B is function {right}"
+    mux(chip, 21, right)
+    mux(chip, 20, 0)
+    assert quadrature.missing_a == f"GPIO20 has function 0, where EQEP1A is function {right}"
+
+
 def test_an_encoder_counts_only_on_muxed_pins(chip: Chip) -> None:
     write(chip, "CpuSysRegs", "PCLKCR4", 1)
     write(chip, "EQep1Regs", "QPOSMAX", 0xFFFFFFFF)
@@ -330,7 +342,8 @@ def test_spi_words_go_to_whatever_pins_are_muxed_to_them_and_to_the_bus_on_its_o
     # GPAMUX2 holds two bits for each of GPIO16 to 31: 1 for GPIO16 and 18 is 0b010001 (HDR pin_map).
     write(chip, "GpioCtrlRegs", "GPAMUX2", 0x11)
     assert (bus.missing, bus.connected, bus.simo) == ("", wired is None, wired is None)
-    assert bus.no_somi == "GPIO59 has function 0, where SOMI of SPI-A is function 15"
+    # The pin between them, not GPIO59: the other lines are there (DS, signal multiplexing: GPIO16 to 19).
+    assert bus.no_somi == "GPIO17 has function 0, where SOMI of SPI-A is function 1"
     write(chip, "GpioCtrlRegs", "GPAMUX2", 0x15)
     assert (bus.no_somi, bus.somi) == ("", wired is None)
     # GPBGMUX2 and GPBMUX2, likewise of GPIO48 to 63: 15 is 3 in each, for GPIO58, 59, 60 from bit 20 on.
