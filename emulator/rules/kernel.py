@@ -14,12 +14,13 @@ RULES: Final[tuple[Rule, ...]] = (
         "race", Severity.ERROR,
         "Two threads use an object without mutual exclusion: an update can be torn or lost.", """
 Two threads use the object, one of them writes, and nothing excludes them from each other. The threads are two tasks, a
-task and a Swi or Hwi, or `main` and an interrupt routine of a program without a kernel. There are two forms:
+task and a Swi or Hwi, or `main` and an interrupt routine of a program without a kernel. There are three forms:
 
 * Several scalars belong together (a structure, a frame). The higher thread interrupts the lower one between them, and
   the lower one continues with old and new values.
 * The lower thread reads and writes in one statement (`count = count + 1`), or uses a value and then
   clears it (`speed = pulses * 6; pulses = 0;`). A write of the higher thread in between is lost.
+* The object is a `long long`. No instruction moves its 64 bits at once.
 
 The detector uses the order of accesses, so the threads need not have met in this run. These are not reported:
 

@@ -609,5 +609,6 @@ def _again(test: Compare, copies: dict[Variable, set[Word]]) -> bool:
         lvalue = side.lvalue if isinstance(side, Load) else None
         root = lvalue.root if lvalue is not None else None
         place = _scalar(lvalue) if lvalue is not None else None
-        sides.append({place} if place is not None else copies.get(root, set()) if isinstance(root, Variable) else set())
+        copied = copies.get(root, set()) if isinstance(root, Variable) else set[Word]()
+        sides.append(copied if place is None else copied | {place})
     return bool(sides[0] & sides[1])

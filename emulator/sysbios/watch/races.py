@@ -117,6 +117,12 @@ def _stride(ctype: CType) -> int:
     return element.words if element is not None and element.leaves > 1 else 0
 
 
+def _words(shared: SharedObject, offset: int) -> int:
+    """The words of the scalar at a word of an object; 1 for a part of a structure that is no scalar of its own."""
+    leaf = shared.object.leaf(offset)
+    return 1 if leaf is None else leaf[1].words
+
+
 def _names_one(threads: Iterable[Thread], routines: Collection[str]) -> bool:
     """Whether one of two threads is one of these routines."""
     return any(isinstance(thread.what, Routine) and thread.what.name in routines for thread in threads)
@@ -235,7 +241,8 @@ class Races:
                 if not self._held_off(shared, offset, other, thread) and not self._reread(other, access):
                     self._conflict(shared, cell, offset, other, access)
             for other in by_time:
-                self._alone(shared, offset, other, access)
+                if not self._reread(other, access):
+                    self._alone(shared, offset, other, access)
         cell.keep(thread, write, protection, statement, self._clock.now)
         if write:
             if cell.reader is thread and (cell.reader_statement == statement or self._locator.takes(statement)):
@@ -439,9 +446,9 @@ class Races:
         if lost or several:
             rule = "race"
         else:
-            leaf = shared.object.leaf(offset)
-            rule = "race-word" if leaf is None or leaf[1].words == 1 else "race-long"
-            if bare:
+            size = _words(shared, offset)
+            rule = "race-word" if size == 1 else "race-long" if size == 2 else "race"
+            if bare and size <= 2:
                 goes_on = rule == "race-word" and self._check_continued(shared, lower, higher)
                 if rule == "race-word" and not goes_on:
                     return  # a flag, counter or index: programs without a kernel rightly do it so
@@ -494,11 +501,11 @@ class Races:
 
     def _alone(self, shared: SharedObject, offset: int, other: LatestAccess, access: LatestAccess) -> None:
         """A read that only time keeps apart from a write: a 32-bit scalar by itself may be read in two halves."""
-        leaf = shared.object.leaf(offset)
-        if leaf is None or leaf[1].words == 1 or shared.rank >= _RANK["unmasked-long"]:
+        words = _words(shared, offset)
+        if words == 1 or shared.rank >= _RANK["unmasked-long"]:
             return
         shared.rank = _RANK["unmasked-long"]
-        said = self._sentence(shared, "unmasked-long", False, other.thread, access.thread, other)
+        said = self._sentence(shared, "unmasked-long", False, other.thread, access.thread, other, words=words)
         self._report(shared, "unmasked-long", said, access, other.statement)
 
     def _check_continued(self, shared: SharedObject, lower: LatestAccess, higher: LatestAccess) -> bool:
@@ -558,9 +565,12 @@ class Races:
 
     def _sentence(
         self, shared: SharedObject, rule: str, lost: bool, low: Thread, high: Thread, access: LatestAccess | None,
-        does: str = "writes",
+        does: str = "writes", *, words: int = 2,
     ) -> str:  # fmt: skip
-        """The message of a finding; `does`: what the other thread does.  If `access` is None, `low` only reads."""
+        """The message of a finding; `does`: what the other thread does.  If `access` is None, `low` only reads.
+
+        `words` is the size of the scalar, where that matters.
+        """
         if access is None:
             access = LatestAccess(low, False, low.protection, 0, 0, 0)
         verb = "writes" if access.write else "reads"
@@ -573,6 +583,8 @@ class Races:
             return said + f"{high} can interrupt {low} between related parts"
         if access.write and rule != "unmasked-long":
             return said + "the last write wins"
+        if words > 2:
+            return said + f"no instruction moves its {16 * words} bits at once"
         if rule in ("race-long", "unmasked-long"):
             return said + "it is atomic only while the compiler moves its 32 bits with one instruction"
         return said + "each access is atomic, but a second read may give another value"

@@ -17,6 +17,7 @@ volatile struct { Uint16 head; Uint16 tail; Uint16 words[8]; } Ring;
 volatile Uint32 Millis; volatile struct TIME Now; struct TIME Seen; Uint16 Words[8], Sum; Uint32 Copy;
 Uint16 Halves[2][4], Half; volatile Uint16 Full[2] = {1, 1}; Uint16 * volatile Fill = Halves[0];
 volatile struct { Uint16 running; int16 way; int32 togo, place, ramp; } Motor;
+volatile long long Odometer; long long Total;
 volatile struct ARM { Uint16 angle, speed, wanted, late; } Arm;
 """
 
@@ -155,6 +156,7 @@ def told(routine: str, turn: str, folder: Path) -> list[tuple[str, str]]:
          "Sum = Now.hours * 60; Ready = 1; Sum = Now.hours + Now.minutes; Ready = 0; Sum = Now.hours + Now.minutes;",
          [("race", "Now")]),
         ("Millis++;", "Copy = Millis;", [("unmasked-long", "Millis")]),
+        ("Odometer += 3;", "Total = Odometer;", [("race", "Odometer")]),  # no instruction moves 64 bits
         # By halves, in two accesses.
         ("Millis++;", "volatile Uint16 *half = (volatile Uint16 *)&Millis; Copy = half[0] | (Uint32)half[1] << 16;",
          [("race", "Millis")]),
@@ -185,6 +187,10 @@ def test_what_an_interrupt_can_come_into_is_told(
         ("Flags = 1;", "if (Flags) { Sum = Flags; Flags = 0; }"),
         ("Flags |= 1;", "DINT; Sum = Flags; Flags = 0; EINT;"),
         ("Count++; Millis++;", "DINT; Copy = Millis; Sum = Count; Millis = 0; Count = 0; EINT;"),
+        ("Odometer += 3;", "DINT; Total = Odometer; EINT;"),
+        ("Millis++;", "do { Copy = Millis; } while (Copy != Millis);"),
+        ("Odometer += 3;", "long long now; do { now = Odometer; } while (now != Odometer); Total = now;"),
+        ("if (Ready) { Odometer += 3; Ready = 0; }", "if (!Ready) { Total = Odometer; Ready = 1; }"),
         ("Count++;", "Sum = Count * 6; while (Count) { Sum++; Count = 0; }"),
         ("Count++;", "Sum = Count; Count = Sum - Sum + Words[0];"),  # set, not cleared
         ("Count++;", "Sum = Count; Words[0] = 0;"),
