@@ -423,7 +423,7 @@ def _compile(
                     # Each C file of a library defines the table of the other one that it uses: one table for all.
                     extension.extra_compile_args.append("-fcommon")
                     # Libraries find each other by capsules.  Else each call between the C files of one goes through a
-                    # table, because another library might replace the function: 1.04 to 1.06 times the pace.
+                    # table, because another library might replace the function: some 1.05 times the pace.
                     extension.extra_compile_args += ["-fvisibility=hidden", "-fno-plt"]
                     headers |= _read_headers_once(self.compiler, extension, work)
             _build_extensions(self, work, progress, levels, headers)

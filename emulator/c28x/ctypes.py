@@ -399,6 +399,15 @@ def usual(a: CType, b: CType) -> CType:
 NOBODY: Final = (0xFF, 0x7FFF, 0xFFFF)
 
 
+def counts_octets(length: int, left: int, element_words: int) -> bool:
+    """Whether the length of a block seems to count octets, though sizes count words of 16 bits here.
+
+    It is twice the words that are left of the object, or twice those of whole elements of 32 bits.
+    """
+    words, odd = divmod(length, 2)
+    return not odd and (words == left or (element_words == 2 and words % 2 == 0 and 0 < words <= left))
+
+
 def part_name(ctype: CType, offset: int) -> str:
     """The C name of the part at word `offset` of an object: `[3].X`; a later word of a scalar has its number."""
     if isinstance(ctype, ArrayType):

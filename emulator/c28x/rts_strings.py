@@ -10,7 +10,7 @@ from math import inf
 from typing import Final
 
 from emulator.c28x.ctypes import CHAR as _CHAR
-from emulator.c28x.ctypes import ArrayType, StructType, part_name
+from emulator.c28x.ctypes import ArrayType, StructType, counts_octets, part_name
 from emulator.c28x.heap_block import HeapBlock
 from emulator.c28x.memory import Pointer
 from emulator.c28x.rts_math import Mathematics
@@ -247,10 +247,7 @@ def _at(text: Pointer | None, index: int) -> Pointer | None:
 
 
 def _counted_in_octets(p: Pointer | None, n: int) -> bool:
-    """Whether `n` is twice the words from `p` to the end of its object, or twice those of whole 32-bit elements."""
-    if p is None or p.obj is None or n % 2:
+    if p is None or p.obj is None:
         return False
-    left = p.obj.words - p.offset
     element = p.obj.element
-    whole = element is not None and element.words == 2 and n % 4 == 0 and 0 < n // 2 <= left
-    return n // 2 == left or whole
+    return counts_octets(n, p.obj.words - p.offset, 0 if element is None else element.words)

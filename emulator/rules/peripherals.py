@@ -246,11 +246,11 @@ through pointers to registers, to blocks, or to structures that hold these. A pr
 that did not come in this run is not reported. The start-up runs once: a setting that it makes and takes back is
 missing.
 
-**Fix:** set the register that the finding names, or remove what waits for the event.
-
 Driver files without a `main` are only half of a program. Of them two of these connections are checked, which no
 application can put right: a line of `PIEIER` without a routine beside a routine whose line nothing enables, and a
 compare that is never loaded (`LOADAMODE = 3`).
+
+**Fix:** set the register that the finding names, or remove what waits for the event.
 """,
         "TRM ADC: SOC triggers; TRM ePWM: time base, counter compare, event trigger; TRM PIE, external interrupts",
     ),

@@ -562,8 +562,8 @@ class CallChecker:
         before = computed(image)
         watch = self._limit_polls(image, candidate)
         try:
-            if self._prepares(candidate):
-                image.board.cpu.disable_interrupts()
+            if self.roles.main is None and self._prepares(candidate):
+                image.board.cpu.disable_interrupts()  # as the application does before it lets them in
             outcome.result = image.call(candidate.function.path, made)
             if settle:
                 if self.roles.main is None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Final
 
-from emulator.c28x.ctypes import ArrayType, FloatType, IntType, PointerType, StructType
+from emulator.c28x.ctypes import ArrayType, FloatType, IntType, PointerType, StructType, counts_octets
 from emulator.c28x.passes.formats import format_of, shortest
 from emulator.c28x.tree import AddressOf, Call, Const, Convert, Expr, Load, LValue, PointerAdd, String, Variable
 from emulator.c28x.tree_queries import bare, calls, fixed_words, source_text
@@ -80,10 +80,7 @@ def _check_objects(name: str, blocks: list[Expr], length: int, report: Callable[
         return False
     block, left = longer[0]
     text = source_text(block)
-    # The same as at run time: the octets of what is there, or of whole numbers of 32 bits.
-    octets = length % 2 == 0 and any(
-        length // 2 == rest or (words == 2 and length % 4 == 0 and length // 2 <= rest) for _, (rest, words) in rests
-    )
+    octets = any(counts_octets(length, rest, words) for _, (rest, words) in rests)
     why = f"{length} counts octets; in 16-bit words it is {length // 2}" if octets else "sizes count 16-bit words here"
     message = f"{name} takes {length} words at {text}, an object with {left} words from there: {why}"
     report("memcpy-octets" if octets else "memcpy-outside", message, text)

@@ -37,8 +37,6 @@ from emulator.c28x.tree_queries import added, bare, own_nodes, statements
 
 #: The waits that return 0 if the time is over, and which of their arguments is the time.
 _WAITS: Final = {"Semaphore_pend": 1, "Mailbox_pend": 2, "Mailbox_post": 2, "Event_pend": 3}
-#: `BIOS_WAIT_FOREVER`.
-_FOREVER: Final = 0xFFFF
 #: Words of objects that only keep that something went wrong, in English, German and Spanish.
 _NOTES: Final = frozenset((
     "err", "error", "errors", "fault", "faults", "fail", "failed", "failure", "failures", "status", "state", "result",
@@ -77,10 +75,8 @@ def _asks(test: Expr, *, came: bool) -> tuple[Call | None, bool]:
                 if number == 0 or (number == 1 and _is_truth(side)):
                     return _asks(side, came=came == ((op == "==") == (number == 1)))
         case Call(function=Function(extern=True, name=name), arguments=arguments) as call if name in _WAITS:
-            time = arguments[-1]
-            # An own macro may be a choice of the build.
-            named = name_at(bare(time).where) == "BIOS_WAIT_FOREVER"
-            if named and len(arguments) == _WAITS[name] + 1 and constant_of(time) == _FOREVER:
+            # By its name: an own macro may be a choice of the build.
+            if len(arguments) == _WAITS[name] + 1 and name_at(bare(arguments[-1]).where) == "BIOS_WAIT_FOREVER":
                 return call, came
     return None, came
 

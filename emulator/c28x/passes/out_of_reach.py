@@ -55,6 +55,8 @@ from emulator.c28x.tree import (
     While,
 )  # fmt: skip
 from emulator.c28x.tree_queries import (
+    OPPOSITE,
+    TURNED,
     addressed,
     assigned,
     assigned_variables,
@@ -77,8 +79,7 @@ _NEVER: Final = frozenset((0x7F, 0xFF, 0x7FFF, 0xFFFF, 0x7FFFFFFF, 0xFFFFFFFF))
 _LEAST: Final = 2
 #: How often the bounds are made narrower.
 _ROUNDS: Final = 3
-_OPPOSITE: Final = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
-_TURNED: Final = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}
+_FAILS: Final = OPPOSITE | {"==": "!=", "!=": "=="}
 #: Functions that begin something once; the first state of a counter is no count that is begun again.
 _BEGINS: Final = re.compile(r"init|setup|config|open|main", re.IGNORECASE)
 _ASSERTS: Final = re.compile(r"assert|abort|panic|exit|unreachable|estop|impossible", re.IGNORECASE)
@@ -321,11 +322,11 @@ class _CounterWalk:
                 if calls(test):  # which may run behind a comparison
                     state = self._joined_with_others(state, runs=True)
             case Compare(op=op, left=left, right=right):
-                for side, other, turned in ((left, right, op), (right, left, _TURNED[op])):
+                for side, other, turned in ((left, right, op), (right, left, TURNED[op])):
                     v = _kept(side, state)
                     limits = interval(other, state) if isinstance(other.ctype, IntType) else None
                     if v is not None and limits is not None and self._bounded(v):
-                        state = _limit(state, v, turned if holds else _OPPOSITE[turned], limits)
+                        state = _limit(state, v, turned if holds else _FAILS[turned], limits)
             case _ if (v := _kept(test, state)) is not None and self._bounded(v):
                 state = _limit(state, v, "!=" if holds else "==", (0, 0))
         return state
@@ -346,7 +347,7 @@ class _CounterWalk:
                     self._tests(s, operand, state)
                     state = self._where(operand, state, holds=op == "and")
             case Compare(op=op, left=left, right=right) as compare:
-                for side, other, turned in ((left, right, op), (right, left, _TURNED[op])):
+                for side, other, turned in ((left, right, op), (right, left, TURNED[op])):
                     v = _kept(side, state)
                     limit = constant_of(other)
                     if v in self.counters and v is not None and limit is not None:
