@@ -57,6 +57,12 @@ value (`Alarms = (Alarms & ~LOW) | low`) or takes (`events = Events; Events = 0;
 changes others of them (`Alarms |= HIGH`), unless `main` goes by what the routine sets and masks none of that: it may
 always be done in time.
 
+So is a count that a function, also of a driver without a `main`, reads and clears (`way = travel; travel = 0;`) while a
+routine adds to it, if the interrupts are on between the two (`DINT; n = count; EINT; count = 0;`). Without any mask,
+another function must mask what the same routine writes. So are two objects of which the routine carries one into the
+other (`if (++ms >= 1000) { ms = 0; seconds++; }`), if they are read one by one (`seconds * 1000 + ms`). A function of a
+driver whose name, or the comment above it, has to do with interrupts may have a caller that masks them.
+
 Host tools see nothing: the host has none of these threads and locks.
 
 **Fix:** put both accesses under one gate, no longer than a copy; or mask the other thread; or hand the data over.
@@ -92,7 +98,8 @@ if the element is written first.
 `State = PULL; pulled_ms = 0;`, and a timer's routine does `if (++pulled_ms >= PULL_MS) State = HOLD;` in this state. If
 it comes between the two statements, it finds the count of the last time, and the state ends at once.
 
-The check reads the source of a whole program without a kernel. Not reported: a function that has switched interrupts
+The check reads the source of a whole program without a kernel; of a driver without a `main`, only for rings, and not if
+it asks whether the ring is idle (`in == out`). Not reported: a function that has switched interrupts
 off before (`DINT`, `..._disableInterrupt`, an enable bit), or whose caller has; an index that is written again behind
 the element; `ring[in++] = c`, whose order C leaves to the compiler; a count that something else sets back, too; a
 routine that serves a peripheral which `main` or a partner has to start.

@@ -31,7 +31,7 @@ from emulator.c28x.passes.fraction_texts import check_fraction_texts
 from emulator.c28x.passes.future_stamps import unreachable_exits
 from emulator.c28x.passes.given import GivenValues
 from emulator.c28x.passes.held import with_held_values
-from emulator.c28x.passes.interrupted import sides_of
+from emulator.c28x.passes.interrupted import driver_sides, sides_of
 from emulator.c28x.passes.kept_flags import check_kept_flags, check_kept_marks
 from emulator.c28x.passes.left_out import check_left_out
 from emulator.c28x.passes.like_products import check_like_products
@@ -52,7 +52,7 @@ from emulator.c28x.passes.only_grows import check_only_grows
 from emulator.c28x.passes.open_integrals import check_open_integrals
 from emulator.c28x.passes.out_of_reach import check_out_of_reach
 from emulator.c28x.passes.port_writes import check_port_writes
-from emulator.c28x.passes.published import check_published
+from emulator.c28x.passes.published import check_published, check_published_elements
 from emulator.c28x.passes.quotients import check_quotients
 from emulator.c28x.passes.released import check_read_in_time, check_released
 from emulator.c28x.passes.report import StaticFinding, StaticReport
@@ -68,6 +68,7 @@ from emulator.c28x.passes.stated import check_stated
 from emulator.c28x.passes.states import States
 from emulator.c28x.passes.stores import check_stores
 from emulator.c28x.passes.tables import check_tables
+from emulator.c28x.passes.taken_apart import check_taken_apart
 from emulator.c28x.passes.targets import with_targets
 from emulator.c28x.passes.timer_clock import check_timer_clocks
 from emulator.c28x.passes.undone import check_undone
@@ -160,6 +161,12 @@ def check(
         check_sent_buffers(sides)
         check_cleared(sides)
         check_lost_writes(sides)
+    else:
+        sides = driver_sides(modules, reports)
+        if sides is not None:
+            check_published_elements(sides)
+    if sides is not None:
+        check_taken_apart(sides)
     check_cleared_early(modules, reports)
     check_dropped(modules, reports)
     check_lost_events(reports)

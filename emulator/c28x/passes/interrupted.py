@@ -59,6 +59,14 @@ _ON: Final = re.compile(
 _ENABLES: Final = re.compile(r"IER|INTENA|FIENA|INTM|ENA\b|TIE\b")
 #: Registers and functions of what gives an interrupt only when `main` or a partner has begun something.
 _SERVED: Final = re.compile(r"(Sci|Spi|I2c|Can|ECap|EQep|XInt|Dma|Mcb|Usb)[a-z0-9]*(Regs|_)", re.IGNORECASE)
+#: Names of functions that the application calls before it lets interrupts in.
+_SETS_UP: Final = re.compile(r"init|setup|config|open|begin|start", re.IGNORECASE)
+#: Lines of a comment, or between a comment and its function.
+_COMMENT: Final = re.compile(r"\s*(?:#|//|/?\*|.*\*/\s*$|@|\w[\w \*]*$)")
+#: What a name or a comment says of a function that only a routine, or a caller with a mask, may call.
+_ASKS: Final = re.compile(
+    r"interrupt|\birqs?\b|isrs?\b|(?<![a-z])isr|mask|atomic|critical|lock|\bDINT\b|nested|unsafe", re.IGNORECASE
+)  # fmt: skip
 
 
 def place_of(lvalue: LValue) -> Place | None:
@@ -265,6 +273,45 @@ def sides_of(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> 
     called = below([p.function.path for s in statements(loop.body) for p in own_nodes(s) if isinstance(p, Call)], own)
     bodies = {main: loop.body, **{function: function.body for function in called if function.path not in inside}}
     return Sides(owners, own, bodies, routines)
+
+
+def driver_sides(modules: Iterable[Module], reports: dict[Module, StaticReport]) -> Sides | None:
+    """The two sides of a driver: what the application calls from its loop, and the routines; None with a `main`.
+
+    The application calls what sets the driver up before it lets interrupts in.  And a function that asks for
+    interrupts that are off, in its name or in the comment above it, has a caller that switches them off.
+    """
+    owners = {function: reports[module] for module in modules for function in module.functions}
+    own = {function.path: function for function in owners}
+    routines = [below([f.path], own) for f in owners if f.interrupt]
+    if not routines or any(function.name == "main" for function in owners):
+        return None
+    inside = {function.path for routine in routines for function in routine}
+    lines = {function: module.text.splitlines() for module in modules for function in module.functions}
+    asking = [f.path for f in owners if _SETS_UP.search(f.name) or _sets_up(f) or _asks_for_a_mask(f, lines[f])]
+    left_out = inside | {function.path for function in below(asking, own)}
+    bodies = {function: function.body for function in owners if function.path not in left_out}
+    return Sides(owners, own, bodies, routines)
+
+
+def _sets_up(function: Function) -> bool:
+    """Whether a function sets registers up that are protected, or lets an interrupt in for the first time."""
+    for s in statements(function.body):
+        if any(isinstance(p, Call) and p.function.name in ("EALLOW", "__eallow") for p in own_nodes(s)):
+            return True
+        if isinstance(s, Assign) and isinstance(s.target, RegisterRef) and register_text(s.target).startswith("IER"):
+            return True
+    return False
+
+
+def _asks_for_a_mask(function: Function, lines: list[str]) -> bool:
+    """Whether the name of a function, or the comment above it, has to do with interrupts."""
+    number = function.where.line - 2
+    comment: list[str] = []
+    while 0 <= number < len(lines) and _COMMENT.match(lines[number]):
+        comment.append(lines[number])
+        number -= 1
+    return any(_ASKS.search(each) for each in [function.name, *comment])
 
 
 def runs_always(sides: Sides, routine: list[Function]) -> bool:

@@ -13,8 +13,9 @@ In this state, the routine counts `pulled_ms` and leaves the state when the coun
 statements, it finds the count of the last time, and leaves the state at once.  Only a routine that runs all the time is
 meant: it counts a clock in each run.  One of a peripheral may not come before `main` has started that.
 
-The check needs a whole program without a kernel, in which the loop of `main` and a routine share the words.  It follows
-what a function switches off before, also in its callers.  The mirror is `released.py`.
+The check needs a whole program without a kernel, in which the loop of `main` and a routine share the words; the first
+form, a driver at least.  It follows what a function switches off before, also in its callers.  The mirror is
+`released.py`.
 """
 
 from __future__ import annotations
@@ -49,24 +50,43 @@ from emulator.c28x.tree import (
     Switch,
     Variable,
 )  # fmt: skip
-from emulator.c28x.tree_queries import all_blocks, bare, own_nodes, parts, source_text, statements
+from emulator.c28x.tree_queries import all_blocks, bare, own_nodes, parts, source_text, statements, within
 
 
 def check_published(sides: Sides) -> None:
     """Report the words that are written before the element, or the count, that belongs to them."""
-    guards = {index: rings for routine in sides.routines for index, rings in _guards(routine).items()}
+    guards = _all_guards(sides)
     timed = {found for routine in sides.routines if runs_always(sides, routine) for found in _timed(sides, routine)}
-    for function, body in sides.bodies.items() if guards or timed else ():
-        for s, later in _early(body, guards):
-            _report(
-                sides, function, s, f"is written before the element that it guards (line {later.line}): an interrupt "
-                "routine that comes in between takes an element which is not there yet",
-            )  # fmt: skip
+    _check_elements(sides, guards)
+    for function, body in sides.bodies.items() if timed else ():
         for s, later in _begun(sides, body, timed):
             count = source_text(Load(later.target.ctype, later.target)) if isinstance(later.target, LValue) else ""
             _report(
                 sides, function, s, f"is written before {count}, which says how long this state lasts (line "
                 f"{later.line}): an interrupt routine that comes in between goes by the count of the last time",
+            )  # fmt: skip
+
+
+def check_published_elements(sides: Sides) -> None:
+    """Report the words of a driver that are written before the element, unless it asks whether the ring is idle."""
+    guards = _all_guards(sides)
+    compared = {
+        place for body in sides.bodies.values() for p in within(body) if isinstance(p, Compare) and p.op in ("==", "!=")
+        for place in (scalar_of(p.left), scalar_of(p.right)) if place is not None
+    }  # fmt: skip
+    _check_elements(sides, {index: rings for index, rings in guards.items() if index not in compared})
+
+
+def _all_guards(sides: Sides) -> dict[Place, set[Place]]:
+    return {index: rings for routine in sides.routines for index, rings in _guards(routine).items()}
+
+
+def _check_elements(sides: Sides, guards: dict[Place, set[Place]]) -> None:
+    for function, body in sides.bodies.items() if guards else ():
+        for s, later in _early(body, guards):
+            _report(
+                sides, function, s, f"is written before the element that it guards (line {later.line}): an interrupt "
+                "routine that comes in between takes an element which is not there yet",
             )  # fmt: skip
 
 
