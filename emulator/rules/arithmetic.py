@@ -174,7 +174,8 @@ because the counter has wrapped between the two stamps. A comparison by order is
 difference: `if (now < last) d = 65536 - last + now;`.
 
 In three cases the source is enough. If a 16-bit counter is compared by order with a stamp and a number
-(`now < last + 20`), the sum wraps before the counter does. If no statement ever sets the stamp of a difference of 16
+(`now < last + 20`), the sum wraps before the counter does; so it does if a driver is given such a time (`Uint16 now`,
+`ticks`, `ms`) and keeps it in `last`. If no statement ever sets the stamp of a difference of 16
 bits, that is the time since the start: a time-out is over for ever, but for a moment in each round. If a program reads
 the clock and then, without a mask, a stamp that an interrupt routine sets (`now = Millis; ... now - Heard_ms > LIMIT`),
 the stamp can be later: the age is -1, which is greater than any limit. Read the stamp first, or mask both.

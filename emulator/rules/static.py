@@ -131,6 +131,7 @@ range of values that decides. Examples:
 * `25 < df < 90` compares 0 or 1 with 90;
 * an unsigned number is never below 0, a 16-bit `int` is never above 40000, a field of four bits is never 16;
 * `mode != 1 || mode != 2` is true for every mode;
+* a FIFO of an SCI, SPI or I2C holds 16 words: `TXFFST <= 16` is always true, and `while (TXFFST > 16)` never waits;
 * a local that starts at 0 and only counts up is never below 0; a loop with ten passes counts no more than 10;
 * after a loop, its counter has the value that ended the loop: `while (n-- > 0)` decrements once more when it ends, so
   `n` is then -1 (or 65535) and never 0;

@@ -30,6 +30,7 @@ from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.fraction_texts import check_fraction_texts
 from emulator.c28x.passes.future_stamps import unreachable_exits
 from emulator.c28x.passes.given import GivenValues
+from emulator.c28x.passes.given_times import check_given_times
 from emulator.c28x.passes.held import with_held_values
 from emulator.c28x.passes.interrupted import driver_sides, sides_of
 from emulator.c28x.passes.kept_flags import check_kept_flags, check_kept_marks
@@ -209,6 +210,7 @@ def check(
         text = source_text(compare)
         message = f"{text}: the end of the time wraps before the counter does, and the comparison is wrong then"
         owners[function].report(function, s.where, "stamp-compare", message, object=text)
+    check_given_times(modules, reports)
     check_young_stamps(modules, reports, stamps)
     check_image(modules, mentions, reports, entered, entries=bool(entries))
     check_timer_clocks(reports)

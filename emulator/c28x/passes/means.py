@@ -5,7 +5,8 @@
     if (++count == 256)
         zero = (float)sum / 256.0f;
 
-The number of readings that ends the count, or the loop, is also what the sum is divided by.  Each reading has up to 12
+The number of readings that ends the count, or the loop, is also what the sum, or a copy of it, is divided by; the sum
+times a number (`block.sum * VREF_MV / (4096 * 64)`) by a multiple of it.  Each reading has up to 12
 bits.  Silent up to 32 readings: then only voltages in the upper half of the range do not fit.  Silent if a statement
 does anything else with the sum than to add readings, to set it to a constant and to read it, or takes its bits.
 """
@@ -62,8 +63,12 @@ _RESULT: Final = re.compile(r"ADCRESULT\d+")
 _LEFT: Final = "AdcRegs"
 #: The largest reading.
 _MOST: Final = 4095
+#: Divisors that only make a voltage of a reading, or of a sum.
+_SCALES: Final = (4096, 65536)
 #: CHOICE: with so many readings, less than half of the range is enough to wrap.
 _LEAST: Final = 33
+#: CHOICE: how often a sum is copied on: to a structure, from there to the caller's, from there to a local.
+_COPIES: Final = 3
 
 
 class _Sum(NamedTuple):
@@ -83,15 +88,19 @@ def check_means(modules: Iterable[Module], reports: dict[Module, StaticReport]) 
     whole = any(function.name == "main" and function.body for function in owners)
     for one in [found for function in owners for found in _sums(function)]:
         holder, _ = one.total
-        alone = isinstance(holder, Variable) and holder.kind != "global"
-        if one.readings < _LEAST or not (alone or whole) or not _only_adds(one, owners):
+        counted = one.counter is None or (isinstance(one.counter[0], Variable) and one.counter[0].static)
+        alone = isinstance(holder, Variable) and (holder.kind != "global" or (holder.static and counted))
+        if one.readings < _LEAST or not (alone or whole):
             continue
-        at = next((s for function in owners for s in statements(function.body) if _divides(s, one)), None)
+        kept = _kept(one, owners)
+        if not _only_adds(one, owners, kept):
+            continue
+        at = next((s for function in owners for s in statements(function.body) if _divides(s, one, kept)), None)
         if at is not None and isinstance(one.statement, Assign) and isinstance(one.statement.target, LValue):
             name = one.statement.target.text
             message = (
-                f"{name} adds {one.readings} readings of up to {_MOST}, which line {at.where.line} divides by "
-                f"{one.readings}: 16 bits hold a mean of {0xFFFF // one.readings} at most"
+                f"{name} adds {one.readings} readings of up to {_MOST}, which line {at.where.line} divides by as "
+                f"many: 16 bits hold a mean of {0xFFFF // one.readings} at most"
             )
             owners[one.function].report(one.function, one.statement.where, "unsigned-wrap", message, object=name)
 
@@ -164,7 +173,19 @@ def _counted(block: list[Stmt]) -> tuple[NamedScalar, int] | None:
     return None
 
 
-def _only_adds(one: _Sum, functions: Iterable[Function]) -> bool:
+def _kept(one: _Sum, functions: Iterable[Function]) -> set[NamedScalar]:
+    """The sum, and the scalars that get it as it is."""
+    kept = {one.total}
+    copies = [(named_scalar(target), bare(value)) for f in functions for target, value in given_values(f.body)]
+    for _ in range(_COPIES):
+        kept |= {
+            to for to, value in copies
+            if to is not None and isinstance(value, Load) and named_scalar(value.lvalue) in kept
+        }  # fmt: skip
+    return kept
+
+
+def _only_adds(one: _Sum, functions: Iterable[Function], kept: set[NamedScalar]) -> bool:
     """Whether a program only adds to a sum, sets it back with its count, and does not take its bits."""
     for function in functions:
         for block in all_blocks(function.body):
@@ -182,9 +203,9 @@ def _only_adds(one: _Sum, functions: Iterable[Function]) -> bool:
             match p:
                 case AddressOf(lvalue=lvalue) if named_scalar(lvalue) in (one.total, one.counter):
                     return False
-                case Binary(op="&" | "|" | "^", left=left, right=right) if _is(left, one) or _is(right, one):
+                case Binary(op="&" | "|" | "^", left=left, right=right) if _is(left, kept) or _is(right, kept):
                     return False
-                case Unary(op="~", operand=operand) if _is(operand, one):
+                case Unary(op="~", operand=operand) if _is(operand, kept):
                     return False
     return True
 
@@ -206,24 +227,38 @@ def _changes_count(s: Stmt, count: NamedScalar) -> bool:
     return False
 
 
-def _divides(s: Stmt, one: _Sum) -> bool:
-    """Whether a statement divides a sum by the number of its readings."""
+def _divides(s: Stmt, one: _Sum, kept: set[NamedScalar]) -> bool:
+    """Whether a statement divides a sum by the number of its readings; or the sum times a number by a multiple."""
     for p in own_nodes(s):
         match p:
-            case Binary(op="/", left=left, right=right) if _is(left, one):
+            case Binary(op="/", left=left, right=right) if _is(left, kept):
                 by = bare(right)
                 if isinstance(by, Const) and by.value == one.readings:
                     return True
-            case Binary(op=">>", left=left, right=right) if _is(left, one):
+            case Binary(op="/", left=left, right=right) if _is_scaled(left, kept):
+                by = bare(right)
+                if isinstance(by, Const) and by.value not in _SCALES and by.value and by.value % one.readings == 0:
+                    return True
+            case Binary(op=">>", left=left, right=right) if _is(left, kept):
                 if 1 << (constant_of(right) or 0) == one.readings:
                     return True
-            case Binary(op="*", left=left, right=right) if _is(left, one):
+            case Binary(op="*", left=left, right=right) if _is(left, kept):
                 by = bare(right)
                 if isinstance(by, Const) and abs(by.value * one.readings - 1) < 1e-6:
                     return True
     return False
 
 
-def _is(e: Expr, one: _Sum) -> bool:
+def _is_scaled(e: Expr, kept: set[NamedScalar]) -> bool:
+    """Whether an expression is a sum times a number."""
+    match bare(e):
+        case Binary(op="*", left=left, right=right):
+            return (_is(left, kept) and isinstance(bare(right), Const)) or (
+                _is(right, kept) and isinstance(bare(left), Const)
+            )
+    return False
+
+
+def _is(e: Expr, kept: set[NamedScalar]) -> bool:
     inner = bare(e)
-    return isinstance(inner, Load) and named_scalar(inner.lvalue) == one.total
+    return isinstance(inner, Load) and named_scalar(inner.lvalue) in kept

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Iterator, Mapping
 from itertools import pairwise
 from math import ceil, floor, isfinite
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from emulator.c28x.arithmetic import COMPARE
 from emulator.c28x.ctypes import LONG_DOUBLE, NOBODY, UCHAR, FloatType, IntType, PointerType
@@ -26,6 +26,7 @@ from emulator.c28x.tree import (
     CopyStruct,
     Declare,
     Expr,
+    Field,
     For,
     Function,
     If,
@@ -34,7 +35,9 @@ from emulator.c28x.tree import (
     Logic,
     LValue,
     Not,
+    RegisterAt,
     RegisterLoad,
+    RegisterRef,
     Return,
     Stmt,
     Unary,
@@ -56,6 +59,9 @@ from emulator.c28x.tree_queries import (
     statements,
     within,
 )  # fmt: skip
+
+#: The most that a FIFO of an SCI, SPI or I2C holds (TRM, `TXFFST`).
+_FIFO_WORDS: Final = 16
 
 
 class ConstantChecks:
@@ -308,6 +314,8 @@ class ValueChecks(ConstantChecks):
                 return (value, value)
             case Convert(ctype=FloatType(), operand=operand):
                 return self.bounds(operand)
+        if _is_fifo_level(bare(e)):
+            return (0, _FIFO_WORDS)
         return interval(e, self.ranges) if isinstance(e.ctype, IntType) else None
 
     def compare(self, e: Compare) -> None:
@@ -518,6 +526,14 @@ def volatile(e: Expr | LValue) -> bool:
         or (isinstance(p, LValue) and (p.volatile or (isinstance(p.root, Variable) and p.root.volatile)))
         for p in parts(e)
     )
+
+
+def _is_fifo_level(e: Expr) -> bool:
+    """Whether an expression is how much a FIFO of an SCI, SPI or I2C holds."""
+    match e:
+        case RegisterLoad(register=RegisterRef(field=Field(name=name)) | RegisterAt(field=Field(name=name))):
+            return name in ("TXFFST", "RXFFST")
+    return False
 
 
 def _as_pattern(e: Const, to: IntType) -> bool:

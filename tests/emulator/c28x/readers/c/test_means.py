@@ -38,6 +38,8 @@ def told(tmp_path: Path, body: str, other: str = "") -> bool:
         "if (Taken < 256) { Sum += code; if (++Taken == 256) Zero = (float)Sum / 256.0f; }",
         "Sum += code; Count++; if (Count >= 64) { Mean = Sum / 64; Sum = 0; Count = 0; }",
         "Sum += code & 0x0FFF; if (++Count == 64) { Mean = Sum >> 6; Sum = 0; Count = 0; }",
+        "Sum += code; if (++Count >= 64) { Wide = Sum; Sum = 0; Count = 0; } Mean = Wide * 3000 / (4096UL * 64);",
+        "Sum += code; if (++Count >= 64) { Wide = Sum; Sum = 0; Count = 0; } Mean = Wide / 64;",
         "for (i = 0; i < 40; i++) { sum += AdcaResultRegs.ADCRESULT1; } Mean = sum / 40;",
     ],
 )
@@ -56,6 +58,8 @@ def test_a_sum_that_does_not_fit(tmp_path: Path, body: str) -> None:
         ("Sum += code; if (++Count == 64) { Mean = Sum & 63; Sum = Sum / 64; Count = 0; }", ""),
         ("Sum += code; if (Count % 16 == 0) { Mean = Sum / 16; Sum = 0; } if (++Count == 64) Count = 0;", ""),
         ("Sum += code; if (Count % 16 == 0) Sum = 0; if (++Count == 64) { Mean = Sum / 64; Count = 0; }", ""),
+        ("Sum += code; if (++Count >= 64) { Wide = Sum; Sum = 0; Count = 0; } Mean = Wide & 63; Zero = Wide / 64;", ""),
+        ("Sum += code; if (++Count >= 64) { Wide = Sum; Sum = 0; Count = 0; } Mean = Wide * 3000 / 4096UL / 10;", ""),
         ("Sum += code; Sum -= Mean; if (++Count == 64) Mean = Sum / 64;", ""),
         ("Sum += code; if (++Count == 64) { Count = 0; Mean = Sum ^ 0x5555; }", ""),
         ("for (i = 0; i < 64; i++) { sum = 0; sum += code; Mean = sum / 64; }", ""),

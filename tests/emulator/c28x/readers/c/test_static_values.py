@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from hil.image import Build
 from tests.emulator.c28x.readers.c.workshop import CWorkshop, findings_of
 
 
@@ -413,3 +416,23 @@ void f(int i)
 ])  # fmt: skip
 def test_a_stamp_that_is_narrower_than_its_clock(body: str, line: int) -> None:
     assert [at for rule, at in findings_of(STAMPS % body) if rule == "narrowed"] == [line] * bool(line)
+
+
+@pytest.mark.parametrize(
+    ("test", "constant"),
+    [
+        ("SciaRegs.SCIFFTX.bit.TXFFST <= 16", True),
+        ("SpiaRegs.SPIFFRX.bit.RXFFST > DEPTH", True),
+        ("I2caRegs.I2CFFTX.bit.TXFFST != 17", True),
+        ("SciaRegs.SCIFFTX.bit.TXFFST < 16", False),
+        ("SciaRegs.SCIFFTX.bit.TXFFST != DEPTH", False),
+        ("SciaRegs.SCIFFRX.bit.RXFFST >= DEPTH", False),
+        ("SciaRegs.SCIFFRX.bit.RXFFST > 0", False),
+        ("SciaRegs.SCIFFTX.bit.TXFFIL <= 16", False),
+    ],
+)
+def test_a_fifo_holds_16_words(tmp_path: Path, test: str, constant: bool) -> None:
+    file = tmp_path / "a.c"
+    head = '#include "F28x_Project.h"\n#define DEPTH 16\nint f(void)\n{\n'
+    file.write_text(f"{head}    if ({test}) return 1;\n    return 0;\n}}\n", encoding="utf-8")
+    assert ("constant-condition" in {f.rule for f in Build([str(file)]).compiled.findings}) is constant
