@@ -304,7 +304,8 @@ nothing.
 The check reports a loop only if the compiler may do this. The turns of a main loop that begin anew are a loop, too
 (`for (;;) { if (Ticks == seen) continue; ... }`): nothing else runs as long as the test holds. So are those in which no
 test holds (`for (;;) { if (Events > 0) { ... } }`). A function of the same file that does nothing but return a value
-(`while (Motor_Moving());`) hides nothing: the compiler may put that value in the place of the call. A loop that calls a
+(`while (Motor_Moving());`) hides nothing: the compiler may put that value in the place of the call. Nor does one that
+begins with a test and returns 0 (`if (!Take(&block)) continue;`, `if (Ready == 0) return 0;`). A loop that calls a
 function with an unknown body, or that writes through a pointer, is not reported. In files without a `main`, every
 function that others can call counts as another thread.
 

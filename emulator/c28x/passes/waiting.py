@@ -6,11 +6,12 @@ Nothing in such a loop writes the object, so the compiler may read it once, befo
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Set
+from collections.abc import Iterable, Iterator, Set
 from functools import cached_property
 from typing import NamedTuple
 
 from emulator.c28x.passes.report import StaticReport
+from emulator.c28x.passes.state_values import constant_of
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import (
     AddressOf,
@@ -153,7 +154,8 @@ def check_waiting(function: Function, threads: WriterAnalysis, report: StaticRep
     for loop in statements(function.body):
         if isinstance(loop, While | For):
             told: set[WordRange] = set()
-            for turning in (loop, *_continued(loop)):
+            turns = (loop, *_continued(loop))
+            for turning in (*turns, *_refused(turns, function, threads)):
                 for words, path in dict(_Loop(turning, function, threads).polled()).items():
                     found = threads.writer(words, function)
                     if found is None or words in told:
@@ -183,6 +185,31 @@ def _continued(loop: While | For) -> Iterator[While]:
                 case If(test=test, otherwise=[]):
                     others = [_untaken(other) for other in loop.body if other is not s]
                     yield While(s.where, Not(test.ctype, test), others)
+
+
+def _refused(turns: Iterable[While | For], function: Function, threads: WriterAnalysis) -> Iterator[While]:
+    """Turns that end at the first test of a function of the same file.
+
+    `while (!Take(&block));` with `int Take(BLOCK *to) { if (Ready == 0) return 0; ... }`: as long as the test holds,
+    nothing else of the function runs.
+    """
+    for turn in turns:
+        match turn:
+            case (
+                While(test=Not(operand=Call() as call))
+                | While(test=Compare(op="==", left=Call() as call, right=Const(value=0)))
+            ):  # fmt: skip
+                pass
+            case _:
+                continue
+        callee = threads.functions.get(call.function.path)
+        if callee is None or callee.module != function.module or any(isinstance(p, CallPointer) for p in parts(call)):
+            continue
+        first = next((s for s in callee.body if not isinstance(s, Declare) or s.value is not None), None)
+        match first:
+            case If(test=test, then=[Return(value=Expr() as value)]) if constant_of(value) == 0:
+                if all(v.kind == "global" for v in variables(parts(test))):
+                    yield While(turn.where, test, turn.body)
 
 
 def _untaken(s: Stmt) -> Stmt:

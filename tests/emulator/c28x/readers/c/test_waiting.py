@@ -186,3 +186,43 @@ void main(void)
 def test_a_test_in_the_last_loop_of_main_may_be_made_once(loop: str, told: bool) -> None:
     # As gcc 12 and clang 14 do with -O2: they read `events` once, and their loop is empty while it is 0.
     assert [(line, name) for _, line, _, name in waiting(MAIN_LOOP % loop)] == [(7, "drv.events")] * told
+
+
+TAKE = """#include "F28x_Project.h"
+int ready, other, data; volatile int vready;
+void elsewhere(void);
+interrupt void isr(void) { ready = other = vready = 1; data++; }
+static int Take(int *to)
+{
+    %s
+    *to = data;
+    return 1;
+}
+void main(void)
+{
+    int x;
+    for (;;) {
+        %s
+    }
+}
+"""
+
+
+@pytest.mark.parametrize(("take", "loop", "told"), [
+    ("if (ready == 0) return 0; ready = 0;", "if (!Take(&x)) continue; elsewhere();", True),
+    ("if (!ready) return 0; DINT; ready = 0; EINT;", "if (!Take(&x)) continue; elsewhere();", True),
+    ("if (!ready) return 0; ready = 0;", "if (Take(&x) == 0) continue; elsewhere();", True),
+    ("if (!ready) return 0; ready = 0;", "while (!Take(&x)) { } elsewhere();", True),
+    ("if (!ready) return 0; ready = 0;", "if (Take(&x)) elsewhere();", True),
+    # Volatile; another function runs first; what is returned goes on; the test is of a parameter.
+    ("if (vready == 0) return 0; vready = 0;", "if (!Take(&x)) continue; elsewhere();", False),
+    ("elsewhere(); if (ready == 0) return 0; ready = 0;", "if (!Take(&x)) continue; elsewhere();", False),
+    ("if (ready == 0) return 0; ready = 0;", "elsewhere(); if (!Take(&x)) continue;", False),
+    ("if (ready == 0) return 1; ready = 0;", "if (!Take(&x)) continue; elsewhere();", False),
+    ("if (*to == 0) return 0; ready = 0;", "if (!Take(&x)) continue; elsewhere();", False),
+    ("if (ready == 0) return 0; ready = 0;", "Take(&x); elsewhere();", False),
+])  # fmt: skip
+def test_a_function_that_begins_with_a_test(take: str, loop: str, told: bool) -> None:
+    # The loop, or that of `main` around it.
+    found = waiting(TAKE % (take, loop))
+    assert [name for *_, name in found] == ["drv.ready"] * told
