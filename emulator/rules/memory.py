@@ -178,9 +178,13 @@ uses the words.
 Typical: a function that returns its own array; a driver that keeps the address of a caller's buffer and sends it
 later.
 
+A function that ends with `Used = &own;` is reported before the program runs, if another function follows `Used` and
+does not set it, and nothing but assignments comes behind the store.
+
 **Fix:** make the buffer a file-scope object, or let the caller pass it and keep it until the driver is done.
 """,
         "ISO C 6.2.4 p2",
+        how="dynamic/static",
     ),
     _rule(
         "write-to-constant",

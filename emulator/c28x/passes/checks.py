@@ -34,6 +34,7 @@ from emulator.c28x.passes.given_times import check_given_times
 from emulator.c28x.passes.held import with_held_values
 from emulator.c28x.passes.interrupted import driver_sides, sides_of
 from emulator.c28x.passes.kept_flags import check_kept_flags, check_kept_marks
+from emulator.c28x.passes.left_behind import check_left_behind
 from emulator.c28x.passes.left_out import check_left_out
 from emulator.c28x.passes.like_products import check_like_products
 from emulator.c28x.passes.likes import check_likes
@@ -171,6 +172,7 @@ def check(
     check_cleared_early(modules, reports)
     check_dropped(modules, reports)
     check_lost_events(reports)
+    check_left_behind(modules, reports)
     check_left_out(modules, reports)
     check_likes(modules, reports)
     check_messages(modules, reports)

@@ -218,4 +218,25 @@ def Sum() -> int16:
 """,
         ("Sum", ()),
     ),
+    static_pair(
+        "dangling-pointer",
+        "a function leaves the address of its local behind",
+        """
+used: ptr[int16] = NULL
+def Defaults() -> void:
+    gain: int16 = 4
+    used = addressof(gain)  # <-
+def Gain() -> int16:
+    return 0 if used == NULL else used[0]
+""",
+        """
+used: ptr[int16] = NULL
+def Defaults() -> void:
+    gain: static[int16] = 4
+    used = addressof(gain)
+def Gain() -> int16:
+    return 0 if used == NULL else used[0]
+""",
+        ("Gain", ()),
+    ),
 )
