@@ -473,7 +473,7 @@ class QuadratureWire:
                 listener(edges, start, end)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, init=False)
 class SerialFrame:
     """One asynchronous character on a line.
 
@@ -487,12 +487,27 @@ class SerialFrame:
     start: int
     end: int
     bit_cycles: float
-    data_bits: int = 8
-    parity: str | None = None
-    stop_bits: int = 1
-    framing_error: bool = False
-    drift: float = 1.0
-    rate_set_by: Any = None
+    data_bits: int
+    parity: str | None
+    stop_bits: int
+    framing_error: bool
+    drift: float
+    rate_set_by: Any
+
+    def __init__(
+        self, data: int, start: int, end: int, bit_cycles: float, data_bits: int = 8, parity: str | None = None,
+        stop_bits: int = 1, framing_error: bool = False, drift: float = 1.0, rate_set_by: Any = None,
+    ) -> None:  # fmt: skip
+        self.data = data
+        self.start = start
+        self.end = end
+        self.bit_cycles = bit_cycles
+        self.data_bits = data_bits
+        self.parity = parity
+        self.stop_bits = stop_bits
+        self.framing_error = framing_error
+        self.drift = drift
+        self.rate_set_by = rate_set_by
 
     def rates_differ(self, bit_cycles: float) -> str:
         """Both speeds in words, if a receiver of `bit_cycles` a bit cannot follow the sender; else empty.

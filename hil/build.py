@@ -36,6 +36,7 @@ from hil.robot.board import RobotBoard
 PATTERNS: Final = (
     "emulator/clock.py",
     "emulator/cpu.py",
+    "emulator/device_reports.py",
     "emulator/noise.py",
     "emulator/signal.py",
     "emulator/signals.py",
@@ -73,7 +74,8 @@ STAYS: Final = {
     ),
     "works while a chip is made, or where its program starts and ends": (
         "emulator/**/__init__.py", "emulator/blocks.py", "emulator/chip.py", "emulator/compiled.py",
-        "emulator/connections.py", "emulator/device_*.py", "emulator/image.py", "emulator/interrupt_flags.py",
+        "emulator/connections.py", "emulator/device_defines.py", "emulator/device_functions.py", "emulator/device_h.py",
+        "emulator/image.py", "emulator/interrupt_flags.py",
         "emulator/latched_flags.py", "emulator/object_values.py", "emulator/pin_functions.py",
         "emulator/register_writes.py", "emulator/registers_by_address.py", "emulator/seed.py", "emulator/system.py",
         "emulator/c28x/link.py", "hil/world/__init__.py", "hil/world/maps.py",

@@ -30,7 +30,6 @@ from emulator.c28x.ctypes import (
     PointerType,
     StructType,
     part_name,
-    pointed,
     scalars,
 )  # fmt: skip
 from emulator.c28x.findings import Finding, Findings
@@ -852,7 +851,8 @@ class Runtime:
         """Make a pointer to a local of the running function; its address is taken."""
         obj = Object(declaration, base, data)
         self.memory.live_locals.append(obj)
-        return Pointer(self.memory, obj, 0, pointed(declaration.ctype))
+        ctype = declaration.ctype
+        return Pointer(self.memory, obj, 0, ctype.element if isinstance(ctype, ArrayType) else ctype)
 
     def retire(self, p: Pointer) -> None:
         """The function of a local returns: pointers to the local dangle from now on."""

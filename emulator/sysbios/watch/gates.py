@@ -26,15 +26,16 @@ from emulator.trace import Trace
 LONG_ENOUGH: Final = 5 * SYSCLK_HZ
 
 
-@dataclass(slots=True)
 class GateEntry:
-    """A gate that a thread has entered and not left."""
+    """A gate that a thread has entered and not left; `call`: the running call of the C function that entered it."""
 
-    gate: Gate
-    key: int
-    statement: StatementNumber
-    #: The running call of the C function that entered it.
-    call: Call | None
+    __slots__ = ("call", "gate", "key", "statement")
+
+    def __init__(self, gate: Gate, key: int, statement: StatementNumber, call: Call | None) -> None:
+        self.gate = gate
+        self.key = key
+        self.statement = statement
+        self.call = call
 
 
 @dataclass(slots=True)

@@ -12,7 +12,7 @@ waits nowhere else, they cannot.
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterator
 from typing import Final, NamedTuple
 
@@ -65,7 +65,7 @@ class LostPosts:
         #: The highest level from which each semaphore was posted.
         self._level: dict[Semaphore, int] = {}
         #: How often each thread has pended on each semaphore.
-        self._taken: dict[Semaphore, Counter[Thread]] = {}
+        self._taken: defaultdict[Semaphore, Counter[Thread]] = defaultdict(Counter)
         calls.before("Semaphore_post", callback=self._posting)
         calls.before("Semaphore_pend", callback=self._pending)
         calls.before(*_BLOCKING, callback=self._blocking)
@@ -75,7 +75,7 @@ class LostPosts:
 
     def _pending(self, semaphore: Semaphore, _timeout: int) -> None:
         self._began.setdefault(semaphore, semaphore.count)
-        self._taken.setdefault(semaphore, Counter())[self._threads.current] += 1
+        self._taken[semaphore][self._threads.current] += 1
 
     def _posting(self, semaphore: Semaphore) -> None:
         self._began.setdefault(semaphore, semaphore.count)

@@ -380,7 +380,8 @@ class Races:
                 self._flags, self._marks = arrays_of_flags(self._modules), flag_members(self._modules)
             flags = obj.declaration.path in self._flags
             one = ctype.element if isinstance(ctype, ArrayType) else ctype
-            marks = frozenset(words for holder, words in self._marks if holder == one)
+            if isinstance(one, StructType):
+                marks = frozenset(words for holder, words in self._marks if holder == one)
         shared = SharedObject(obj, flags, self._is_record(ctype), marks)
         if self._threads.routines:
             if self._pairs is None:  # Read late, because most images do not need it.

@@ -39,13 +39,15 @@ _KEPT: Final = 10_000
 Order = Semaphore | Mailbox | Event
 
 
-@dataclass(slots=True)
 class Release:
     """One post by a Clock function, with the CPU time (cycles) that each thread had used by then."""
 
-    time: int
-    statement: StatementNumber
-    usage: list[int]
+    __slots__ = ("statement", "time", "usage")
+
+    def __init__(self, time: int, statement: StatementNumber, usage: list[int]) -> None:
+        self.time = time
+        self.statement = statement
+        self.usage = usage
 
 
 @dataclass(slots=True)

@@ -38,13 +38,15 @@ VAIN_PENDS: Final = 20
 Sample = tuple[Thread, StatementNumber, str]
 
 
-@dataclass(slots=True)
 class ReadyTask:
     """A task that is ready and does not run."""
 
-    since: int
-    usage: list[int]
-    finding: Finding | None = None
+    __slots__ = ("finding", "since", "usage")
+
+    def __init__(self, since: int, usage: list[int]) -> None:
+        self.since = since
+        self.usage = usage
+        self.finding: Finding | None = None
 
 
 @dataclass(slots=True)

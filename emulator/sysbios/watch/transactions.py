@@ -12,7 +12,6 @@ started does no harm: drivers with interrupts work so.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, Protocol
 
 from emulator.c28x.findings import Finding, Findings
@@ -44,16 +43,19 @@ class SelectWire(Protocol):
         """(level): every change."""
 
 
-@dataclass(slots=True)
 class OpenTransaction:
-    """A transaction that has begun and not ended."""
+    """A transaction that has begun and not ended; `lasts`: it stays open while its thread blocks."""
 
-    block: str
-    thread: Thread
-    statement: StatementNumber
-    time: int
-    #: Whether it stays open while its thread blocks.
-    lasts: bool = False
+    __slots__ = ("block", "lasts", "statement", "thread", "time")
+
+    def __init__(
+        self, block: str, thread: Thread, statement: StatementNumber, time: int, *, lasts: bool = False
+    ) -> None:
+        self.block = block
+        self.thread = thread
+        self.statement = statement
+        self.time = time
+        self.lasts = lasts
 
 
 class Transactions:

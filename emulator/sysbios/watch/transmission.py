@@ -8,7 +8,6 @@ that it has read all.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final
 
 from emulator.c28x.findings import Finding, Findings
@@ -21,19 +20,26 @@ from emulator.sysbios.watch.threads import Thread, ThreadWatch
 GRACE: Final = 2
 
 
-@dataclass(slots=True)
 class BufferInTransmission:
-    """A buffer that is being sent."""
+    """A buffer that is being sent.
 
-    register: str
-    thread: Thread
-    #: The word that was read last, the thread's clock at that time, and the statement.
-    offset: int
-    clock: int
-    statement: StatementNumber
-    #: The cycle when everything written so far has been sent, and the cycles of one character.
-    until: int
-    character: int
+    `offset`, `clock` and `statement`: the word that was read last, the thread's clock at that time, and the statement.
+    `until`: the cycle when everything written so far has been sent.  `character`: the cycles of one character.
+    """
+
+    __slots__ = ("character", "clock", "offset", "register", "statement", "thread", "until")
+
+    def __init__(
+        self, register: str, thread: Thread, offset: int, clock: int, statement: StatementNumber, until: int,
+        character: int,
+    ) -> None:  # fmt: skip
+        self.register = register
+        self.thread = thread
+        self.offset = offset
+        self.clock = clock
+        self.statement = statement
+        self.until = until
+        self.character = character
 
 
 class Transmission:
