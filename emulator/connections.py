@@ -27,6 +27,8 @@ from emulator.c28x.declarations import lines_with_comments
 from emulator.c28x.link import Linked
 from emulator.c28x.sites import Place
 from emulator.c28x.symbols import Module
+from emulator.c28x.tree import Function
+from emulator.c28x.tree_queries import below
 from emulator.can_bus import TOLERANCE, CanPart
 from emulator.chip import (
     ADC_PIE,
@@ -167,6 +169,7 @@ class Connections:
         self._chip.pie.finish()
         self._i2c()
         self._serial()
+        self._other_groups(modules)
         self._interrupts_kept_back(modules)
         self._flags_kept(modules)
         self._can()
@@ -184,7 +187,8 @@ class Connections:
 
         Call it once the functions that initialise have been called.
         """
-        self._read(list(self._linked.program.modules.values()))
+        modules = list(self._linked.program.modules.values())
+        self._read(modules)
         for group in range(1, 13):
             for n in range(1, 17):
                 register, field = f"PieCtrlRegs.PIEIER{group}", f"INTx{n}"
@@ -192,6 +196,7 @@ class Connections:
                 # Its routine may be given to a function of these files that nobody has called.
                 if place is not None and not self._writes(f"PieVectTable.{self._chip.vectors.entry(group, n)}"):
                     self._other_line(place, group, n)
+        self._other_groups(modules)
         self._loads()
 
     # The source
@@ -1478,6 +1483,51 @@ class Connections:
                 why = f"a break at {at} has stopped the receiver, and no statement clears {register}.SWRESET again"
                 message = f"{block} receives nothing any more: {receiver.unheard} characters have come since"
                 self._report(reads[-1], message, MissingLink(why, register, "SWRESET"), f"{block}.SCIRXST")
+
+    def _other_groups(self, modules: list[Module]) -> None:
+        """Routines that acknowledge another group of the PIE than that of their interrupt, for one run after the other.
+
+        Their own group is acknowledged by nobody, or by its other routines, which it keeps back as well.
+        """
+        if self._source.unclear("PieCtrlRegs", "PIEACK"):
+            return
+        writes = self._source.of("PieCtrlRegs", "PIEACK", -1)
+        own = {f.path: f for module in modules for f in module.functions}
+        groups: dict[str, set[int]] = {}
+        routines: list[tuple[int, int, Function]] = []
+        for group, n in product(range(1, 13), range(1, 17)):
+            begins = self._chip.pie.routine(group, n)
+            routine = routine_of(modules, begins) if begins is not None else None
+            if routine is not None:
+                groups.setdefault(routine.path, set()).add(group)
+                routines.append((group, n, routine))
+        reach = {f.path: {(g.where.file, g.name) for g in below([f.path], own)} for _, _, f in routines}
+        told = {finding.object for finding in self._chip.findings.of("flag-not-cleared")}
+        for group, n, routine in routines:
+            name, bit = f"PieCtrlRegs.PIEACK.ACK{group}", 1 << group - 1
+            if not routine.interrupt or len(groups[routine.path]) > 1 or name in told:
+                continue
+            mine = [write for write in writes if (write.place.file, write.place.function) in reach[routine.path]]
+            # A read-modify-write also acknowledges each group whose bit is set.
+            if not mine or not all(write.values and write.mask & 0xFFF == 0xFFF for write in mine):
+                continue
+            given = {value for write in mine for value in write.values or ()}
+            if any(value & bit or not value & 0xFFF for value in given):
+                continue
+            fellows = {at for path, reached in reach.items() if groups[path] == {group} for at in reached}
+            others = [write for write in writes if write.values is None or any(value & bit for value in write.values)]
+            if not all((write.place.file, write.place.function) in fellows for write in others):
+                continue
+            if self._chip.pie.enabled(group, n) and wanted_again(modules, routine):
+                told.add(name)
+                wrong = min(given)
+                message = (
+                    f"{routine.name} is the routine of interrupt {group}.{n} and acknowledges group "
+                    f"{(wrong & -wrong).bit_length()}: {name} stays set, and no interrupt of group {group} comes again"
+                )  # fmt: skip
+                self._chip.findings.report_at(
+                    mine[0].place, "flag-not-cleared", message, object=name, how="dynamic",
+                )  # fmt: skip
 
     def _interrupts_kept_back(self, modules: list[Module]) -> None:
         """Interrupts that can come once only: their flag stays set, for no statement clears it behind the start-up."""

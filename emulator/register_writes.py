@@ -29,7 +29,9 @@ from emulator.c28x.tree import (
     Function,
     FunctionRef,
     Load,
+    Logic,
     LValue,
+    Not,
     PointerAdd,
     RegisterAddress,
     RegisterAt,
@@ -421,6 +423,11 @@ class RegisterWrites:
                 if (op in ("<<", ">>") and min(other) < 0) or (op in "/%" and (min(one) < 0 or min(other) <= 0)):
                     return None
                 return _of_type(e.ctype, frozenset(int(_OPERATORS[op](a, b)) for a, b in product(one, other)))
+            case Not(operand=operand):
+                one = self.values(operand, known, deep)
+                return None if one is None else frozenset(int(not value) for value in one)
+            case Logic(op=op, operands=operands):
+                return _of_logic(op, [self.values(operand, known, deep) for operand in operands])
             case Conditional(then=then, otherwise=otherwise):
                 one, other = self.values(then, known, deep), self.values(otherwise, known, deep)
                 return None if one is None or other is None else one | other
@@ -486,6 +493,11 @@ class RegisterWrites:
             for write in (*self.of(block, register, mask), *pointed, *above, *self.anywhere)
             if not again or write.place not in self._over
         )
+
+    def unclear(self, block: str, register: str) -> bool:
+        """Whether some assignment may mean this register or another one, or is one of a library."""
+        pointed = self.pointed.get(register) or self.from_here_on.get((block, register)) or self.anywhere
+        return bool(pointed) or (block, register) in self.by_library
 
     def later(self, block: str, register: str) -> bool:
         """Whether some assignment to a register can run after the start-up."""
@@ -553,6 +565,20 @@ def _scales(e: Expr) -> bool:
         isinstance(p, Binary) and p.op in ("*", "/") and any(isinstance(each, Load) for each in parts(p))
         for p in parts(e)
     )  # fmt: skip
+
+
+def _of_logic(op: str, operands: list[Values]) -> Values:
+    """The values of `and` or `or`; None: an operand that decides is unknown."""
+    decides = op == "or"
+    if any(values is not None and all(bool(value) == decides for value in values) for values in operands):
+        return frozenset((int(decides),))
+    found = {int(not decides)}
+    for values in operands:
+        if values is None:
+            return None
+        if any(bool(value) == decides for value in values):
+            found.add(int(decides))
+    return frozenset(found)
 
 
 def _of_type(ctype: CType, values: Values) -> Values:

@@ -360,6 +360,9 @@ The finding is made where the program believes the old flag, or where an interru
 * PIE: a routine leaves its flag or `PIEACK` set. At the end of a run that is told also of interrupts that have not come
   (eCAP, ePWM, eQEP, ADC, FIFOs, CAN): no statement of the program clears the flag after the start-up. Not told is a
   routine that disables the interrupt, stops the program, or only stores constants that nothing takes back;
+* PIE: a routine acknowledges another group than that of its interrupt. Its own group is acknowledged by nobody, or by
+  its other routines, which cannot run meanwhile. Not told if the value is not known, or if it is `|=` or a bit: these
+  write back what they read, and so acknowledge each group whose bit is set;
 * a test of an error that stays (`RXERROR`, `RXFFOVF`, `OVERRUN_FLAG`, `COEF`, `PHE`, `OST`, `NACK`, `BOff` and others)
   leads to a count, or away from the received character, and no statement clears the error after the start-up. A SCI
   keeps its errors until `SWRESET`.

@@ -105,3 +105,53 @@ def test_links_that_are_missing_are_told_through_pointers_too(tmp_path: Path, wr
     file.write_text(text)
     found = [f for f in check_files(DriverFiles([file], seconds=0.01)).findings if f.rule == "not-connected"]
     assert {f.object for f in found} == (set().union(*(objects for *_, objects in LINKS.values())) if wrong else set())
+
+
+#: As driverlib's function, which asks for the compare by `||`.
+LOAD_MODE = """#include <stdint.h>
+#define HWREGH(x) (*((volatile uint16_t *)(uintptr_t)(x)))
+typedef enum { COMPARE_A = 0, COMPARE_B = 5, COMPARE_C = 2, COMPARE_D = 7 } Compare;
+static inline void loadMode(uint32_t base, Compare compare, uint16_t mode)
+{
+    uint16_t sync, load, shadow;
+    uint32_t at;
+    if ((compare == COMPARE_A) || (compare == COMPARE_C)) {
+        sync = 10U;
+        load = 0U;
+        shadow = 4U;
+    } else {
+        sync = 12U;
+        load = 2U;
+        shadow = 6U;
+    }
+    if (!(compare == COMPARE_A || compare == COMPARE_B) && compare != 0)
+        at = base + 0x09U;
+    else
+        at = base + 0x08U;
+    HWREGH(at) = ((HWREGH(at) & ~((0x3U << sync) | (0x3U << load) | (0x1U << shadow)))
+                  | (((mode >> 2U) << sync) | ((mode & 0x3U) << load)));
+}
+"""
+
+
+@pytest.mark.parametrize(("call", "frozen"), [
+    ("loadMode(0x4100U, COMPARE_A, 3U)", True),
+    ("loadMode(0x4100U, COMPARE_A, 0U)", False),
+    ("loadMode(0x4100U, COMPARE_A, 2U)", False),
+    ("loadMode(0x4100U, COMPARE_A, 6U)", False),   # loads at a synchronisation, too
+    ("loadMode(0x4100U, COMPARE_B, 3U)", False),   # no statement writes CMPB
+    ("loadMode(0x4100U, COMPARE_C, 3U)", False),
+    ("loadMode(0x4100U, COMPARE_A, 3U); if (Order) loadMode(0x4100U, COMPARE_A, 0U)", False),
+])  # fmt: skip
+def test_a_frozen_compare_is_told_through_driverlib(tmp_path: Path, call: str, *, frozen: bool) -> None:
+    text = PROGRAM
+    for word, ways in LINKS.items():
+        text = text.replace(word, ways[False])
+    text = text.replace("*Loads = 0x0000;", f"{call};")
+    text = text.replace('_Project.h"\n', '_Project.h"\n#include "load_mode.h"\n')
+    text = text.replace("static volatile Uint16 *const Loads = &EPwm2Regs.CMPCTL.all;\n", "")
+    (tmp_path / "load_mode.h").write_text(LOAD_MODE, encoding="utf-8")
+    file = tmp_path / "by_pointers.c"
+    file.write_text(text)
+    found = [f.object for f in check_files(DriverFiles([file], seconds=0.01)).findings if f.rule == "not-connected"]
+    assert found == (["EPwm2Regs.CMPCTL.LOADAMODE"] if frozen else [])

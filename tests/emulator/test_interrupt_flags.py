@@ -130,7 +130,6 @@ def told(tmp_path: Path, text: str) -> list[Finding]:
     ("    AdcaRegs.ADCINTFLGCLR.bit.ADCINT1 = 1;\n", "", "Converted", "AdcaRegs.ADCINTFLG.ADCINT1"),
     ("ADCINTFLGCLR.bit.ADCINT1", "ADCINTFLGCLR.bit.ADCINT2", "Converted", "AdcaRegs.ADCINTFLG.ADCINT1"),
     ("    PieCtrlRegs.PIEACK.all = PIEACK_GROUP12;\n", "", "Edge", "PieCtrlRegs.PIEACK.ACK12"),
-    ("PIEACK.all = PIEACK_GROUP4", "PIEACK.all = PIEACK_GROUP5", "Captured", "PieCtrlRegs.PIEACK.ACK4"),
 ])  # fmt: skip
 def test_a_flag_that_no_statement_clears_is_told_at_its_routine(
     tmp_path: Path, was: str, now: str, routine: str, flag: str
@@ -202,3 +201,67 @@ def test_driverlib_clears_a_flag(tmp_path: Path, call: str, flags: list[str]) ->
     ))  # fmt: skip
     text = text.replace('"F28x_Project.h"', '"F28x_Project.h"\n#include "ecap.h"')
     assert [f.object for f in told(tmp_path, text)] == flags
+
+
+#: A second routine of group 9, which acknowledges it.
+FELLOW = """interrupt void Sent(void)
+{
+    Order++;
+    SciaRegs.SCIFFTX.bit.TXFFINTCLR = 1;
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP9;
+}
+void main(void)
+"""
+RECEIVED = "    PieCtrlRegs.PIEACK.all = PIEACK_GROUP9;\n}\ninterrupt void Words"
+
+
+def with_fellow(acknowledge: str, more: str = "") -> str:
+    """The program with two routines of group 9, of which the first one acknowledges so."""
+    text = PROGRAM.replace(RECEIVED, f"    {acknowledge}\n}}\ninterrupt void Words")
+    text = text.replace("void main(void)\n", FELLOW).replace("    PieCtrlRegs.PIEIER9.bit.INTx1 = 1;\n", (
+        "    PieCtrlRegs.PIEIER9.all = 3;\n    EALLOW;\n    PieVectTable.SCIA_TX_INT = &Sent;\n    EDIS;\n"
+    ))  # fmt: skip
+    return text.replace("for (;;) {\n        if", f"for (;;) {{\n        {more}\n        if")
+
+
+@pytest.mark.parametrize(("acknowledge", "group"), [
+    ("PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;", 1),
+    ("PieCtrlRegs.PIEACK.all = M_INT8;", 8),
+    ("PieCtrlRegs.PIEACK.all = 9;", 1),
+    ("PieCtrlRegs.PIEACK.all = Order ? PIEACK_GROUP8 : PIEACK_GROUP10;", 8),
+])  # fmt: skip
+def test_another_group_is_acknowledged(tmp_path: Path, acknowledge: str, group: int) -> None:
+    """The group's other routine, which acknowledges the right one, cannot run meanwhile."""
+    text = with_fellow(acknowledge)
+    (finding,) = told(tmp_path, text)
+    assert finding.object == "PieCtrlRegs.PIEACK.ACK9"
+    assert f"acknowledges group {group}" in finding.message
+    assert finding.place is not None
+    assert acknowledge in text.split("\n")[finding.place.line - 1]
+
+
+@pytest.mark.parametrize(("acknowledge", "more"), [
+    ("PieCtrlRegs.PIEACK.all = PIEACK_GROUP9;", ""),
+    ("PieCtrlRegs.PIEACK.all = PIEACK_GROUP1 | PIEACK_GROUP9;", ""),
+    ("PieCtrlRegs.PIEACK.all = 0xFFFF;", ""),
+    ("PieCtrlRegs.PIEACK.all = PIEACK_GROUP1; PieCtrlRegs.PIEACK.all = PIEACK_GROUP9;", ""),
+    # What is read and written again has the bit of group 9 too.
+    ("PieCtrlRegs.PIEACK.all |= PIEACK_GROUP1;", ""),
+    ("PieCtrlRegs.PIEACK.bit.ACK1 = 1;", ""),
+    # A number that the source does not tell.
+    ("PieCtrlRegs.PIEACK.all = Order;", ""),
+    # The loop acknowledges when it has taken what came, or an interrupt of another group does.
+    ("PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;", "if (Seen) { Seen = 0; PieCtrlRegs.PIEACK.all = PIEACK_GROUP9; }"),
+    ("PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;", "if (Seen) { Seen = 0; PieCtrlRegs.PIEACK.bit.ACK9 = 1; }"),
+])  # fmt: skip
+def test_the_own_group_is_acknowledged(tmp_path: Path, acknowledge: str, more: str) -> None:
+    assert not [f for f in told(tmp_path, with_fellow(acknowledge, more)) if "acknowledges" in f.message]
+
+
+def test_another_group_is_acknowledged_by_driverlib(tmp_path: Path) -> None:
+    (tmp_path / "ecap.h").write_text(LIBRARY, encoding="utf-8")
+    text = PROGRAM.replace("PieCtrlRegs.PIEACK.all = PIEACK_GROUP4", "Interrupt_clearACKGroup(0x10U)")
+    text = text.replace('"F28x_Project.h"', '"F28x_Project.h"\n#include "ecap.h"')
+    (finding,) = told(tmp_path, text)
+    assert finding.object == "PieCtrlRegs.PIEACK.ACK4"
+    assert "Captured is the routine of interrupt 4.1 and acknowledges group 5" in finding.message
