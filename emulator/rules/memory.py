@@ -178,8 +178,10 @@ uses the words.
 Typical: a function that returns its own array; a driver that keeps the address of a caller's buffer and sends it
 later.
 
-A function that ends with `Used = &own;` is reported before the program runs, if another function follows `Used` and
-does not set it, and nothing but assignments comes behind the store.
+Before the program runs, two forms are reported. A function returns the address of its own local, also through a local
+pointer, or as the result of `strcpy` and the like; but not if nothing is stored in the local: such a function measures
+the stack. A function ends with `Used = &own;`, another function follows `Used` and does not set it, and nothing but
+assignments comes behind the store.
 
 **Fix:** make the buffer a file-scope object, or let the caller pass it and keep it until the driver is done.
 """,

@@ -138,7 +138,7 @@ range of values that decides. Examples:
 * a counter at file scope is set to 0 and counted right before it is compared: each pass begins it anew;
 * a counter with a test that asks for more than it can reach: `if (age < LIMIT) age++; if (age > LIMIT)`; one that each
   call sets to 0 before its only step; one that nobody counts, only sets to 0 (all statements that set it are known: it
-  is `static`, or the program has a `main`);
+  is `static`, or the program has a `main`; members of structures too, if nobody takes the address of the structure);
 * after `if (t > low) ... else if (t < high)` with `low < high` the second test is always true, so the band between the
   two limits is none (the exact complement, `else if (t <= low)`, is not reported); after `if (t > 10) ... else if
   (t > 20)` it is always false;

@@ -31,10 +31,10 @@ from emulator.c28x.passes.fraction_texts import check_fraction_texts
 from emulator.c28x.passes.future_stamps import unreachable_exits
 from emulator.c28x.passes.given import GivenValues
 from emulator.c28x.passes.given_times import check_given_times
+from emulator.c28x.passes.gone_locals import check_gone_locals
 from emulator.c28x.passes.held import with_held_values
 from emulator.c28x.passes.interrupted import driver_sides, sides_of
 from emulator.c28x.passes.kept_flags import check_kept_flags, check_kept_marks
-from emulator.c28x.passes.left_behind import check_left_behind
 from emulator.c28x.passes.left_out import check_left_out
 from emulator.c28x.passes.like_products import check_like_products
 from emulator.c28x.passes.likes import check_likes
@@ -141,7 +141,8 @@ def check(
         for function in module.functions:
             check_decided(function, report)
             check_begun_anew(function, report)
-    check_out_of_reach(modules, reports)
+    apart = with_members(modules)
+    check_out_of_reach(apart, {other: reports[module] for module, other in zip(modules, apart, strict=True)})
     check_begun_again(whole, of_whole)
     check_open_integrals(of_whole)
     check_one_sided(whole, of_whole)
@@ -170,9 +171,9 @@ def check(
     if sides is not None:
         check_taken_apart(sides)
     check_cleared_early(modules, reports)
+    check_gone_locals(modules, reports)
     check_dropped(modules, reports)
     check_lost_events(reports)
-    check_left_behind(modules, reports)
     check_left_out(modules, reports)
     check_likes(modules, reports)
     check_messages(modules, reports)

@@ -134,7 +134,7 @@ def _object(variable: Variable, member: _Member, lvalue: LValue) -> Variable:
     declaration = replace(declared, name=name, ctype=lvalue.ctype)
     return Variable(
         declaration, ctype, "global", escapes=isinstance(ctype, ArrayType), initialised=variable.initialised,
-        initial=start, volatile=variable.volatile or lvalue.volatile,
+        initial=start, volatile=variable.volatile or lvalue.volatile, static=variable.static,
     )  # fmt: skip
 
 

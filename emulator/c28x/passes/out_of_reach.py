@@ -9,7 +9,8 @@
 
 All statements that change the counter are known: it is `static`, or the program has a `main`.  They set it to
 constants or step it by constants, and one function alone steps it.  The bounds follow from the tests around the steps.
-A counter that is only ever set to 0, and tested against a limit, is one that nobody counts.
+A counter that is only ever set to 0, and tested against a limit, is one that nobody counts.  Members of structures are
+counters, too, if all accesses to them are known (`members.py`).
 
 The check is silent about subscripts (a test against the end of an array may be a precaution), about tests that only set
 the counter itself to a limit, about assertions, and where text that this build leaves out changes the counter.

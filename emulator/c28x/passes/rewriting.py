@@ -34,6 +34,7 @@ class Rewriting(ABC):
     def module(self, module: Module, objects: list[Variable]) -> Module:
         """A module with these objects, and functions that are written anew."""
         written = copy(module)
+        written.text = module.text  # which a copy leaves out, as one on disk does
         written.functions = list(map(self.function, module.functions))
         written.variables = objects
         return written

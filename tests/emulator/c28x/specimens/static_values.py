@@ -795,6 +795,25 @@ def Clear() -> int16:
         ("Clear", ()),
     ),
     static_pair(
+        "dangling-pointer",
+        "a function returns the address of its own text",
+        """
+def Text(speed: uint16) -> ptr[char]:
+    text: array[char, 2]
+    text[0] = speed
+    text[1] = 0
+    return text  # <-
+""",
+        """
+Kept: array[char, 2]
+def Text(speed: uint16) -> ptr[char]:
+    Kept[0] = speed
+    Kept[1] = 0
+    return Kept
+""",
+        ("Text", (5,)),
+    ),
+    static_pair(
         "memcpy-octets",
         "two octets for each word of an array",
         """

@@ -33,6 +33,8 @@ COUNT = "if (age < LIMIT) age++;"
 WAITED = "static Uint16 waited = 0;"
 BEGUN = "void Again(void) { waited = 0; }"
 MISSED = "static Uint16 missed = LIMIT;"
+OVEN = "static struct oven { Uint16 state, steps; } oven = {1, 0};"
+ENTER = "void enter(Uint16 next) { oven.state = next; oven.steps = 0; }"
 
 
 @pytest.mark.parametrize(("parts", "message"), [
@@ -56,6 +58,20 @@ MISSED = "static Uint16 missed = LIMIT;"
      "missed >= 5 is always false: missed is set anew before it in each pass, and is at most 1 here"),
     ((MISSED, "missed = 0; if (ready()) { missed++; if (missed >= LIMIT) { missed = 0; valid = 0; } }"),
      "missed >= 5 is always false: missed is set anew before it in each pass, and is at most 1 here"),
+    # Members of a structure, of one in another, and of one that is an element.
+    ((OVEN, "if (oven.steps >= LIMIT) enter(2);", ENTER),
+     "oven.steps >= 5 is always false: no statement counts oven.steps, it is always 0"),
+    ((OVEN, "if (oven.steps < LIMIT) oven.steps++; if (oven.steps > LIMIT) late = 1;", ENTER),
+     "oven.steps > 5 is always false: oven.steps is counted to 5 at most"),
+    (("static struct { struct { Uint16 waited; } link; Uint16 sent; } bus;", "if (bus.link.waited > LIMIT) late = 1;",
+      "void Again(void) { bus.link.waited = 0; bus.sent++; }"),
+     "bus.link.waited > 5 is always false: no statement counts bus.link.waited, it is always 0"),
+    (("struct wheel { Uint16 still; Uint16 speed; }; static struct wheel wheels[2];",
+      "if (wheels[1].still >= LIMIT) late = 1;", "void Again(void) { wheels[1].still = 0; wheels[0].still++; }"),
+     "wheels[1].still >= 5 is always false: no statement counts wheels[1].still, it is always 0"),
+    (("struct oven { Uint16 state, steps; }; struct oven oven = {1, 0};", "if (oven.steps >= LIMIT) enter(2);", ENTER,
+      "int main(void) { for (;;) { Step(); enter(1); } }"),
+     "oven.steps >= 5 is always false: no statement counts oven.steps, it is always 0"),
 ])  # fmt: skip
 def test_no_statement_counts_so_far(parts: tuple[str, ...], message: str) -> None:
     """It is told at the test."""
@@ -109,6 +125,23 @@ def test_no_statement_counts_so_far(parts: tuple[str, ...], message: str) -> Non
     ("static Uint16 level;", "if (level >= 2) late = 1;", "void Step_Init(void) { level = 0; }"),
     ("static Uint16 level;", "if (level >= 2) late = 1;"),
     ("static volatile Uint16 level;", "if (level >= 2) late = 1;", "void Again(void) { level = 0; }"),
+    # A member that is counted, by its name, through a pointer, by an interrupt, or with the whole structure.
+    (OVEN, "oven.steps++; if (oven.steps >= LIMIT) enter(2);", ENTER),
+    (OVEN, "count(&oven); if (oven.steps >= LIMIT) enter(2);", f"{ENTER} void count(struct oven *o) {{ o->steps++; }}"),
+    (OVEN, "if (oven.steps >= LIMIT) enter(2);", f"{ENTER} void Set(const struct oven *to) {{ oven = *to; }}"),
+    (OVEN, "if (oven.steps >= LIMIT) enter(2);", f"{ENTER} interrupt void Tick(void) {{ oven.steps += 1; }}"),
+    (OVEN, "Uint16 *p = &oven.steps; (*p)++; if (oven.steps >= LIMIT) enter(2);", ENTER),
+    (OVEN, "if (oven.steps >= LIMIT) enter(2);\n#ifdef COUNTS\noven.steps++;\n#endif\n", ENTER),
+    (OVEN, "if (oven.steps >= LIMIT) enter(2);", "void enter(Uint16 next) { oven.state = next; }"),
+    (OVEN, "if (oven.steps >= LIMIT) enter(2);",
+     "void enter(Uint16 next) { oven.state = next; } void Oven_Init(void) { oven.steps = 0; }"),
+    ("struct oven { Uint16 state, steps; }; struct oven oven = {1, 0};", "if (oven.steps >= LIMIT) enter(2);", ENTER),
+    ("static volatile struct oven { Uint16 state, steps; } oven;", "if (oven.steps >= LIMIT) enter(2);", ENTER),
+    ("static union { struct { Uint16 state, steps; } of; unsigned long all; } u;",
+     "u.all += 0x10000ul; if (u.of.steps >= LIMIT) late = 1;", "void Again(void) { u.of.steps = 0; }"),
+    ("struct wheel { Uint16 still; Uint16 speed; }; static struct wheel wheels[2];",
+     "Uint16 i; for (i = 0; i < 2; i++) wheels[i].still++; if (wheels[1].still >= LIMIT) late = 1;",
+     "void Again(void) { wheels[1].still = 0; }"),
 ])  # fmt: skip
 def test_right_programs(parts: tuple[str, ...]) -> None:
     """The counter gets there, or it need not."""
