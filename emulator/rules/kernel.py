@@ -55,7 +55,8 @@ An index that `main` steps around the end of a ring (`out = (out + 1) % SIZE`) a
 oldest element of a full ring, is reported before the program runs. So are flags that `main` computes from their old
 value (`Alarms = (Alarms & ~LOW) | low`) or takes (`events = Events; Events = 0;`) while a routine that counts a clock
 changes others of them (`Alarms |= HIGH`), unless `main` goes by what the routine sets and masks none of that: it may
-always be done in time.
+always be done in time. So is a float to which `main` adds (`heading = wrap(heading + correction)`) while the routine of
+a clock adds to it too, unless `main` waits for that routine.
 
 So is a count that a function, also of a driver without a `main`, reads and clears (`way = travel; travel = 0;`) while a
 routine adds to it, if the interrupts are on between the two (`DINT; n = count; EINT; count = 0;`). Without any mask,

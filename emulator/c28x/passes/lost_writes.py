@@ -1,14 +1,16 @@
-"""Static check of indices and flags that `main` and an interrupt routine both write, without a mask: `race`.
+"""Static check of indices, flags and sums that `main` and an interrupt routine both write, without a mask: `race`.
 
     Out = (Out + 1) % SIZE;             // in main, where the routine does the same if the ring is full
     Alarms = (Alarms & ~LOW) | (volts < LIMIT ? LOW : 0);       // the routine does `Alarms |= HIGH;`
     events = Events; Events = 0;                                // or `Events |= LOST;`
+    heading = wrap(heading + correction);                       // or `heading = wrap(heading + rate * STEP);`
 
 If the routine comes between the read and the write, what it wrote is lost.  The check needs a whole program without a
 kernel.  `Out += 1` and `Flags &= ~1` are one instruction, and the routine comes before or behind it.
 
-Only of subscripts, and of flags of which a routine that counts a clock changes some and keeps the others: other objects
-may have a routine that writes them once, before `main` does.  Silent if the routine writes only under a condition that
+Only of subscripts, of flags of which a routine that counts a clock changes some and keeps the others, and of sums
+(floats) to which both sides add, the routine of a clock whose time `main` takes: other objects may have a routine that
+writes them once, before `main` does.  Silent if the routine writes only under a condition that
 `main` sets: it may not come then.  And, of flags, if `main` goes by what the routine sets and masks none of that: it
 may always be done before the routine comes again.
 """
@@ -17,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from emulator.c28x.ctypes import IntType
+from emulator.c28x.ctypes import FloatType, IntType
 from emulator.c28x.passes.interrupted import (
     Place,
     RoutineWrite,
@@ -30,9 +32,10 @@ from emulator.c28x.passes.interrupted import (
     test_of,
     written,
 )
+from emulator.c28x.passes.on_the_way import ways_to, with_turns
 from emulator.c28x.passes.taken import mark_copy_and_clear
-from emulator.c28x.tree import Assign, Binary, Declare, Expr, Function, Index, Load, LValue, Stmt, Variable
-from emulator.c28x.tree_queries import bare, own_nodes, parts, source_text, statements, variables
+from emulator.c28x.tree import Assign, Binary, Declare, Expr, Function, Index, Load, LValue, Stmt, Variable, While
+from emulator.c28x.tree_queries import added, bare, own_nodes, parts, source_text, statements, variables
 
 #: Operators that change a word in memory by one instruction (CPU, `ADD loc16`, `AND loc16`, `ADDL loc32`).
 _ONE_INSTRUCTION = ("+", "-", "&", "|", "^")
@@ -45,25 +48,82 @@ def check_lost_writes(sides: Sides) -> None:
     for function in sides.bodies:
         mark_copy_and_clear(function)
     for place, writes in _routine_writes(sides).items():
+        timed = {w.function: w for w in writes if _adds(w.statement, place) and _is_timed(sides, w.function)}
+        total = next(iter(timed.values()), None)
         flags = next((w for w in writes if w.function in always and _changes_bits(w.statement, place)), None)
         for function, body in sides.bodies.items():
             for s in statements(body):
                 if not isinstance(s, Assign) or written(s) != place:
                     continue
+                if total is not None and _adds(s, place) and not _after_the_routine(sides, function, s, total.function):
+                    _tell(sides, function, s, total)
+                    continue
                 if not s.takes and not _from_itself(function, s.value, place):
                     continue
                 index = not s.takes and _is_index(body, place)
                 write = writes[0] if index else flags
-                if write is None or off_at(body, {id(s)}) or sides.mask_of_caller(function):
+                if write is None or (not index and _kept_apart_by_time(sides, write.function)):
                     continue
-                if not index and _kept_apart_by_time(sides, write.function):
-                    continue
-                assert isinstance(s.target, LValue)
-                name = source_text(Load(s.target.ctype, s.target))
-                lost = f"what {write.function.name} writes in between (line {write.statement.line}) is lost"
-                how = "cleared behind a read" if s.takes else "computed from its old value"
-                message = f"{name} is {how}, and the interrupt is not masked: {lost}"
-                sides.owners[function].report(function, s.where, "race", message, object=name)
+                _tell(sides, function, s, write)
+
+
+def _tell(sides: Sides, function: Function, s: Assign, write: RoutineWrite) -> None:
+    """Report a statement of `main`, if nothing masks the routine then."""
+    body = sides.bodies[function]
+    if off_at(body, {id(s)}) or sides.mask_of_caller(function):
+        return
+    assert isinstance(s.target, LValue)
+    name = source_text(Load(s.target.ctype, s.target))
+    lost = f"what {write.function.name} writes in between (line {write.statement.line}) is lost"
+    how = "cleared behind a read" if s.takes else "computed from its old value"
+    message = f"{name} is {how}, and the interrupt is not masked: {lost}"
+    sides.owners[function].report(function, s.where, "race", message, object=name)
+
+
+def _adds(s: Assign, place: Place) -> bool:
+    """Whether a statement adds something to a float, also on the way through a function."""
+    if not isinstance(s.target, LValue) or not isinstance(s.target.ctype, FloatType):
+        return False
+    for p in parts(s.value):
+        match p:
+            case Binary(op="+" | "-", left=one, right=other) if _is(one, place) and not mentions(other, place):
+                return True
+            case Binary(op="+", left=other, right=one) if _is(one, place) and not mentions(other, place):
+                return True
+    return False
+
+
+def _set_with(sides: Sides, function: Function) -> set[Place]:
+    """What the routine sets of which a function is a part."""
+    routine = next(r for r in sides.routines if function in r)
+    return {
+        place for w in sides.routine_writes if w.function in routine and (place := written(w.statement)) is not None
+    }  # fmt: skip
+
+
+def _is_timed(sides: Sides, function: Function) -> bool:
+    """Whether the routine of a function counts a clock in each run, and `main` takes times of it."""
+    routine = next(r for r in sides.routines if function in r)
+    clocks = {
+        place for s in routine[0].body
+        if (place := written(s)) is not None and added(s) is not None and place not in sides.main_writes
+    }  # fmt: skip
+    return any(
+        isinstance(p, Binary) and p.op == "-" and not clocks.isdisjoint(sides.asked(reader, p.left))
+        for reader, body in sides.bodies.items() if clocks for s in statements(body) for p in own_nodes(s)
+    )
+
+
+def _after_the_routine(sides: Sides, function: Function, s: Stmt, other: Function) -> bool:
+    """Whether `main` comes to a statement behind the routine: it waits for it, or has asked for what it sets."""
+    there = _set_with(sides, other)
+    for reader, body in sides.bodies.items():
+        for each in statements(body):
+            if isinstance(each, While) and not sides.asked(reader, each.test).isdisjoint(there):
+                return True
+    here = next(turns for turns, each in with_turns(function) if each is s)
+    turns = [turn for way in (here, *ways_to(function, sides.bodies)) for turn in way]
+    return any(not sides.asked(turn.function, turn.test).isdisjoint(there) for turn in turns)
 
 
 def _is_index(body: list[Stmt], place: Place) -> bool:
@@ -80,10 +140,7 @@ def _changes_bits(s: Assign, place: Place) -> bool:
 
 def _kept_apart_by_time(sides: Sides, function: Function) -> bool:
     """Whether `main` goes by what a routine sets, and never masks what it sets: it may rely on being done in time."""
-    routine = next(r for r in sides.routines if function in r)
-    set_there = {
-        place for w in sides.routine_writes if w.function in routine and (place := written(w.statement)) is not None
-    }  # fmt: skip
+    set_there = _set_with(sides, function)
     goes_by = masks = False
     for reader, body in sides.bodies.items():
         off = False
@@ -96,11 +153,13 @@ def _kept_apart_by_time(sides: Sides, function: Function) -> bool:
 
 
 def _routine_writes(sides: Sides) -> dict[Place, list[RoutineWrite]]:
-    """The integers that a routine writes, under conditions that `main` does not set."""
+    """The scalars that a routine writes, under conditions that `main` does not set."""
     found: dict[Place, list[RoutineWrite]] = {}
     for write in sides.routine_writes:
         place = written(write.statement)
-        if place is None or place not in sides.main_writes or not isinstance(write.statement.target.ctype, IntType):
+        if place is None or place not in sides.main_writes:
+            continue
+        if not isinstance(write.statement.target.ctype, IntType | FloatType):
             continue
         asked = set().union(*(sides.asked(write.function, condition.test) for condition in write.conditions))
         if not (asked - {place}) & sides.main_writes.keys():

@@ -1,4 +1,4 @@
-"""Indices and flags that `main` and an interrupt routine both write, and right twins."""
+"""Indices, flags and sums that `main` and an interrupt routine both write, and right twins."""
 
 from __future__ import annotations
 
@@ -168,3 +168,82 @@ def test_flags_that_both_sides_change_are_told(tmp_path: Path, isr: str, main: s
 ])  # fmt: skip
 def test_flags_that_one_side_changes_at_a_time_are_silent(tmp_path: Path, isr: str, main: str, masks: bool) -> None:
     assert not told_of_flags(tmp_path, isr, main, masks=masks)
+
+
+SUMS = """#include "F28x_Project.h"
+volatile Uint32 Ms;
+volatile float heading, speed, other;
+volatile Uint16 Tick, Off;
+static float wrap(float angle) {{ return angle > 180.0f ? angle - 360.0f : angle; }}
+interrupt void Tock(void)
+{{
+    Ms++;
+    Tick = 1;
+    {isr}
+    PieCtrlRegs.PIEACK.all = PIEACK_GROUP1;
+}}
+static void Order(Uint16 c)
+{{
+    float a = c;
+    {main}
+}}
+int main(void)
+{{
+    Uint32 last = 0;
+    PieVectTable.TIMER0_INT = &Tock;
+    EINT;
+    for (;;)
+    {{
+        {wait}
+        if (SciaRegs.SCIFFRX.bit.RXFFST) Order(SciaRegs.SCIRXBUF.all);
+        {time}
+    }}
+}}
+"""
+STEPS = "if (SpiaRegs.SPIRXBUF) heading = wrap(heading + speed * 0.001f);"
+ADDS = "heading = wrap(heading + a);"
+TIME = "if (Ms - last >= 20) last = Ms;"
+
+
+def told_of_sums(folder: Path, isr: str, main: str, wait: str = "", time: str = TIME) -> list[str]:
+    """The lines at which `race` is told."""
+    text = SUMS.format(isr=isr, main=main, wait=wait, time=time)
+    (folder / "a.c").write_text(text, encoding="utf-8")
+    found = Build([str(folder / "a.c")]).compiled.findings
+    return [text.splitlines()[f.place.line - 1].strip() for f in found if f.rule == "race"]
+
+
+@pytest.mark.parametrize(("isr", "main"), [
+    (STEPS, ADDS),
+    (STEPS, "heading += a;"),
+    ("heading -= 0.5f;", "heading = a + heading;"),
+    (STEPS, "if (a > 3) heading -= a; EINT;"),
+])  # fmt: skip
+def test_sums_that_both_sides_add_to_are_told(tmp_path: Path, isr: str, main: str) -> None:
+    assert told_of_sums(tmp_path, isr, main) == [main]
+
+
+@pytest.mark.parametrize(("isr", "main", "wait", "time"), [
+    (STEPS, "DINT; " + ADDS + " EINT;", "", TIME),
+    (STEPS, "__disable_interrupts(); " + ADDS + " __enable_interrupts();", "", TIME),
+    (STEPS, "PieCtrlRegs.PIEIER1.bit.INTx7 = 0; " + ADDS + " PieCtrlRegs.PIEIER1.bit.INTx7 = 1;", "", TIME),
+    (STEPS, "CpuTimer0Regs.TCR.bit.TIE = 0; " + ADDS + " CpuTimer0Regs.TCR.bit.TIE = 1;", "", TIME),
+    (STEPS, 'asm(" setc INTM"); ' + ADDS + ' asm(" clrc INTM");', "", TIME),
+    (STEPS, "IER &= ~1; " + ADDS + " IER |= 1;", "", TIME),
+    # One side only adds: the other one writes it whole.
+    (STEPS, "heading = a;", "", TIME),
+    ("heading = speed;", ADDS, "", TIME),
+    ("other += speed;", ADDS, "", TIME),
+    ("heading += (speed - heading) * 0.1f;", ADDS, "", TIME),
+    # The routine stands by when main says so; main is behind the routine; the routine may not come by itself.
+    ("if (!Off) heading += speed;", "Off = 1; " + ADDS + " Off = 0;", "", TIME),
+    (STEPS, ADDS, "while (!Tick) {} Tick = 0;", TIME),
+    (STEPS, ADDS, "if (!Tick) continue; Tick = 0;", TIME),
+    (STEPS, "if (Tick) { Tick = 0; heading += a; }", "", TIME),
+    (STEPS, ADDS, "", "while (!Tick) {} Tick = 0;"),
+    (STEPS, ADDS, "", ""),
+])  # fmt: skip
+def test_sums_that_one_side_changes_at_a_time_are_silent(
+    tmp_path: Path, isr: str, main: str, wait: str, time: str
+) -> None:  # fmt: skip
+    assert not told_of_sums(tmp_path, isr, main, wait, time)
