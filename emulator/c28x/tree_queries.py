@@ -262,6 +262,22 @@ def passing(s: Stmt) -> bool:
     return True
 
 
+def factors(e: Expr, multiplies: bool = True) -> Iterator[tuple[Expr, bool]]:
+    """The factors of products and quotients, each with whether it multiplies; of anything else, itself."""
+    inner = bare(e)
+    if isinstance(inner, Binary) and inner.op in ("*", "/"):
+        yield from factors(inner.left, multiplies)
+        yield from factors(inner.right, multiplies == (inner.op == "*"))
+    else:
+        yield inner, multiplies
+
+
+def number_of(e: Any) -> int | float | None:
+    """The value of a constant number; None: it is none."""
+    inner = bare(e)
+    return inner.value if isinstance(inner, Const) and isinstance(inner.value, int | float) else None
+
+
 def calls(e: Any) -> bool:
     """Whether evaluating `e` runs a function."""
     return any(isinstance(part, Call | CallPointer) for part in parts(e))

@@ -365,6 +365,23 @@ in which another function has a turn or half of one as a constant.
         how="static",
     ),
     _rule(
+        "echo-not-halved",
+        Severity.WARNING,
+        "The time of an echo becomes a distance and is not halved.",
+        """
+Every distance is twice what it is: the vehicle stops late or not at all.
+
+The time runs until the sound has come back, so the obstacle is at half of its way. It is reported where a time is
+multiplied by the speed of sound (331 to 349 m/s), or divided by 29 us for a centimetre, with no other factors than
+powers of ten. The name of the time says its unit (`echo_us`, `Width_ms`), and the source speaks of an echo, of a sonar
+or of ultrasound. Not reported: a module that halves a time, a distance or the result of a function anywhere, and one
+that speaks of sound that goes one way (a beacon, a wind meter).
+
+**Fix:** `echo_us * 343 / 2000` is the distance in mm; 58 us are one centimetre.
+""",
+        how="static",
+    ),
+    _rule(
         "division-by-zero",
         Severity.ERROR,
         "A number was divided by zero.",

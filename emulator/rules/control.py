@@ -228,9 +228,14 @@ measured value has gone to the other side of 0, or beyond twice what is wanted.
 An output that is active low, or a gain that is negative when the program runs, brings the value back, so nothing is
 reported; neither where the value only stays away (a blocked motor, no supply), nor behind a new order.
 
+One form is reported before the program runs: a sum has a term that is called a feed-forward (`FEED_FORWARD * wanted`,
+`kff`) and a share of an error that falls where this term grows (`KP * (speed - wanted)`), with positive gains. One of
+the two has the wrong sign.
+
 **Fix:** subtract the measured value from the wanted one.
 """,
         "K. J. Astrom, R. M. Murray, Feedback Systems, 1.1",
+        how="dynamic/static",
     ),
     _rule(
         "no-case",

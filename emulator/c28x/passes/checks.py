@@ -22,10 +22,12 @@ from emulator.c28x.passes.decided import check_decided
 from emulator.c28x.passes.digits import check_digits
 from emulator.c28x.passes.drained import check_drained
 from emulator.c28x.passes.dropped import check_dropped
+from emulator.c28x.passes.echoes import check_echoes
 from emulator.c28x.passes.endless_waits import check_endless_waits
 from emulator.c28x.passes.entrances import check_entrances
 from emulator.c28x.passes.error_signs import check_error_signs
 from emulator.c28x.passes.event_masks import check_event_masks, check_lost_events
+from emulator.c28x.passes.feed_forward import check_feed_forward
 from emulator.c28x.passes.flow import FlowReport
 from emulator.c28x.passes.fraction_texts import check_fraction_texts
 from emulator.c28x.passes.future_stamps import unreachable_exits
@@ -182,6 +184,8 @@ def check(
     check_quotients(reports, given)
     check_error_signs(modules, reports)
     check_angles(modules, reports)
+    check_echoes(modules, reports)
+    check_feed_forward(modules, reports)
     check_stated(reports, given)
     check_fraction_texts(reports, given)
     check_spans(shown, shown_reports)

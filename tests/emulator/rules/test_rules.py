@@ -46,13 +46,13 @@ STATIC = (
     *(
         f"emulator/c28x/passes/{name}.py"
         for name in (
-            "admitted", "anew", "angles", "begun_again", "blocks", "checks", "clamps", "cleared",
-            "cleared_early", "copied_socs", "copies", "decided", "digits", "drained", "dropped", "endless_waits",
-            "entrances", "error_signs", "event_masks", "flow", "formats", "fraction_texts", "given_times",
-            "gone_locals", "kept_flags", "left_out", "like_products", "likes",
-            "lost_writes", "means", "messages", "names", "narrow_stamps", "never_back", "never_updated",
-            "null_tests", "off_by_one", "one_sided", "only_grows", "out_of_reach", "published", "quotients", "released",
-            "ring_back", "search_end", "signs_of_life", "spans", "state_tables", "stated", "states", "stores", "tables",
+            "admitted", "anew", "angles", "begun_again", "blocks", "checks", "clamps", "cleared", "cleared_early",
+            "copied_socs", "copies", "decided", "digits", "drained", "dropped", "echoes", "endless_waits",
+            "entrances", "error_signs", "event_masks", "feed_forward", "flow", "formats", "fraction_texts",
+            "given_times", "gone_locals", "kept_flags", "left_out", "like_products", "likes", "lost_writes", "means",
+            "messages", "names", "narrow_stamps", "never_back", "never_updated", "null_tests", "off_by_one",
+            "one_sided", "only_grows", "out_of_reach", "published", "quotients", "released", "ring_back",
+            "search_end", "signs_of_life", "spans", "state_tables", "stated", "states", "stores", "tables",
             "taken_apart", "undone", "unlimited_lines", "unread_inputs", "values", "waiting",
         )
     ),

@@ -1043,6 +1043,36 @@ def Joined(high: uint16, low: uint16, whole: int16) -> uint32:
         ("Joined", (1, 2, 0)),
     ),
     static_pair(
+        "echo-not-halved",
+        "there and back",
+        """
+def Sonar(echo_us: uint32) -> uint16:
+    return uint16(echo_us * 343 / 1000)  # <-
+""",
+        """
+def Sonar(echo_us: uint32) -> uint16:
+    return uint16(echo_us * 343 / 2000)
+""",
+        ("Sonar", (5800,)),
+    ),
+    static_pair(
+        "runs-away",
+        "a feed-forward and an error of opposite signs",
+        """
+KFF: const[float32] = 0.4
+KP: const[float32] = 0.8
+def Output(wanted: float32, speed: float32) -> float32:
+    return KFF * wanted + KP * (speed - wanted)  # <-
+""",
+        """
+KFF: const[float32] = 0.4
+KP: const[float32] = 0.8
+def Output(wanted: float32, speed: float32) -> float32:
+    return KFF * wanted + KP * (wanted - speed)
+""",
+        ("Output", (1.0, 0.5)),
+    ),
+    static_pair(
         "angle-unwrapped",
         "the long way round",
         """
