@@ -62,6 +62,7 @@ from emulator.register_writes import RegisterWrites, field_of
 from emulator.registers.core import Block
 from emulator.registers.eqep import QEINT
 from emulator.registers.gpio import PORTS
+from emulator.xbar_users import other_inputs
 
 #: TRIGSEL of the first ePWM's SOCA; its SOCB follows, and then those of the next ePWM (TRM, ADCSOCxCTL).
 FIRST_SOCA: Final = 5
@@ -197,6 +198,10 @@ class Connections:
                 if place is not None and not self._writes(f"PieVectTable.{self._chip.vectors.entry(group, n)}"):
                     self._other_line(place, group, n)
         self._other_groups(modules)
+        for other in other_inputs(self._chip, self._source):
+            self._chip.findings.report_at(
+                other.place, "not-connected", other.message, object=other.listener.name, how="dynamic"
+            )
         self._loads()
 
     # The source

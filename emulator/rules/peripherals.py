@@ -246,9 +246,10 @@ through pointers to registers, to blocks, or to structures that hold these. A pr
 that did not come in this run is not reported. The start-up runs once: a setting that it makes and takes back is
 missing.
 
-Driver files without a `main` are only half of a program. Of them two of these connections are checked, which no
-application can put right: a line of `PIEIER` without a routine beside a routine whose line nothing enables, and a
-compare that is never loaded (`LOADAMODE = 3`).
+Driver files without a `main` are only half of a program. Of them three of these connections are checked, which no
+application puts right: a line of `PIEIER` without a routine beside a routine whose line nothing enables, a compare that
+is never loaded (`LOADAMODE = 3`), and an input of the Input X-BAR that gets a pin and that nothing uses, beside an
+eCAP, an external interrupt or a trip zone whose own input gets none.
 
 **Fix:** set the register that the finding names, or remove what waits for the event.
 """,

@@ -145,3 +145,75 @@ def test_a_compare_that_is_never_loaded_is_told(tmp_path: Path, shadow: int, loa
     """TRM, CMPCTL: LOADAMODE = 3 freezes the active register, unless SHDWAMODE = 1 writes it directly."""
     more = DUTY.replace("@shadow", str(shadow)).replace("@load", str(load))
     assert (("not-connected", "Sampler_InitDuty") in told(tmp_path, more=more)) is not loads
+
+
+ECHO = """
+static volatile Uint32 Width = 0;
+void Sampler_InitEcho(void)
+{
+    EALLOW;
+    CpuSysRegs.PCLKCR3.bit.ECAP1 = 1;
+    @inputs
+    EDIS;
+    GPIO_SetupPinOptions(9, GPIO_INPUT, GPIO_ASYNC);
+    ECap1Regs.ECCTL1.bit.CAP1POL = 0;
+    ECap1Regs.ECCTL1.bit.CTRRST1 = 1;
+    ECap1Regs.ECCTL1.bit.CAP2POL = 1;
+    ECap1Regs.ECCTL1.bit.CAPLDEN = 1;
+    ECap1Regs.ECCTL2.bit.CAP_APWM = 0;
+    ECap1Regs.ECCTL2.bit.SYNCI_EN = 0;
+    ECap1Regs.ECCTL2.bit.TSCTRSTOP = 1;
+}
+Uint32 Sampler_Echo(void)
+{
+    Width = ECap1Regs.CAP2;
+    return Width;
+}
+"""
+#: Of an external interrupt; of a trip zone.
+BUTTON = "XintRegs.XINT{}CR.bit.POLARITY = 1; XintRegs.XINT{}CR.bit.ENABLE = 1;"
+TRIP = "EPwm4Regs.TZSEL.bit.OSHT{} = 1;"
+
+
+@pytest.mark.parametrize("inputs", [
+    "InputXbarRegs.INPUT6SELECT = 9;",
+    "InputXbarRegs.INPUT8SELECT = 9;",
+    "InitECap2Gpio(9); EALLOW;",
+    # Another one has its own.
+    "InputXbarRegs.INPUT1SELECT = 9; InputXbarRegs.INPUT4SELECT = 10; " + BUTTON.format(1, 1),
+    # The echo has its own, and another one has not.
+    "InputXbarRegs.INPUT7SELECT = 9; InputXbarRegs.INPUT5SELECT = 10; " + BUTTON.format(1, 1),
+    "InputXbarRegs.INPUT7SELECT = 9; GPIO_SetupXINT3Gpio(10); EALLOW; " + BUTTON.format(1, 1),
+    "InputXbarRegs.INPUT7SELECT = 9; InputXbarRegs.INPUT1SELECT = 12; " + TRIP.format(2),
+])  # fmt: skip
+def test_an_input_that_is_chosen_for_somebody_else_is_told(tmp_path: Path, inputs: str) -> None:
+    """DS, Input X-BAR: eCAP1 is INPUT7, XINT1 INPUT4, TZ2 INPUT2."""
+    assert ("not-connected", "Sampler_InitEcho") in told(tmp_path, more=ECHO.replace("@inputs", inputs))
+
+
+@pytest.mark.parametrize("inputs", [
+    "InputXbarRegs.INPUT7SELECT = 9;",
+    "InitECap1Gpio(9); EALLOW;",
+    # The application chooses it, also where the driver chooses that of another part, or of several.
+    "",
+    "InputXbarRegs.INPUT4SELECT = 10; " + BUTTON.format(1, 1),
+    "InputXbarRegs.INPUT6SELECT = 10; " + BUTTON.format(3, 3),
+    "InputXbarRegs.INPUT6SELECT = 10; OutputXbarRegs.OUTPUT3MUXENABLE.bit.MUX11 = 1;",
+    "InputXbarRegs.INPUT6SELECT = 10; EPwm4Regs.DCTRIPSEL.bit.DCAHCOMPSEL = 5;",
+    "InputXbarRegs.INPUT5SELECT = 10; AdcaRegs.ADCSOC1CTL.bit.TRIGSEL = 4;",
+    "InputXbarRegs.INPUT6SELECT = 10; EPwm4Regs.TBCTL.bit.PHSEN = 1;",
+    "InputXbarRegs.INPUT1SELECT = 12; " + TRIP.format(1),
+    "InputXbarRegs.INPUT4SELECT = 12; InputXbarRegs.INPUT8SELECT = 13;",
+    "InputXbarRegs.INPUT7SELECT = 9; InputXbarRegs.INPUT8SELECT = 13;",
+    # On GPIO0, as the reset leaves it.
+    "InputXbarRegs.INPUT7SELECT = 0; InputXbarRegs.INPUT8SELECT = 13;",
+])  # fmt: skip
+def test_an_input_that_somebody_may_use_is_not_told(tmp_path: Path, inputs: str) -> None:
+    assert ("not-connected", "Sampler_InitEcho") not in told(tmp_path, more=ECHO.replace("@inputs", inputs))
+
+
+def test_a_pin_that_the_application_gives_is_not_told(tmp_path: Path) -> None:
+    """The application gives the pin of the echo to a function of the driver."""
+    route = "\nvoid Sampler_Route(Uint16 pin)\n{\n    EALLOW; InputXbarRegs.INPUT7SELECT = pin; EDIS;\n}\n"
+    text = ECHO.replace("@inputs", "InputXbarRegs.INPUT6SELECT = 9;") + route
+    assert ("not-connected", "Sampler_InitEcho") not in told(tmp_path, more=text)
