@@ -78,7 +78,7 @@ STAYS: Final = {
         "emulator/image.py", "emulator/interrupt_flags.py",
         "emulator/latched_flags.py", "emulator/object_values.py", "emulator/pin_functions.py",
         "emulator/register_writes.py", "emulator/registers_by_address.py", "emulator/seed.py", "emulator/system.py",
-        "emulator/c28x/link.py", "hil/world/__init__.py", "hil/world/maps.py",
+        "emulator/xbar_users.py", "emulator/c28x/link.py", "hil/world/__init__.py", "hil/world/maps.py",
     ),
     "describes registers: their classes are made at run time": ("emulator/registers/*.py",),
     "works when something is found, or counted": (

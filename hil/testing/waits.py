@@ -133,7 +133,7 @@ class PollingLoop:
         """The functions of the firmware that statements call, directly or not."""
         first = {part.function.path for part in within(body) if isinstance(part, Call)}
         paths = {path for start in first if start in self._functions for path in self._threads.below(start)}
-        return [self._functions[path] for path in sorted(paths)]
+        return [self._functions[path] for path in sorted(paths & self._functions.keys())]  # not `DINT` and the like
 
     def _conditions(self) -> Iterator[Expr | LValue]:
         """The conditions that decide whether the loop ends: its test, and those of exits and assignments in it."""

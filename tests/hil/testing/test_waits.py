@@ -73,6 +73,18 @@ def By_Call() -> void:
         pass
 
 
+# drv.c: Guarded
+def Guarded() -> void:
+    DINT()
+    EINT()
+
+
+# drv.c: Guarding
+def Guarding() -> void:
+    while Flag == 0:
+        Guarded()
+
+
 # drv.c: By_Local
 def By_Local() -> void:
     seen: uint16
@@ -295,6 +307,13 @@ def test_a_wait_that_nothing_can_end_is_ended_soon_at_its_condition(project: pyt
     condition, said = HOPELESS[name]
     outcome.stdout.fnmatch_lines([f"error {rule}: *", f" *{condition}", f"    note     {said}"])
     outcome.stdout.fnmatch_lines(["ended True"])
+
+
+def test_a_wait_may_call_what_masks_interrupts(project: pytest.Pytester) -> None:
+    """`DINT` is called as a function is, and has no body to look into."""
+    outcome = run(project, "drv.Guarding()")
+    outcome.assert_outcomes(failed=1)
+    outcome.stdout.fnmatch_lines(["error endless-poll: *", " *while Flag == 0:", f"    note     {NO_ENTRY}"])
 
 
 def test_a_register_that_a_routine_does_not_concern_is_not_waited_for(project: pytest.Pytester) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import time
 import urllib.request
 from collections.abc import Callable
 from operator import ne
@@ -294,7 +295,10 @@ def test_findings_lead_to_source_explanation_and_time(page: Any, shot: Shot) -> 
     back.click()
     # It stands in the middle of the statement that adds, with what the function's locals were as it began.
     wait(page, "uninitialised: found here")
-    assert abs(number_in(page, TIME) * 1e3 - at_ms) <= 0.6
+    deadline = time.monotonic() + TIMEOUT_S
+    while abs(number_in(page, TIME) * 1e3 - at_ms) > 0.6:  # the status line and the panel come in messages of their own
+        assert time.monotonic() < deadline, status(page)
+        page.wait_for_timeout(50)
     assert "held" in page.locator(".chip").inner_text()
     where = page.locator(".q-tab-panel:visible").first.inner_text()
     assert "result = never written" in where
