@@ -483,16 +483,16 @@ class SerialFrame:
     `rate_set_by`: the statement that set the rate of its sender, for reports; None: none did.
     """
 
-    data: int
-    start: int
-    end: int
-    bit_cycles: float
-    data_bits: int
-    parity: str | None
-    stop_bits: int
-    framing_error: bool
-    drift: float
-    rate_set_by: Any
+    data: Final[int]
+    start: Final[int]
+    end: Final[int]
+    bit_cycles: Final[float]
+    data_bits: Final[int]
+    parity: Final[str | None]
+    stop_bits: Final[int]
+    framing_error: Final[bool]
+    drift: Final[float]
+    rate_set_by: Final[Any]
 
     def __init__(
         self, data: int, start: int, end: int, bit_cycles: float, data_bits: int = 8, parity: str | None = None,

@@ -262,14 +262,26 @@ def passing(s: Stmt) -> bool:
     return True
 
 
-def factors(e: Expr, multiplies: bool = True) -> Iterator[tuple[Expr, bool]]:
-    """The factors of products and quotients, each with whether it multiplies; of anything else, itself."""
+#: An operator that groups freely, and its reverse.
+PRODUCT: Final = ("*", "/")
+SUM: Final = ("+", "-")
+
+
+def operands(e: Expr, group: tuple[str, str], forward: bool = True) -> Iterator[tuple[Expr, bool]]:
+    """The factors of a `PRODUCT`, or the terms of a `SUM`: each with whether it multiplies, or is added."""
     inner = bare(e)
-    if isinstance(inner, Binary) and inner.op in ("*", "/"):
-        yield from factors(inner.left, multiplies)
-        yield from factors(inner.right, multiplies == (inner.op == "*"))
+    if isinstance(inner, Binary) and inner.op in group:
+        yield from operands(inner.left, group, forward)
+        yield from operands(inner.right, group, forward == (inner.op == group[0]))
     else:
-        yield inner, multiplies
+        yield inner, forward
+
+
+def outermost(nodes: Iterable[Any], group: tuple[str, str]) -> list[Binary]:
+    """The products or sums among `nodes` that are no operands of others."""
+    found = [p for p in nodes if isinstance(p, Binary) and p.op in group]
+    inner = {id(bare(side)) for p in found for side in (p.left, p.right)}
+    return [p for p in found if id(p) not in inner]
 
 
 def number_of(e: Any) -> int | float | None:

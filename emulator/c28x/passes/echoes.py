@@ -13,14 +13,24 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import Final
 
 from emulator.c28x.passes.declared import words_of
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Binary, Call, Expr, Load, Variable
-from emulator.c28x.tree_queries import bare, factors, number_of, own_nodes, parts, source_text, statements, within
+from emulator.c28x.tree_queries import (
+    PRODUCT,
+    number_of,
+    operands,
+    outermost,
+    own_nodes,
+    parts,
+    source_text,
+    statements,
+    within,
+)
 
 _ECHO: Final = re.compile(r"echo|sonar|ultra.?s|hc.?sr04|maxsonar|\bping|there and back|round.?trip", re.IGNORECASE)
 _ONE_WAY: Final = re.compile(r"one.?way|beacon|anemo|wind|hydrophone|single.?path|two.?part", re.IGNORECASE)
@@ -49,7 +59,7 @@ def check_echoes(modules: Iterable[Module], reports: dict[Module, StaticReport])
             continue
         for function in module.functions:
             for s in statements(function.body):
-                for product in _products(own_nodes(s)):
+                for product in outermost(own_nodes(s), PRODUCT):
                     time = _time_of_echo(product)
                     if time:
                         text = source_text(product)
@@ -59,17 +69,10 @@ def check_echoes(modules: Iterable[Module], reports: dict[Module, StaticReport])
                         reports[module].report(function, s.where, "echo-not-halved", message, object=text)
 
 
-def _products(nodes: list[object]) -> Iterator[Binary]:
-    """The products and quotients that are no factors of others."""
-    found = [p for p in nodes if isinstance(p, Binary) and p.op in ("*", "/")]
-    inner = {id(bare(side)) for p in found for side in (p.left, p.right)}
-    yield from (p for p in found if id(p) not in inner)
-
-
 def _time_of_echo(product: Binary) -> str:
     """The name of the time of which a product is the way of the sound; empty: it is none, or half of it."""
     factor, sound, times = 1.0, False, list[Expr]()
-    for e, up in factors(product):
+    for e, up in operands(product, PRODUCT):
         value = number_of(e)
         if value is None:
             times.append(e)

@@ -10,14 +10,25 @@ Silent if a gain is not certainly positive.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import Final, NamedTuple
 
 from emulator.c28x.passes.declared import name_at
 from emulator.c28x.passes.report import StaticReport
 from emulator.c28x.symbols import Module
 from emulator.c28x.tree import Binary, Expr, Function, Load, LValue, Variable
-from emulator.c28x.tree_queries import bare, factors, gives, number_of, own_nodes, source_text, statements
+from emulator.c28x.tree_queries import (
+    PRODUCT,
+    SUM,
+    bare,
+    gives,
+    number_of,
+    operands,
+    outermost,
+    own_nodes,
+    source_text,
+    statements,
+)
 
 _FEED_FORWARD: Final = re.compile(r"feed|(^|_)k?_?ff(_|$)|[a-z]FF|ff_|vorsteuer|prealiment", re.IGNORECASE)
 
@@ -35,11 +46,8 @@ def check_feed_forward(modules: Iterable[Module], reports: dict[Module, StaticRe
     for module in modules:
         for function in module.functions:
             for s in statements(function.body):
-                inner = {id(bare(e)) for p in own_nodes(s) if _is_sum(p) for e in (p.left, p.right)}
-                for whole in own_nodes(s):
-                    if not _is_sum(whole) or id(whole) in inner:
-                        continue
-                    terms = [term for e, positive in _terms(whole, True) if (term := _term(e, positive)) is not None]
+                for whole in outermost(own_nodes(s), SUM):
+                    terms = [term for e, positive in operands(whole, SUM) if (term := _term(e, positive)) is not None]
                     ahead = [t for t in terms if any(map(_FEED_FORWARD.search, t.gains))]
                     for term in terms if ahead else ():
                         _judge(function, reports[module], ahead, term)
@@ -64,24 +72,10 @@ def _judge(function: Function, report: StaticReport, ahead: list[_Term], term: _
             report.report(function, error.where, "runs-away", message, object=shown)
 
 
-def _is_sum(e: object) -> bool:
-    return isinstance(e, Binary) and e.op in ("+", "-")
-
-
-def _terms(e: Expr, positive: bool) -> Iterator[tuple[Expr, bool]]:
-    """The terms of a sum, each with whether it is added."""
-    inner = bare(e)
-    if isinstance(inner, Binary) and inner.op in ("+", "-"):
-        yield from _terms(inner.left, positive)
-        yield from _terms(inner.right, positive == (inner.op == "+"))
-    else:
-        yield inner, positive
-
-
 def _term(e: Expr, positive: bool) -> _Term | None:
     """A product of constant gains and one other value; None: it is something else."""
     values, gains = list[Expr](), list[str]()
-    for factor, _ in factors(e):
+    for factor, _ in operands(e, PRODUCT):
         gain = _gain(factor)
         if gain is None:
             values.append(factor)

@@ -287,8 +287,11 @@ def driver_sides(modules: Iterable[Module], reports: dict[Module, StaticReport])
     if not routines or any(function.name == "main" for function in owners):
         return None
     inside = {function.path for routine in routines for function in routine}
-    lines = {function: module.text.splitlines() for module in modules for function in module.functions}
-    asking = [f.path for f in owners if _SETS_UP.search(f.name) or _sets_up(f) or _asks_for_a_mask(f, lines[f])]
+    asking = [
+        function.path
+        for module in modules for lines in [module.text.splitlines()] for function in module.functions
+        if _SETS_UP.search(function.name) or _sets_up(function) or _asks_for_a_mask(function, lines)
+    ]  # fmt: skip
     left_out = inside | {function.path for function in below(asking, own)}
     bodies = {function: function.body for function in owners if function.path not in left_out}
     return Sides(owners, own, bodies, routines)

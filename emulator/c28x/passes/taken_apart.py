@@ -45,7 +45,8 @@ from emulator.c28x.tree import (
 )
 from emulator.c28x.tree_queries import all_blocks, bare, blocks, gives, leaves, own_nodes, parts, statements, within
 
-#: An object at file scope and the offset of a scalar in it.
+#: An object at file scope and the offset of a scalar in it.  A `Place` does not tell structures of one type apart; a
+#: count, or a pair, is of one object.
 _Word = tuple[Variable, int]
 #: Interrupts are on; it is not known whether they are.  Any other number is that of a section in which they are off.
 _ON, _UNKNOWN = 0, -1

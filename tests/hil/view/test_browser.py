@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import time
 import urllib.request
 from collections.abc import Callable
 from operator import ne
@@ -12,7 +11,7 @@ from typing import Any
 from hil.recording.trajectory import parse_trajectory
 from hil.view.lanes import LEFT
 from tests.hil.view.conftest import View, add_signal, sees
-from tests.hil.waiting import TIMEOUT_S
+from tests.hil.waiting import TIMEOUT_S, eventually
 
 Shot = Callable[[Any, str], None]
 TIME = r"time: ([\d.]+) s"
@@ -295,10 +294,8 @@ def test_findings_lead_to_source_explanation_and_time(page: Any, shot: Shot) -> 
     back.click()
     # It stands in the middle of the statement that adds, with what the function's locals were as it began.
     wait(page, "uninitialised: found here")
-    deadline = time.monotonic() + TIMEOUT_S
-    while abs(number_in(page, TIME) * 1e3 - at_ms) > 0.6:  # the status line and the panel come in messages of their own
-        assert time.monotonic() < deadline, status(page)
-        page.wait_for_timeout(50)
+    # The status line and the panel come in messages of their own.
+    eventually(lambda: abs(number_in(page, TIME) * 1e3 - at_ms) <= 0.6, what=f"the time is {at_ms} ms")
     assert "held" in page.locator(".chip").inner_text()
     where = page.locator(".q-tab-panel:visible").first.inner_text()
     assert "result = never written" in where
